@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef VKAO_INTERNAL_H_
+#define VKAO_INTERNAL_H_
+
+#include "log.h"
+#include "params.h"
+#include "view.h"
+#include "vk.h"
+
+#include <assert.h>
+#include <stddef.h>
+
+#define VKAO_METHOD_COUNT 2
+#define VKAO_PUSH_BYTES 128u
+
+enum pipeline {
+    PIPELINE_PREPARE,
+    PIPELINE_BLUR_X,
+    PIPELINE_BLUR_Y,
+    PIPELINE_COMPOSITE,
+    PIPELINE_SSAO, /* + vkao_ssao_method */
+    PIPELINE_COUNT = PIPELINE_SSAO + VKAO_METHOD_COUNT
+};
+
+struct vkao_context {
+    struct vk_table vk;
+    struct vkao_logger log;
+    VkDevice device;
+    VkPhysicalDevice physical_device;
+    VkPhysicalDeviceMemoryProperties memory;
+    uint32_t max_dimension;
+    VkAllocationCallbacks allocator_copy;
+    const VkAllocationCallbacks *allocator; /* &allocator_copy or NULL */
+    uint32_t method_mask;
+    VkDescriptorSetLayout set_layout;
+    VkPipelineLayout pipeline_layout;
+    VkPipeline pipelines[PIPELINE_COUNT]; /* null for methods that were not asked for */
+};
+
+/* Host memory through the caller's callbacks, zeroed; NULL when there is none. */
+void *vkao_calloc(const VkAllocationCallbacks *allocator, size_t bytes);
+void vkao_free(const VkAllocationCallbacks *allocator, void *memory);
+
+/* Intermediate images that live in the frame's one block of memory. */
+enum scratch {
+    SCRATCH_VIEW_Z,
+    SCRATCH_NOISY,   /* if the SSAO stage feeds BLUR and the caller gave no ao_noisy */
+    SCRATCH_HALFWAY, /* between the two directions of the blur */
+    SCRATCH_AO,      /* if COMPOSITE reads AO and the caller gave no ao */
+    SCRATCH_COUNT
+};
+
+struct scratch_image {
+    VkFormat format; /* UNDEFINED = not needed */
+    VkImage image;
+    VkImageView view;
+    VkDeviceSize offset;
+};
+
+struct vkao_frame {
+    const vkao_context *ctx;
+    vkao_stage_flags stages;
+    VkExtent2D extent;
+    vkao_images images;
+    struct scratch_image scratch[SCRATCH_COUNT];
+    VkDeviceMemory memory; /* null if the caller's memory is used */
+    VkDescriptorPool pool;
+    VkDescriptorSet set;
+};
+
+/* --- Checks, each before anything is recorded --- */
+
+/* Copies a caller's struct by the struct rule of vkao.h into dst, which has `known` bytes. */
+vkao_result vkao_import(const struct vkao_logger *log, const char *name, const void *src, void *dst, size_t known);
+
+vkao_result ssao_params_check(const vkao_context *ctx, const vkao_ssao_params *in, vkao_ssao_params *out);
+vkao_result blur_params_check(const struct vkao_logger *log, const vkao_blur_params *in, vkao_blur_params *out);
+vkao_result composite_params_check(const vkao_frame *frame, const vkao_composite_params *in,
+                                   vkao_composite_params *out);
+/* Imports the view and reads it off for a frame that must have been built for one of `stages`. */
+vkao_result frame_view_check(const vkao_frame *frame, VkCommandBuffer cmd, const char *call, vkao_stage_flags stages,
+                             const vkao_view *view, struct view_constants *out);
+
+/* --- Recording of checked stages; cannot fail --- */
+
+void record_prepare(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
+                    const vkao_view *encodings);
+void record_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
+                 const vkao_view *encodings, const vkao_ssao_params *params);
+void record_blur(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
+                 const vkao_view *encodings, const vkao_blur_params *params);
+void record_composite(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
+                      const vkao_composite_params *params);
+
+/* What every stage records: bind, push, one invocation per texel of the rect. */
+void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline pipeline, const void *block,
+                     size_t block_bytes, struct vkao_rect rect);
+/* Earlier vkao work on this queue -> the next dispatch. */
+void record_barrier(const vkao_frame *frame, VkCommandBuffer cmd);
+void record_label_begin(const vkao_frame *frame, VkCommandBuffer cmd, const char *name);
+void record_label_end(const vkao_frame *frame, VkCommandBuffer cmd);
+
+/* --- Scratch --- */
+
+/* Fills the formats of the scratch images that a checked frame needs. */
+void scratch_plan(const vkao_frame *frame, struct scratch_image scratch[SCRATCH_COUNT]);
+/* Creates the planned images, unbound, and lays them out in one block. Unwinds by scratch_destroy. */
+vkao_result scratch_create_images(const vkao_context *ctx, VkExtent2D extent, struct scratch_image scratch[SCRATCH_COUNT],
+                                  VkMemoryRequirements *out);
+vkao_result scratch_bind(const vkao_context *ctx, struct scratch_image scratch[SCRATCH_COUNT], VkDeviceMemory memory,
+                         VkDeviceSize offset);
+void scratch_destroy(const vkao_context *ctx, struct scratch_image scratch[SCRATCH_COUNT]);
+
+void vkao_set_name(const vkao_context *ctx, VkObjectType type, uint64_t handle, const char *name);
+
+#endif

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+#include "internal.h"
+
+#include <string.h>
+
+static_assert(sizeof(struct vkao_prepare_block) == 48, "as shaders/prepare.comp lays it out");
+static_assert(VKAO_GLSL_DEPTH_PROJECTED == (int)VKAO_DEPTH_PROJECTED && VKAO_GLSL_DEPTH_VIEW_Z == (int)VKAO_DEPTH_VIEW_Z &&
+                  VKAO_GLSL_DEPTH_DISTANCE == (int)VKAO_DEPTH_DISTANCE &&
+                  VKAO_GLSL_DEPTH_INVERSE_Z == (int)VKAO_DEPTH_INVERSE_Z,
+              "params.h repeats vkao_depth_encoding");
+
+/* Scratch may be shared with other frames or hold anything: its images begin anew, and wait for whatever vkao work on
+ * this queue used the memory last. */
+static void begin_scratch(const vkao_frame *frame, VkCommandBuffer cmd)
+{
+    VkImageMemoryBarrier barriers[SCRATCH_COUNT];
+    uint32_t count = 0;
+    for (int i = 0; i < SCRATCH_COUNT; ++i) {
+        if (!frame->scratch[i].image)
+            continue;
+        barriers[count++] = (VkImageMemoryBarrier){
+            .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+            .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
+            .dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
+            .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+            .newLayout = VK_IMAGE_LAYOUT_GENERAL,
+            .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+            .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+            .image = frame->scratch[i].image,
+            .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1},
+        };
+    }
+    /* The memory barrier covers other images in the same memory, which the image barriers do not name. */
+    const VkMemoryBarrier memory = {
+        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+        .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
+        .dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
+    };
+    frame->ctx->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                                      0, 1, &memory, 0, NULL, count, barriers);
+}
+
+void record_prepare(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
+                    const vkao_view *encodings)
+{
+    struct vkao_prepare_block block = {
+        .linearize = {view->linearize[0], view->linearize[1]},
+        .far_depth = view->far_depth,
+        .far_z = view->far_z,
+        .depth_encoding = (uint32_t)encodings->depth_encoding,
+        .orthographic = view->orthographic,
+    };
+    memcpy(block.unproject, view->unproject, sizeof block.unproject);
+    rect_pack(view->valid, block.valid);
+    record_label_begin(frame, cmd, "vkao prepare");
+    begin_scratch(frame, cmd);
+    record_dispatch(frame, cmd, PIPELINE_PREPARE, &block, sizeof block, view->valid);
+    record_label_end(frame, cmd);
+}
+
+vkao_result vkao_cmd_prepare(const vkao_frame *frame, VkCommandBuffer cmd, const vkao_view *view)
+{
+    struct view_constants constants = {0};
+    vkao_result result = frame_view_check(frame, cmd, "vkao_cmd_prepare", VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, view,
+                                          &constants);
+    if (result == VKAO_SUCCESS)
+        record_prepare(frame, cmd, &constants, view);
+    return result;
+}

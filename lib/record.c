@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the stages share when they record, and the whole line in one call. */
+#include "internal.h"
+
+vkao_result frame_view_check(const vkao_frame *frame, VkCommandBuffer cmd, const char *call, vkao_stage_flags stages,
+                             const vkao_view *view, struct view_constants *out)
+{
+    if (!frame)
+        return VKAO_ERROR_INVALID_ARGUMENT;
+    const struct vkao_logger *log = &frame->ctx->log;
+    vkao_view known;
+    if (!cmd)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "%s: cmd is NULL", call);
+    if (!(frame->stages & stages))
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "%s: the frame was created with stages 0x%x, want 0x%x",
+                           call, frame->stages, stages);
+    vkao_result result = vkao_import(log, "view", view, &known, sizeof known);
+    if (result != VKAO_SUCCESS)
+        return result;
+    /* A frame that only composites needs rectangles, not a projection. */
+    if (!(frame->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR)))
+        return view_rects(log, &known, frame->extent, &out->valid, &out->rect);
+    if (known.normal_encoding != VKAO_NORMALS_FROM_DEPTH && frame->images.normals.format == VK_FORMAT_UNDEFINED)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.normal_encoding is %d, but the frame has no images.normals",
+                           (int)known.normal_encoding);
+    return view_constants_init(log, &known, frame->extent, frame->images.depth.format, out);
+}
+
+void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline pipeline, const void *block,
+                     size_t block_bytes, struct vkao_rect rect)
+{
+    const vkao_context *ctx = frame->ctx;
+    ctx->vk.CmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, ctx->pipelines[pipeline]);
+    ctx->vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, ctx->pipeline_layout, 0, 1, &frame->set, 0,
+                                  NULL);
+    ctx->vk.CmdPushConstants(cmd, ctx->pipeline_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, (uint32_t)block_bytes, block);
+    ctx->vk.CmdDispatch(cmd, (rect.x1 - rect.x0 + VKAO_GROUP_WIDTH - 1) / VKAO_GROUP_WIDTH,
+                        (rect.y1 - rect.y0 + VKAO_GROUP_HEIGHT - 1) / VKAO_GROUP_HEIGHT, 1);
+}
+
+void record_barrier(const vkao_frame *frame, VkCommandBuffer cmd)
+{
+    const VkMemoryBarrier barrier = {
+        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+        .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
+        .dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
+    };
+    frame->ctx->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                                      0, 1, &barrier, 0, NULL, 0, NULL);
+}
+
+void record_label_begin(const vkao_frame *frame, VkCommandBuffer cmd, const char *name)
+{
+    if (frame->ctx->vk.CmdBeginDebugUtilsLabelEXT)
+        frame->ctx->vk.CmdBeginDebugUtilsLabelEXT(cmd, &(VkDebugUtilsLabelEXT){
+            .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
+            .pLabelName = name,
+        });
+}
+
+void record_label_end(const vkao_frame *frame, VkCommandBuffer cmd)
+{
+    if (frame->ctx->vk.CmdEndDebugUtilsLabelEXT)
+        frame->ctx->vk.CmdEndDebugUtilsLabelEXT(cmd);
+}
+
+/* Params of absent stages must be NULL: whoever passes them believes in a stage that will not run. */
+static vkao_result check_presence(const vkao_frame *frame, const void *ssao, const void *blur, const void *composite)
+{
+    const struct {
+        const char *name;
+        vkao_stage_flags stage;
+        const void *params;
+    } stages[] = {
+        {"ssao", VKAO_STAGE_SSAO, ssao},
+        {"blur", VKAO_STAGE_BLUR, blur},
+        {"composite", VKAO_STAGE_COMPOSITE, composite},
+    };
+    for (size_t i = 0; i < sizeof stages / sizeof stages[0]; ++i) {
+        if (stages[i].params && !(frame->stages & stages[i].stage))
+            return vkao_refuse(&frame->ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                               "vkao_cmd_all: %s is not NULL, but the frame has no such stage", stages[i].name);
+    }
+    return VKAO_SUCCESS;
+}
+
+vkao_result vkao_cmd_all(const vkao_frame *frame, VkCommandBuffer cmd, const vkao_view *view,
+                         const vkao_ssao_params *ssao, const vkao_blur_params *blur,
+                         const vkao_composite_params *composite)
+{
+    struct view_constants constants = {0};
+    vkao_ssao_params ssao_known;
+    vkao_blur_params blur_known = {0};
+    vkao_composite_params composite_known;
+    vkao_result result = frame_view_check(frame, cmd, "vkao_cmd_all", VKAO_STAGE_ALL, view, &constants);
+    if (result == VKAO_SUCCESS)
+        result = check_presence(frame, ssao, blur, composite);
+    if (result == VKAO_SUCCESS && (frame->stages & VKAO_STAGE_SSAO))
+        result = ssao_params_check(frame->ctx, ssao, &ssao_known);
+    if (result == VKAO_SUCCESS && (frame->stages & VKAO_STAGE_BLUR))
+        result = blur_params_check(&frame->ctx->log, blur, &blur_known);
+    if (result == VKAO_SUCCESS && (frame->stages & VKAO_STAGE_COMPOSITE))
+        result = composite_params_check(frame, composite, &composite_known);
+    if (result != VKAO_SUCCESS)
+        return result;
+
+    if (frame->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR))
+        record_prepare(frame, cmd, &constants, view);
+    if (frame->stages & VKAO_STAGE_SSAO) {
+        struct view_constants grown = constants;
+        grown.rect = rect_grow(constants.rect, blur_known.radius, blur_known.radius, constants.valid);
+        record_ssao(frame, cmd, &grown, view, &ssao_known);
+    }
+    if (frame->stages & VKAO_STAGE_BLUR)
+        record_blur(frame, cmd, &constants, view, &blur_known);
+    if (frame->stages & VKAO_STAGE_COMPOSITE)
+        record_composite(frame, cmd, &constants, &composite_known);
+    return VKAO_SUCCESS;
+}

@@ -1,0 +1,53 @@
+/* SPDX-License-Identifier: MIT */
+#include "internal.h"
+
+#include <string.h>
+
+static_assert(sizeof(struct vkao_ssao_block) == 112, "as shaders/ssao.glsl lays it out");
+static_assert(sizeof(struct vkao_ssao_block) <= VKAO_PUSH_BYTES, "push constants of every device");
+static_assert(VKAO_GLSL_FALLOFF_SMOOTH == (int)VKAO_FALLOFF_SMOOTH &&
+                  VKAO_GLSL_SPHERE_RESCALED == (int)VKAO_SPHERE_RESCALED &&
+                  VKAO_GLSL_NORMALS_FROM_DEPTH == (int)VKAO_NORMALS_FROM_DEPTH &&
+                  VKAO_GLSL_NORMALS_XYZ_SNORM == (int)VKAO_NORMALS_XYZ_SNORM &&
+                  VKAO_GLSL_NORMALS_XYZ_UNORM == (int)VKAO_NORMALS_XYZ_UNORM &&
+                  VKAO_GLSL_NORMALS_OCT_SNORM == (int)VKAO_NORMALS_OCT_SNORM &&
+                  VKAO_GLSL_NORMALS_OCT_UNORM == (int)VKAO_NORMALS_OCT_UNORM,
+              "params.h repeats public enums");
+
+void record_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
+                 const vkao_view *encodings, const vkao_ssao_params *params)
+{
+    const float(*n)[3] = view->normal_rows;
+    struct vkao_ssao_block block = {
+        .normal_x = {n[0][0], n[0][1], n[0][2], params->radius},
+        .normal_y = {n[1][0], n[1][1], n[1][2], params->bias * params->radius},
+        .normal_z = {n[2][0], n[2][1], n[2][2], params->blocking_scale},
+        .depth_error = {view->depth_error[0], view->depth_error[1]},
+        .normal_encoding = (uint32_t)encodings->normal_encoding,
+        .orthographic = view->orthographic,
+        .sample_count = params->sample_count,
+        .noise_index = params->noise_index,
+        .falloff = (uint32_t)params->falloff,
+        .sphere_form = (uint32_t)params->sphere_form,
+    };
+    memcpy(block.unproject, view->unproject, sizeof block.unproject);
+    rect_pack(view->valid, block.valid);
+    rect_pack(view->rect, block.rect);
+    record_label_begin(frame, cmd, "vkao ssao");
+    record_barrier(frame, cmd); /* prepare wrote view z; the last blur or composite may still read what we write */
+    record_dispatch(frame, cmd, (enum pipeline)(PIPELINE_SSAO + (int)params->method), &block, sizeof block, view->rect);
+    record_label_end(frame, cmd);
+}
+
+vkao_result vkao_cmd_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const vkao_view *view,
+                          const vkao_ssao_params *params)
+{
+    struct view_constants constants = {0};
+    vkao_ssao_params known;
+    vkao_result result = frame_view_check(frame, cmd, "vkao_cmd_ssao", VKAO_STAGE_SSAO, view, &constants);
+    if (result == VKAO_SUCCESS)
+        result = ssao_params_check(frame->ctx, params, &known);
+    if (result == VKAO_SUCCESS)
+        record_ssao(frame, cmd, &constants, view, &known);
+    return result;
+}

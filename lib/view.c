@@ -1,0 +1,236 @@
+/* SPDX-License-Identifier: MIT */
+#include "view.h"
+
+#include "vk.h"
+
+#include <float.h>
+#include <math.h>
+
+/* Affine use of the projection: clip = scale * view + offset per axis, w = w_z * z + w_1. */
+struct projection {
+    double x_scale, x_z, x_1;
+    double y_scale, y_z, y_1;
+    double z_z, z_1;
+    double forward; /* +1 or -1: view z times it grows away from the eye */
+    bool orthographic;
+};
+
+static vkao_result check_finite(const struct vkao_logger *log, const char *name, const float *values, int count)
+{
+    for (int i = 0; i < count; ++i) {
+        if (!isfinite(values[i]))
+            return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.%s[%d] is %g, want a finite number",
+                               name, i, (double)values[i]);
+    }
+    return VKAO_SUCCESS;
+}
+
+static vkao_result orthographic_forward(const struct vkao_logger *log, const vkao_view *view,
+                                        struct projection *p)
+{
+    if (view->axis != VKAO_VIEW_AXIS_FROM_MATRIX) {
+        p->forward = view->axis == VKAO_VIEW_AXIS_NEGATIVE_Z ? -1.0 : 1.0;
+        return VKAO_SUCCESS;
+    }
+    /* Depth 0 and 1 lie at these view z; a camera sees more in front of the eye than behind it. */
+    double z0 = -p->z_1 / p->z_z, z1 = (1.0 - p->z_1) / p->z_z;
+    if (fabs(z0 + z1) <= 1e-6 * fabs(z0 - z1))
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.axis must be set: near and far plane of this orthographic "
+                           "view.projection lie equally far on both sides of the eye");
+    p->forward = z0 + z1 < 0.0 ? -1.0 : 1.0;
+    return VKAO_SUCCESS;
+}
+
+static vkao_result read_projection(const struct vkao_logger *log, const vkao_view *view,
+                                   struct projection *p)
+{
+    const float *m = view->projection;
+    static const int zero[] = {1, 2, 3, 4, 6, 7}; /* no shear, no rotation, w from z or constant */
+    vkao_result result = check_finite(log, "projection", m, 16);
+    if (result != VKAO_SUCCESS)
+        return result;
+    for (size_t i = 0; i < sizeof zero / sizeof zero[0]; ++i) {
+        if (m[zero[i]] != 0.0f)
+            return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                               "view.projection[%d] is %g, want 0: sheared or rotated projections are "
+                               "not supported",
+                               zero[i], (double)m[zero[i]]);
+    }
+    bool perspective = m[11] != 0.0f && m[15] == 0.0f, orthographic = m[11] == 0.0f && m[15] != 0.0f;
+    if ((!perspective && !orthographic) || m[0] == 0.0f || m[5] == 0.0f || (orthographic && m[10] == 0.0f) ||
+        (perspective && m[14] == 0.0f))
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.projection is neither a perspective nor an orthographic matrix "
+                           "(column-major, [0] %g [5] %g [10] %g [11] %g [14] %g [15] %g)",
+                           (double)m[0], (double)m[5], (double)m[10], (double)m[11], (double)m[14],
+                           (double)m[15]);
+    /* Scale so that w is distance along the axis, or 1. */
+    double w = perspective ? fabs((double)m[11]) : (double)m[15];
+    *p = (struct projection){
+        .x_scale = m[0] / w, .x_z = m[8] / w, .x_1 = m[12] / w,
+        .y_scale = m[5] / w, .y_z = m[9] / w, .y_1 = m[13] / w,
+        .z_z = m[10] / w,    .z_1 = m[14] / w,
+        .orthographic = orthographic,
+        .forward = m[11] > 0.0f ? 1.0 : -1.0,
+    };
+    if (perspective && (m[12] != 0.0f || m[13] != 0.0f))
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.projection[12], [13] are %g, %g, want 0 in a perspective matrix: an "
+                           "off-centre frustum has its offset in [8], [9]",
+                           (double)m[12], (double)m[13]);
+    if (orthographic && (m[8] != 0.0f || m[9] != 0.0f))
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.projection[8], [9] are %g, %g, want 0 in an orthographic matrix: "
+                           "oblique projections are not supported",
+                           (double)m[8], (double)m[9]);
+    return orthographic ? orthographic_forward(log, view, p) : VKAO_SUCCESS;
+}
+
+static vkao_result resolve_rect(const struct vkao_logger *log, const char *name, VkRect2D given,
+                                struct vkao_rect bounds, struct vkao_rect *out)
+{
+    *out = bounds;
+    if (given.extent.width == 0 && given.extent.height == 0)
+        return VKAO_SUCCESS;
+    int64_t x1 = (int64_t)given.offset.x + given.extent.width, y1 = (int64_t)given.offset.y + given.extent.height;
+    if (given.extent.width == 0 || given.extent.height == 0 || given.offset.x < (int64_t)bounds.x0 ||
+        given.offset.y < (int64_t)bounds.y0 || x1 > (int64_t)bounds.x1 || y1 > (int64_t)bounds.y1)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.%s is %ux%u at (%d,%d), want a rectangle inside (%u,%u)..(%u,%u)", name,
+                           given.extent.width, given.extent.height, given.offset.x, given.offset.y,
+                           bounds.x0, bounds.y0, bounds.x1, bounds.y1);
+    *out = (struct vkao_rect){(uint32_t)given.offset.x, (uint32_t)given.offset.y, (uint32_t)x1, (uint32_t)y1};
+    return VKAO_SUCCESS;
+}
+
+vkao_result view_rects(const struct vkao_logger *log, const vkao_view *view, VkExtent2D extent,
+                       struct vkao_rect *valid, struct vkao_rect *rect)
+{
+    struct vkao_rect image = {0, 0, extent.width, extent.height};
+    vkao_result result = resolve_rect(log, "valid", view->valid, image, valid);
+    return result == VKAO_SUCCESS ? resolve_rect(log, "rect", view->rect, *valid, rect) : result;
+}
+
+static void read_unproject(const struct projection *p, const vkao_view *view, struct view_constants *out)
+{
+    double vx = out->valid.x0, vy = out->valid.y0;
+    double vw = out->valid.x1 - out->valid.x0, vh = out->valid.y1 - out->valid.y0;
+    if (view->viewport.extent.width) {
+        vx = view->viewport.offset.x;
+        vy = view->viewport.offset.y;
+        vw = view->viewport.extent.width;
+        vh = view->viewport.extent.height;
+    }
+    /* ndc = (texel + 1/2 - viewport) * 2 / size - 1; ndc * w = scale * view + (x_z * z | x_1) */
+    double x_offset = p->orthographic ? p->x_1 : p->x_z * p->forward;
+    double y_offset = p->orthographic ? p->y_1 : p->y_z * p->forward;
+    out->unproject[0] = (float)(2.0 / vw / p->x_scale);
+    out->unproject[1] = (float)(2.0 / vh / p->y_scale);
+    out->unproject[2] = (float)(((0.5 - vx) * 2.0 / vw - 1.0 - x_offset) / p->x_scale);
+    out->unproject[3] = (float)(((0.5 - vy) * 2.0 / vh - 1.0 - y_offset) / p->y_scale);
+    out->reference_z = p->orthographic ? (float)fabs(2.0 / p->x_scale) : 0.0f;
+}
+
+/* Device depth to view z. The step of the depth format tells how far z may be off: fixed-point steps are the same
+ * everywhere, floating ones shrink towards 0, which is why reversed floating depth is accurate. */
+static void read_depth(const struct projection *p, const vkao_view *view, VkFormat format,
+                       struct view_constants *out)
+{
+    bool floating;
+    double step = vk_format_depth_step(format, &floating);
+    double rounding = 0x1p-22; /* of the view z that prepare stores, and of the arithmetic on it */
+    out->far_z = FLT_MAX;
+    out->depth_error[0] = (float)rounding;
+    if (p->orthographic) {
+        double z0 = p->forward * -p->z_1 / p->z_z, z1 = p->forward * (1.0 - p->z_1) / p->z_z;
+        out->far_depth = z1 > z0 ? 1.0f : 0.0f;
+        double far = fmax(z0, z1), near = fmin(z0, z1);
+        /* Orthographic xy does not depend on z: moving the eye back keeps z positive and changes nothing. */
+        double shift = near > 0.0 ? 0.0 : 0.001 * (far - near) - near;
+        out->linearize[0] = (float)(z0 + shift);
+        out->linearize[1] = (float)(z1 - z0);
+        if (view->depth_encoding == VKAO_DEPTH_PROJECTED)
+            out->depth_error[0] += (float)(step * (far - near) / (far + shift));
+        else
+            out->far_z = (float)far;
+    } else {
+        double add = p->z_z * p->forward, mul = -p->z_1; /* z = mul / (add - depth) */
+        double at_one = add == 1.0 ? INFINITY : mul / (add - 1.0), at_zero = add == 0.0 ? INFINITY : mul / add;
+        bool one_is_far = at_one < 0.0 || (at_zero > 0.0 && at_one > at_zero);
+        double far = one_is_far ? at_one : at_zero;
+        out->far_depth = one_is_far ? 1.0f : 0.0f;
+        out->linearize[0] = (float)mul;
+        out->linearize[1] = (float)add;
+        if (view->depth_encoding == VKAO_DEPTH_PROJECTED) {
+            if (!floating || one_is_far)
+                out->depth_error[1] = (float)(step / fabs(mul));
+        } else if (isfinite(far) && far > 0.0) {
+            out->far_z = (float)far;
+        }
+    }
+    if (view->depth_encoding != VKAO_DEPTH_PROJECTED || (floating && out->far_depth < 0.5f))
+        out->depth_error[0] += (float)step;
+}
+
+static vkao_result check_enums(const struct vkao_logger *log, const vkao_view *view)
+{
+    if ((uint32_t)view->depth_encoding > VKAO_DEPTH_INVERSE_Z)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.depth_encoding is %d, want 0..%d",
+                           (int)view->depth_encoding, (int)VKAO_DEPTH_INVERSE_Z);
+    if ((uint32_t)view->normal_encoding > VKAO_NORMALS_OCT_UNORM)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.normal_encoding is %d, want 0..%d",
+                           (int)view->normal_encoding, (int)VKAO_NORMALS_OCT_UNORM);
+    if ((uint32_t)view->axis > VKAO_VIEW_AXIS_POSITIVE_Z)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.axis is %d, want 0..%d", (int)view->axis,
+                           (int)VKAO_VIEW_AXIS_POSITIVE_Z);
+    if ((view->viewport.extent.width == 0) != (view->viewport.extent.height == 0))
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.viewport is %ux%u, want both 0 or none",
+                           view->viewport.extent.width, view->viewport.extent.height);
+    if (view->reserved)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.reserved is %u, want 0", view->reserved);
+    return VKAO_SUCCESS;
+}
+
+vkao_result view_constants_init(const struct vkao_logger *log, const vkao_view *view, VkExtent2D extent,
+                                VkFormat depth_format, struct view_constants *out)
+{
+    struct projection p = {0};
+    vkao_result result = check_enums(log, view);
+    if (result == VKAO_SUCCESS)
+        result = check_finite(log, "normal_to_view", view->normal_to_view, 9);
+    if (result == VKAO_SUCCESS)
+        result = read_projection(log, view, &p);
+    if (result != VKAO_SUCCESS)
+        return result;
+    *out = (struct view_constants){.orthographic = p.orthographic};
+    result = view_rects(log, view, extent, &out->valid, &out->rect);
+    if (result != VKAO_SUCCESS)
+        return result;
+    read_unproject(&p, view, out);
+    read_depth(&p, view, depth_format, out);
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 3; ++column) {
+            float v = view->normal_to_view[column * 3 + row];
+            out->normal_rows[row][column] = row == 2 ? v * (float)p.forward : v;
+        }
+    }
+    return VKAO_SUCCESS;
+}
+
+struct vkao_rect rect_grow(struct vkao_rect rect, uint32_t x, uint32_t y, struct vkao_rect bounds)
+{
+    struct vkao_rect grown = {
+        .x0 = rect.x0 - bounds.x0 > x ? rect.x0 - x : bounds.x0,
+        .y0 = rect.y0 - bounds.y0 > y ? rect.y0 - y : bounds.y0,
+        .x1 = bounds.x1 - rect.x1 > x ? rect.x1 + x : bounds.x1,
+        .y1 = bounds.y1 - rect.y1 > y ? rect.y1 + y : bounds.y1,
+    };
+    return grown;
+}
+
+void rect_pack(struct vkao_rect rect, uint32_t out[2])
+{
+    out[0] = rect.x0 | rect.y0 << 16;
+    out[1] = rect.x1 | rect.y1 << 16;
+}

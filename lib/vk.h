@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * All Vulkan plumbing: the function table through which every call goes, result mapping, formats, memory types. */
+#ifndef VKAO_VK_H_
+#define VKAO_VK_H_
+
+#include "vkao.h"
+
+#include <stdbool.h>
+
+#define VKAO_INSTANCE_FUNCTIONS(X)                                                                 \
+    X(GetPhysicalDeviceProperties)                                                                 \
+    X(GetPhysicalDeviceMemoryProperties)                                                           \
+    X(GetPhysicalDeviceFormatProperties)
+
+#define VKAO_DEVICE_FUNCTIONS(X)                                                                   \
+    X(CreateShaderModule)                                                                          \
+    X(DestroyShaderModule)                                                                         \
+    X(CreateDescriptorSetLayout)                                                                   \
+    X(DestroyDescriptorSetLayout)                                                                  \
+    X(CreatePipelineLayout)                                                                        \
+    X(DestroyPipelineLayout)                                                                       \
+    X(CreateComputePipelines)                                                                      \
+    X(DestroyPipeline)                                                                             \
+    X(CreateDescriptorPool)                                                                        \
+    X(DestroyDescriptorPool)                                                                       \
+    X(AllocateDescriptorSets)                                                                      \
+    X(UpdateDescriptorSets)                                                                        \
+    X(CreateImage)                                                                                 \
+    X(DestroyImage)                                                                                \
+    X(GetImageMemoryRequirements)                                                                  \
+    X(AllocateMemory)                                                                              \
+    X(FreeMemory)                                                                                  \
+    X(BindImageMemory)                                                                             \
+    X(CreateImageView)                                                                             \
+    X(DestroyImageView)                                                                            \
+    X(CmdPipelineBarrier)                                                                          \
+    X(CmdBindPipeline)                                                                             \
+    X(CmdBindDescriptorSets)                                                                       \
+    X(CmdPushConstants)                                                                            \
+    X(CmdDispatch)
+
+/* Present only where VK_EXT_debug_utils is enabled; NULL otherwise. */
+#define VKAO_DEBUG_FUNCTIONS(X)                                                                    \
+    X(SetDebugUtilsObjectNameEXT)                                                                  \
+    X(CmdBeginDebugUtilsLabelEXT)                                                                  \
+    X(CmdEndDebugUtilsLabelEXT)
+
+struct vk_table {
+#define VKAO_DECLARE(name) PFN_vk##name name;
+    VKAO_INSTANCE_FUNCTIONS(VKAO_DECLARE)
+    VKAO_DEVICE_FUNCTIONS(VKAO_DECLARE)
+    VKAO_DEBUG_FUNCTIONS(VKAO_DECLARE)
+#undef VKAO_DECLARE
+};
+
+/* False if a required function is missing; *missing then names it. */
+bool vk_table_load(struct vk_table *vk, const vkao_context_info *info, const char **missing);
+
+vkao_result vk_result(VkResult result);
+
+/* Formats that texture2D can read: everything but integers, multi-planar and stencil-only. */
+bool vk_format_is_sampled_float(VkFormat format);
+/* Formats of AO images. */
+bool vk_format_is_ao(VkFormat format);
+/* Depth formats and one-component floats. */
+bool vk_format_is_depth(VkFormat format);
+/* Size of one step of a depth value in [0.5,1), and whether the format floats; 0 for other formats. */
+float vk_format_depth_step(VkFormat format, bool *floating);
+
+/* Index of a memory type among type_bits with DEVICE_LOCAL, or UINT32_MAX. */
+uint32_t vk_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits);
+
+#endif

@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One direction of the separable cross-bilateral blur (Petschnigg et al. 2004; Eisemann and Durand 2004). The weight
+ * of tap k is a Gaussian, times max(0, 1 - sharpness * |z_k - z - slope k| / z), slope being the smaller of the two
+ * neighbour differences, times max(0, n.n_k)^normal_power. Continuing the slope keeps tilted walls in one piece where
+ * a plain depth difference would cut them up. The second, vertical direction ends with intensity and power. */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#define VKAO_GLSL
+#include "params.h"
+
+layout(constant_id = VKAO_CONSTANT_BLUR_VERTICAL) const bool VERTICAL = false;
+layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
+layout(push_constant) uniform Block { vkao_blur_block params; };
+layout(binding = VKAO_BINDING_NOISY_READ) uniform texture2D noisy_image;
+layout(binding = VKAO_BINDING_HALFWAY_READ) uniform texture2D halfway_image;
+layout(binding = VKAO_BINDING_HALFWAY_WRITE) uniform writeonly image2D halfway_out;
+layout(binding = VKAO_BINDING_AO_WRITE) uniform writeonly image2D ao_out;
+#include "view.glsl"
+
+const ivec2 AXIS = VERTICAL ? ivec2(0, 1) : ivec2(1, 0);
+
+float load_ao(ivec2 texel)
+{
+    return VERTICAL ? texelFetch(halfway_image, texel, 0).x : texelFetch(noisy_image, texel, 0).x;
+}
+
+float local_slope(ivec2 texel, float z)
+{
+    float before = load_view_z(texel - AXIS), after = load_view_z(texel + AXIS);
+    float a = before > 0.0 ? z - before : 3.0e38, b = after > 0.0 ? after - z : 3.0e38;
+    float slope = abs(a) < abs(b) ? a : b;
+    return abs(slope) < 3.0e38 ? slope : 0.0;
+}
+
+float normal_weight(vec3 normal, ivec2 texel)
+{
+    vec3 other = decode_normal(texel, params.normal_encoding);
+    if (normal == vec3(0.0) || other == vec3(0.0))
+        return 1.0;
+    return pow(max(dot(normal, other), 1.0e-6), params.normal_power);
+}
+
+float blurred(ivec2 texel, float z)
+{
+    float slope = local_slope(texel, z);
+    float edge = params.sharpness / (params.reference_z > 0.0 ? params.reference_z : z);
+    bool use_normals = params.normal_power > 0.0;
+    vec3 normal = use_normals ? decode_normal(texel, params.normal_encoding) : vec3(0.0);
+    /* The outermost tap keeps exp(-2) of the centre's weight. */
+    float fall = -2.0 / float(max(1u, params.radius * params.radius));
+    float sum = load_ao(texel), weights = 1.0;
+    for (int k = -int(params.radius); k <= int(params.radius); ++k) {
+        ivec2 at = texel + k * AXIS;
+        float tap_z = k == 0 ? 0.0 : load_view_z(at);
+        if (tap_z > 0.0) {
+            float w = exp(fall * float(k * k)) * max(0.0, 1.0 - edge * abs(tap_z - z - slope * float(k)));
+            if (use_normals)
+                w *= normal_weight(normal, at);
+            sum += w * load_ao(at);
+            weights += w;
+        }
+    }
+    return sum / weights;
+}
+
+void main()
+{
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(params.rect.x);
+    if (any(greaterThanEqual(texel, unpack_texel(params.rect.y))))
+        return;
+    float z = load_view_z(texel);
+    float ao = z > 0.0 ? blurred(texel, z) : 1.0;
+    if (VERTICAL) {
+        ao = clamp(1.0 - params.intensity * (1.0 - ao), 0.0, 1.0);
+        imageStore(ao_out, texel, vec4(params.power == 1.0 ? ao : pow(ao, params.power)));
+    } else {
+        imageStore(halfway_out, texel, vec4(ao));
+    }
+}

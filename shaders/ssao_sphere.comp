@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Points in the full sphere around the shaded one (Mittring, 'Finding Next Gen: CryEngine 2', 2007), in two forms.
+ *
+ * Literal: a table of random vectors in the unit ball, rotated per texel about the view axis, times the radius; at
+ * each point dz = blocking_scale * max(0, scene z - point z); the blocking factor is the mean of 1 / (1 + dz^2), and
+ * visibility is 1 - factor. A point behind the scene blocks fully, one in front of it the less the further.
+ *
+ * Rescaled: half the sphere lies inside a flat wall, so visibility = min(1, 2 * (1 - blocked)): more than 50 % of the
+ * points must be hidden before a texel darkens. Points come in antipodal pairs, uniform in the ball, so that a plane
+ * hides exactly one of each pair. Where the scene is out of reach or unknown a point counts as the plane would have
+ * it, which changes nothing. */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#define VKAO_GLSL
+#include "params.h"
+#include "ssao.glsl"
+
+/* Uniform in the unit ball from three numbers in [0,1). */
+vec3 ball_point(float u, float v, float w)
+{
+    float z = 1.0 - 2.0 * u, ring = sqrt(max(0.0, 1.0 - z * z));
+    return pow(w, 1.0 / 3.0) * vec3(ring * cos(TWO_PI * v), ring * sin(TWO_PI * v), z);
+}
+
+/* Point k of the literal form's table: the R3 sequence (Roberts 2018), powers of 0.81917 in fixed point. */
+vec3 table_point(uint k)
+{
+    k += 1u;
+    return ball_point(unit_float(k * 3518319155u), unit_float(k * 2882110345u), unit_float(k * 2360945575u));
+}
+
+float literal_blocking(ivec2 texel, vec3 position)
+{
+    float radius = params.normal_x.w, scale = params.normal_z.w;
+    float turn = TWO_PI * interleaved_gradient_noise(uvec2(texel), params.noise_index);
+    vec2 rotation = vec2(cos(turn), sin(turn));
+    float factor = 0.0;
+    for (uint k = 0u; k < params.sample_count; ++k) {
+        vec3 p = table_point(k);
+        p.xy = vec2(p.x * rotation.x - p.y * rotation.y, p.x * rotation.y + p.y * rotation.x);
+        vec3 point = position + radius * p;
+        float scene_z = point.z > 0.0 ? load_view_z(ivec2(floor(project_to_texel(point) + 0.5))) : 0.0;
+        float dz = scale * max(0.0, scene_z - point.z);
+        factor += scene_z > 0.0 ? 1.0 / (1.0 + dz * dz) : 0.0;
+    }
+    return factor / float(params.sample_count);
+}
+
+float hidden(vec3 position, vec3 normal, vec3 offset)
+{
+    float radius = params.normal_x.w, bias = params.normal_y.w + depth_error(position.z);
+    vec3 point = position + offset;
+    float height = dot(normal, offset);
+    ivec2 at = ivec2(floor(project_to_texel(point) + 0.5));
+    float scene_z = point.z > 0.0 ? load_view_z(at) : 0.0;
+    vec3 occluder = view_position(vec2(at), scene_z);
+    vec3 v = occluder - position;
+    float weight = scene_z > 0.0 ? falloff_weight(dot(v, v), radius) : 0.0;
+    bool behind = stands_in_front(occluder, position, normal, height + bias);
+    return mix(height < 0.0 ? 1.0 : 0.0, behind ? 1.0 : 0.0, weight);
+}
+
+float rescaled_blocking(ivec2 texel, vec3 position, vec3 normal)
+{
+    float turn = TWO_PI * interleaved_gradient_noise(uvec2(texel), params.noise_index);
+    float shift = r2_noise(uvec2(texel), params.noise_index);
+    uint pairs = (params.sample_count + 1u) / 2u;
+    float blocked = 0.0;
+    for (uint k = 0u; k < pairs; ++k) {
+        /* z over (0,1) and its antipode over (-1,0); lengths uniform in volume */
+        float z = (float(k) + shift) / float(pairs), ring = sqrt(1.0 - z * z);
+        float angle = float(k) * GOLDEN_ANGLE + turn;
+        float len = params.normal_x.w * pow(fract(golden_sequence(k) + shift), 1.0 / 3.0);
+        vec3 offset = len * vec3(ring * cos(angle), ring * sin(angle), z);
+        blocked += hidden(position, normal, offset) + hidden(position, normal, -offset);
+    }
+    return blocked / float(2u * pairs);
+}
+
+float visibility(ivec2 texel, vec3 position, vec3 normal)
+{
+    if (params.sphere_form == VKAO_GLSL_SPHERE_RESCALED)
+        return min(1.0, 2.0 * (1.0 - rescaled_blocking(texel, position, normal)));
+    return 1.0 - literal_blocking(texel, position);
+}

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Texels, view space and normals. The includer defines params, its push constant block, before including this. */
+#ifndef VKAO_VIEW_GLSL_
+#define VKAO_VIEW_GLSL_
+
+layout(binding = VKAO_BINDING_VIEW_Z, r32f) uniform readonly image2D view_z_image;
+layout(binding = VKAO_BINDING_NORMALS) uniform texture2D normals_image;
+
+ivec2 unpack_texel(uint packed_texel)
+{
+    return ivec2(packed_texel & 0xffffu, packed_texel >> 16);
+}
+
+bool in_rect(ivec2 texel, uvec2 rect)
+{
+    return all(greaterThanEqual(texel, unpack_texel(rect.x))) && all(lessThan(texel, unpack_texel(rect.y)));
+}
+
+/* View z, 0 = background or outside the valid texels. */
+float load_view_z(ivec2 texel)
+{
+    return in_rect(texel, params.valid) ? imageLoad(view_z_image, texel).x : 0.0;
+}
+
+vec3 decode_octahedral(vec2 e)
+{
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    float fold = max(-n.z, 0.0);
+    n.x += n.x >= 0.0 ? -fold : fold;
+    n.y += n.y >= 0.0 ? -fold : fold;
+    return n;
+}
+
+/* The stored normal in its own space, unit length; zero if there is none to trust: none given, not finite, or
+ * shorter than 0.5, which is what averaging over an edge leaves. */
+vec3 decode_normal(ivec2 texel, uint encoding)
+{
+    if (encoding == VKAO_GLSL_NORMALS_FROM_DEPTH)
+        return vec3(0.0);
+    vec3 n = texelFetch(normals_image, texel, 0).xyz;
+    if (encoding == VKAO_GLSL_NORMALS_XYZ_UNORM || encoding == VKAO_GLSL_NORMALS_OCT_UNORM)
+        n = n * 2.0 - 1.0;
+    if (encoding >= VKAO_GLSL_NORMALS_OCT_SNORM)
+        n = decode_octahedral(n.xy);
+    float length2 = dot(n, n);
+    return length2 >= 0.25 && length2 < 3.0e38 ? n * inversesqrt(length2) : vec3(0.0);
+}
+
+#ifdef VKAO_UNPROJECT
+
+/* texel may lie between texels; integers are centres. */
+vec3 view_position(vec2 texel, float z)
+{
+    vec2 xy = texel * params.unproject.xy + params.unproject.zw;
+    return vec3(params.orthographic != 0u ? xy : xy * z, z);
+}
+
+vec2 project_to_texel(vec3 position)
+{
+    vec2 xy = params.orthographic != 0u ? position.xy : position.xy / position.z;
+    return (xy - params.unproject.zw) / params.unproject.xy;
+}
+
+/* Unit vector from the position to the eye. */
+vec3 direction_to_eye(vec3 position)
+{
+    return params.orthographic != 0u ? vec3(0.0, 0.0, -1.0) : -normalize(position);
+}
+
+/* Surface tangent along one screen axis. Of the two neighbour pairs, the one whose straight continuation meets the
+ * centre better lies on the centre's surface. 1/z is what continues straight on screen in perspective. */
+vec3 tangent_from_depth(ivec2 texel, ivec2 axis, vec3 center)
+{
+    float near_side = load_view_z(texel - axis), far_side = load_view_z(texel + axis);
+    vec4 z = vec4(load_view_z(texel - 2 * axis), near_side, far_side, load_view_z(texel + 2 * axis));
+    vec4 line = params.orthographic != 0u ? z : 1.0 / max(z, 1.0e-30);
+    float middle = params.orthographic != 0u ? center.z : 1.0 / center.z;
+    /* Without a second neighbour the first one alone decides, by how far it is off. */
+    float before = z.x > 0.0 ? abs(2.0 * line.y - line.x - middle) : abs(line.y - middle);
+    float after = z.w > 0.0 ? abs(2.0 * line.z - line.w - middle) : abs(line.z - middle);
+    bool has_before = near_side > 0.0, has_after = far_side > 0.0;
+    if (has_before && (!has_after || before < after))
+        return center - view_position(vec2(texel - axis), near_side);
+    if (has_after)
+        return view_position(vec2(texel + axis), far_side) - center;
+    return view_position(vec2(texel + axis), center.z) - center;
+}
+
+vec3 normal_from_depth(ivec2 texel, vec3 center)
+{
+    vec3 n = cross(tangent_from_depth(texel, ivec2(1, 0), center), tangent_from_depth(texel, ivec2(0, 1), center));
+    return normalize(n);
+}
+
+/* Unit view-space normal that faces the eye. */
+vec3 view_normal(ivec2 texel, vec3 center)
+{
+    vec3 stored = decode_normal(texel, params.normal_encoding);
+    vec3 n = vec3(dot(params.normal_x.xyz, stored), dot(params.normal_y.xyz, stored), dot(params.normal_z.xyz, stored));
+    if (stored == vec3(0.0))
+        n = normal_from_depth(texel, center);
+    return dot(n, direction_to_eye(center)) < 0.0 ? -n : n;
+}
+
+#endif
+#endif

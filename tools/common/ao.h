@@ -1,0 +1,38 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Images in host memory in, ambient occlusion in host memory out: the public header of the library, driven the
+ * way any engine would drive it. */
+#ifndef VKAO_TOOLS_AO_H_
+#define VKAO_TOOLS_AO_H_
+
+#include "error.h"
+#include "gpu.h"
+#include "vkao.h"
+
+struct ao_job {
+    uint32_t width, height;
+    const float *depth;   /* width * height, rows from the top; what view.depth_encoding says */
+    const float *normals; /* width * height * 4 (xyz and padding), or NULL; what view.normal_encoding says */
+    const float *color;   /* width * height * 4 linear RGBA, or NULL = no composite */
+    vkao_view view;
+    vkao_ssao_params ssao;
+    vkao_blur_params blur;
+    vkao_composite_params composite; /* used if color is given */
+};
+
+struct ao_result {
+    float *ao;     /* width * height visibility in [0,1] */
+    float *output; /* width * height * 4 RGBA of the composite, NULL without color */
+};
+
+/* A session keeps device objects from one frame to the next: create once, run per frame of the same or of another
+ * size. */
+struct ao_session;
+struct ao_session *ao_session_create(struct gpu *gpu, uint32_t method_mask, struct tool_error *err);
+void ao_session_destroy(struct ao_session *session);
+
+/* result's arrays are malloc'ed; ao_result_free frees them. On failure *result is empty. */
+bool ao_run(struct ao_session *session, const struct ao_job *job, struct ao_result *result, struct tool_error *err);
+void ao_result_free(struct ao_result *result);
+
+#endif

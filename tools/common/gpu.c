@@ -1,0 +1,317 @@
+/* SPDX-License-Identifier: MIT */
+#include "gpu.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <vulkan/vulkan.h>
+
+static const char validation_layer[] = "VK_LAYER_KHRONOS_validation";
+
+static bool vk_failed(struct tool_error *err, const char *call, VkResult result)
+{
+    bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    return fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "%s failed with VkResult %d", call, (int)result);
+}
+
+static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                                 VkDebugUtilsMessageTypeFlagsEXT types,
+                                                 const VkDebugUtilsMessengerCallbackDataEXT *data, void *user)
+{
+    struct gpu *gpu = user;
+    (void)severity;
+    (void)types;
+    gpu->validation_messages++;
+    if (gpu->print_validation)
+        fprintf(stderr, "validation: %s\n", data->pMessage);
+    return VK_FALSE;
+}
+
+static bool has_layer(const char *name)
+{
+    uint32_t count = 0;
+    bool found = false;
+    vkEnumerateInstanceLayerProperties(&count, NULL);
+    VkLayerProperties *layers = calloc(count ? count : 1, sizeof *layers);
+    if (layers && vkEnumerateInstanceLayerProperties(&count, layers) == VK_SUCCESS) {
+        for (uint32_t i = 0; i < count; ++i)
+            found = found || strcmp(layers[i].layerName, name) == 0;
+    }
+    free(layers);
+    return found;
+}
+
+static bool create_instance(struct gpu *gpu, bool validation, struct tool_error *err)
+{
+    const VkDebugUtilsMessengerCreateInfoEXT messenger = {
+        .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
+        .pfnUserCallback = on_message,
+        .pUserData = gpu,
+    };
+    /* Core checks are on by default. Queue-submit synchronization has no enumerator in these headers; the layer reads
+     * it from the environment only. */
+    const VkValidationFeatureEnableEXT enables[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    const VkValidationFeaturesEXT features = {
+        .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+        .pNext = &messenger,
+        .enabledValidationFeatureCount = 1,
+        .pEnabledValidationFeatures = enables,
+    };
+    const char *layers[] = {validation_layer};
+    const char *extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+    if (validation && !has_layer(validation_layer)) {
+        fail(err, EXIT_DEVICE, "Vulkan validation layer %s is not installed", validation_layer);
+        return fail_hint(err, "install the package vulkan-validationlayers");
+    }
+    if (validation)
+        setenv("VK_LAYER_ENABLES",
+               "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT", 0);
+    VkResult result = vkCreateInstance(&(VkInstanceCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+        .pNext = validation ? &features : NULL,
+        .pApplicationInfo = &(VkApplicationInfo){
+            .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+            .pApplicationName = "vkao",
+            .apiVersion = VKAO_MIN_API_VERSION,
+        },
+        .enabledLayerCount = validation ? 1 : 0,
+        .ppEnabledLayerNames = layers,
+        .enabledExtensionCount = validation ? 1 : 0,
+        .ppEnabledExtensionNames = extensions,
+    }, NULL, &gpu->instance);
+    if (result != VK_SUCCESS) {
+        gpu->instance = VK_NULL_HANDLE;
+        fail(err, EXIT_DEVICE, "no Vulkan driver could be loaded (vkCreateInstance: VkResult %d)", (int)result);
+        return fail_hint(err, "install mesa-vulkan-drivers to compute on the CPU (lavapipe), or a GPU driver");
+    }
+    if (!validation)
+        return true;
+    PFN_vkCreateDebugUtilsMessengerEXT create =
+        (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(gpu->instance, "vkCreateDebugUtilsMessengerEXT");
+    result = create ? create(gpu->instance, &messenger, NULL, &gpu->messenger) : VK_ERROR_EXTENSION_NOT_PRESENT;
+    return result == VK_SUCCESS || vk_failed(err, "vkCreateDebugUtilsMessengerEXT", result);
+}
+
+const char *gpu_device_type_name(VkPhysicalDeviceType type)
+{
+    static const char *const names[] = {"other", "integrated GPU", "discrete GPU", "virtual GPU", "CPU"};
+    return (unsigned)type < sizeof names / sizeof names[0] ? names[type] : names[0];
+}
+
+static int device_score(const VkPhysicalDeviceProperties *p)
+{
+    static const int scores[] = {1, 4, 5, 3, 2}; /* by VkPhysicalDeviceType */
+    return (unsigned)p->deviceType < sizeof scores / sizeof scores[0] ? scores[p->deviceType] : 0;
+}
+
+/* How well device i fits what was asked for; 0 = not at all. */
+static int device_fits(const char *wanted, uint32_t i, const VkPhysicalDeviceProperties *p)
+{
+    char *end;
+    if (p->apiVersion < VKAO_MIN_API_VERSION)
+        return 0;
+    if (!wanted || strcmp(wanted, "auto") == 0)
+        return device_score(p);
+    if (strcmp(wanted, "cpu") == 0)
+        return p->deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+    unsigned long index = strtoul(wanted, &end, 10);
+    if (end != wanted && !*end)
+        return index == i;
+    return strstr(p->deviceName, wanted) != NULL;
+}
+
+/* malloc'ed list of devices; NULL with the error set. */
+static VkPhysicalDevice *list_devices(VkInstance instance, uint32_t *count, struct tool_error *err)
+{
+    VkResult result = vkEnumeratePhysicalDevices(instance, count, NULL);
+    VkPhysicalDevice *devices = result == VK_SUCCESS && *count ? calloc(*count, sizeof *devices) : NULL;
+    if (devices)
+        result = vkEnumeratePhysicalDevices(instance, count, devices);
+    if (devices && result == VK_SUCCESS && *count)
+        return devices;
+    free(devices);
+    fail(err, EXIT_DEVICE, "no Vulkan device: the loader found 0 physical devices");
+    fail_hint(err, "install mesa-vulkan-drivers to compute on the CPU (lavapipe), or a GPU driver");
+    return NULL;
+}
+
+static bool pick_device(struct gpu *gpu, const char *wanted, struct tool_error *err)
+{
+    uint32_t count = 0;
+    VkPhysicalDevice *devices = list_devices(gpu->instance, &count, err);
+    if (!devices)
+        return false;
+    int best = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        VkPhysicalDeviceProperties p;
+        vkGetPhysicalDeviceProperties(devices[i], &p);
+        int score = device_fits(wanted, i, &p);
+        if (score > best) {
+            best = score;
+            gpu->physical_device = devices[i];
+            gpu->properties = p;
+        }
+    }
+    free(devices);
+    if (best)
+        return true;
+    fail(err, EXIT_DEVICE, "no Vulkan 1.1 device fits --device %s", wanted ? wanted : "auto");
+    return fail_hint(err, "vkao devices lists them");
+}
+
+static bool create_device(struct gpu *gpu, struct tool_error *err)
+{
+    VkQueueFamilyProperties families[32];
+    uint32_t count = 32;
+    vkGetPhysicalDeviceQueueFamilyProperties(gpu->physical_device, &count, families);
+    gpu->queue_family = UINT32_MAX;
+    for (uint32_t i = count; i-- > 0;) {
+        if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT)
+            gpu->queue_family = i;
+    }
+    if (gpu->queue_family == UINT32_MAX)
+        return fail(err, EXIT_DEVICE, "%s has no compute queue", gpu->properties.deviceName);
+    vkGetPhysicalDeviceMemoryProperties(gpu->physical_device, &gpu->memory);
+    vkao_add_required_features(&gpu->features);
+    VkPhysicalDeviceFeatures supported;
+    vkGetPhysicalDeviceFeatures(gpu->physical_device, &supported);
+    if (!supported.shaderStorageImageWriteWithoutFormat)
+        return fail(err, EXIT_DEVICE, "%s lacks shaderStorageImageWriteWithoutFormat", gpu->properties.deviceName);
+    VkResult result = vkCreateDevice(gpu->physical_device, &(VkDeviceCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+        .queueCreateInfoCount = 1,
+        .pQueueCreateInfos = &(VkDeviceQueueCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+            .queueFamilyIndex = gpu->queue_family,
+            .queueCount = 1,
+            .pQueuePriorities = &(float){1.0f},
+        },
+        .pEnabledFeatures = &gpu->features,
+    }, NULL, &gpu->device);
+    if (result != VK_SUCCESS) {
+        gpu->device = VK_NULL_HANDLE;
+        return vk_failed(err, "vkCreateDevice", result);
+    }
+    vkGetDeviceQueue(gpu->device, gpu->queue_family, 0, &gpu->queue);
+    result = vkCreateCommandPool(gpu->device, &(VkCommandPoolCreateInfo){
+        .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+        .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+        .queueFamilyIndex = gpu->queue_family,
+    }, NULL, &gpu->command_pool);
+    return result == VK_SUCCESS || vk_failed(err, "vkCreateCommandPool", result);
+}
+
+bool gpu_create(const struct gpu_options *options, struct gpu *gpu, struct tool_error *err)
+{
+    *gpu = (struct gpu){.print_validation = true};
+    if (create_instance(gpu, options->validation, err) && pick_device(gpu, options->device, err) &&
+        create_device(gpu, err))
+        return true;
+    gpu_destroy(gpu);
+    return false;
+}
+
+void gpu_destroy(struct gpu *gpu)
+{
+    if (gpu->command_pool)
+        vkDestroyCommandPool(gpu->device, gpu->command_pool, NULL);
+    if (gpu->device)
+        vkDestroyDevice(gpu->device, NULL);
+    if (gpu->messenger) {
+        PFN_vkDestroyDebugUtilsMessengerEXT destroy = (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
+            gpu->instance, "vkDestroyDebugUtilsMessengerEXT");
+        if (destroy)
+            destroy(gpu->instance, gpu->messenger, NULL);
+    }
+    if (gpu->instance)
+        vkDestroyInstance(gpu->instance, NULL);
+    uint32_t messages = gpu->validation_messages;
+    *gpu = (struct gpu){.validation_messages = messages};
+}
+
+bool gpu_list_devices(struct gpu_device_list *list, struct tool_error *err)
+{
+    struct gpu gpu = {0};
+    *list = (struct gpu_device_list){0};
+    bool ok = create_instance(&gpu, false, err);
+    VkPhysicalDevice *devices = ok ? list_devices(gpu.instance, &list->count, err) : NULL;
+    if (devices)
+        list->properties = calloc(list->count, sizeof *list->properties);
+    if (devices && !list->properties)
+        fail(err, EXIT_MEMORY, "out of memory");
+    for (uint32_t i = 0; list->properties && i < list->count; ++i)
+        vkGetPhysicalDeviceProperties(devices[i], &list->properties[i]);
+    free(devices);
+    gpu_destroy(&gpu);
+    return list->properties != NULL;
+}
+
+void gpu_device_list_free(struct gpu_device_list *list)
+{
+    free(list->properties);
+    *list = (struct gpu_device_list){0};
+}
+
+uint32_t gpu_format_bytes(VkFormat format)
+{
+    switch (format) {
+    case VK_FORMAT_R8_UNORM:
+        return 1;
+    case VK_FORMAT_R8G8_UNORM:
+    case VK_FORMAT_R8G8_SNORM:
+    case VK_FORMAT_R16_UNORM:
+    case VK_FORMAT_R16_SFLOAT:
+    case VK_FORMAT_D16_UNORM:
+        return 2;
+    case VK_FORMAT_R8G8B8A8_UNORM:
+    case VK_FORMAT_R8G8B8A8_SNORM:
+    case VK_FORMAT_A2B10G10R10_UNORM_PACK32:
+    case VK_FORMAT_R16G16_UNORM:
+    case VK_FORMAT_R16G16_SNORM:
+    case VK_FORMAT_R16G16_SFLOAT:
+    case VK_FORMAT_R32_SFLOAT:
+    case VK_FORMAT_D32_SFLOAT:
+    case VK_FORMAT_X8_D24_UNORM_PACK32:
+        return 4;
+    case VK_FORMAT_R16G16B16A16_SFLOAT:
+    case VK_FORMAT_R16G16B16A16_SNORM:
+    case VK_FORMAT_R16G16B16A16_UNORM:
+    case VK_FORMAT_R32G32_SFLOAT:
+        return 8;
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+        return 16;
+    default:
+        return 0;
+    }
+}
+
+static void print_log(void *user_data, vkao_log_level level, const char *message)
+{
+    (void)user_data;
+    (void)level;
+    fprintf(stderr, "vkao: %s\n", message);
+}
+
+vkao_context *gpu_context(struct gpu *gpu, uint32_t method_mask, struct tool_error *err)
+{
+    vkao_context *ctx = NULL;
+    vkao_result result = vkao_context_create(&(vkao_context_info){
+        .struct_size = sizeof(vkao_context_info),
+        .method_mask = method_mask,
+        .instance = gpu->instance,
+        .physical_device = gpu->physical_device,
+        .device = gpu->device,
+        .get_instance_proc_addr = vkGetInstanceProcAddr,
+        .get_device_proc_addr = vkGetDeviceProcAddr,
+        .enabled_features = &gpu->features,
+        .log = print_log,
+        .debug_labels = gpu->messenger != VK_NULL_HANDLE,
+    }, &ctx);
+    if (result == VKAO_SUCCESS)
+        return ctx;
+    bool memory = result == VKAO_ERROR_OUT_OF_DEVICE_MEMORY || result == VKAO_ERROR_OUT_OF_HOST_MEMORY;
+    fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "vkao_context_create: %s", vkao_result_string(result));
+    return NULL;
+}

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * A Vulkan device for tools and tests: instance, device, one compute queue, images to upload and download.
+ * Everything waits until it is done: simple first, and the tools overlap I/O with compute by threads. */
+#ifndef VKAO_TOOLS_GPU_H_
+#define VKAO_TOOLS_GPU_H_
+
+#include "error.h"
+#include "vkao.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+struct gpu {
+    VkInstance instance;
+    VkPhysicalDevice physical_device;
+    VkDevice device;
+    VkQueue queue;
+    uint32_t queue_family;
+    VkCommandPool command_pool;
+    VkDebugUtilsMessengerEXT messenger;
+    VkPhysicalDeviceProperties properties;
+    VkPhysicalDeviceMemoryProperties memory;
+    VkPhysicalDeviceFeatures features; /* as enabled */
+    uint32_t validation_messages;      /* warnings and errors of the validation layers so far */
+    bool print_validation;
+};
+
+struct gpu_options {
+    /* NULL or "auto": a discrete GPU, else an integrated one, else the CPU. "cpu": a software device (lavapipe).
+     * A number: index in `vkao devices`. Anything else: the first device whose name contains it. */
+    const char *device;
+    bool validation; /* core, synchronization and queue-submit validation; fails if the layer is missing */
+};
+
+struct gpu_device_list {
+    uint32_t count;
+    VkPhysicalDeviceProperties *properties; /* free with gpu_device_list_free */
+};
+
+bool gpu_create(const struct gpu_options *options, struct gpu *gpu, struct tool_error *err);
+void gpu_destroy(struct gpu *gpu);
+
+bool gpu_list_devices(struct gpu_device_list *list, struct tool_error *err);
+void gpu_device_list_free(struct gpu_device_list *list);
+/* "discrete GPU", "CPU" ... */
+const char *gpu_device_type_name(VkPhysicalDeviceType type);
+
+/* A 2D image with its own memory; created in, and always returned to, VK_IMAGE_LAYOUT_GENERAL. */
+struct gpu_image {
+    VkImage image;
+    VkImageView view;
+    VkDeviceMemory memory;
+    VkFormat format;
+    VkExtent2D extent;
+};
+
+bool gpu_image_create(struct gpu *gpu, VkFormat format, VkExtent2D extent, VkImageUsageFlags usage,
+                      struct gpu_image *image, struct tool_error *err);
+void gpu_image_destroy(struct gpu *gpu, struct gpu_image *image);
+/* Tightly packed rows in the image's own format. bytes must be the image's size. */
+bool gpu_image_upload(struct gpu *gpu, struct gpu_image *image, const void *data, uint64_t bytes,
+                      struct tool_error *err);
+bool gpu_image_download(struct gpu *gpu, struct gpu_image *image, void *data, uint64_t bytes, struct tool_error *err);
+/* The slot of a vkao_images for it, in GENERAL. */
+vkao_image gpu_image_slot(const struct gpu_image *image);
+/* 0 for formats that the tools do not use. */
+uint32_t gpu_format_bytes(VkFormat format);
+
+/* A command buffer in recording state; gpu_submit ends, runs, waits for and frees it. */
+VkCommandBuffer gpu_begin(struct gpu *gpu, struct tool_error *err);
+bool gpu_submit(struct gpu *gpu, VkCommandBuffer cmd, struct tool_error *err);
+/* Makes every earlier write visible to every later access on the queue. */
+void gpu_full_barrier(VkCommandBuffer cmd);
+
+/* A vkao context on this device; log lines go to stderr. method_mask as in vkao_context_info. */
+vkao_context *gpu_context(struct gpu *gpu, uint32_t method_mask, struct tool_error *err);
+
+#endif
