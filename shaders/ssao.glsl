@@ -20,11 +20,19 @@ float depth_error(float z)
     return z * (params.depth_error.x + params.depth_error.y * z);
 }
 
-/* Weight of an occluder at squared distance d2 from the shaded point: what the two ray-traced truths use. */
-float falloff_weight(float d2, float radius)
+/* Length of a point of the kernel, u uniform in [0,1). A point at length l is hidden if its ray hits anything within l,
+ * so the distribution of l carries the falloff: P(l > t) = 1 - (t/R)^2 for l = R sqrt(u), the smooth one. For the
+ * threshold a ray counts alike wherever it hits, so the lengths crowd towards R. */
+float point_length(float u, float radius)
 {
-    float x = d2 / (radius * radius);
-    return params.falloff == VKAO_GLSL_FALLOFF_SMOOTH ? max(0.0, 1.0 - x) : (x <= 1.0 ? 1.0 : 0.0);
+    return radius * (params.falloff == VKAO_GLSL_FALLOFF_SMOOTH ? sqrt(u) : sqrt(sqrt(u)));
+}
+
+/* How much an occluder counts whose view z is dz off the shaded point's: all within the radius, then less and less, as
+ * the surface in front need not reach down to the point behind it. */
+float range_weight(float dz, float radius)
+{
+    return smoothstep(0.0, 1.0, radius / max(abs(dz), 1.0e-30));
 }
 
 /* Is the point at height point_height over the tangent plane behind the scene at occluder? Heights are compared, not

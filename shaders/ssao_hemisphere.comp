@@ -3,10 +3,9 @@
  * Normal-oriented hemisphere (Filion and McNaughton, 'StarCraft II: Effects and Techniques', 2008), with a
  * cosine-weighted kernel: direction k of n lies over the point k of a Fibonacci disk,
  *     r = sqrt((k + 1/2) / n), angle = k * golden angle + noise, height sqrt(1 - r^2),
- * so that the mean over k needs no weights. A point at length l is hidden if a ray of that direction hits within l.
- * Lengths are stratified over k by the golden ratio and a second noise. For the smooth falloff their distribution
- * carries the weight: P(l > t) = 1 - (t/R)^2 if l = R sqrt(u). For the threshold a ray counts wherever it hits, so
- * the lengths crowd towards R. An occluder further than R from the shaded point counts nothing. */
+ * so that the mean over k needs no weights. Lengths are stratified over k by the golden ratio and a second noise;
+ * their distribution carries the falloff, see point_length. A point is blocked if the scene stands in front of it;
+ * each blocked point counts by range_weight. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -35,17 +34,14 @@ float visibility(ivec2 texel, vec3 position, vec3 normal)
     for (uint k = 0u; k < params.sample_count; ++k) {
         float r2 = (float(k) + 0.5) / float(params.sample_count);
         float angle = float(k) * GOLDEN_ANGLE + turn;
-        float u = fract(golden_sequence(k) + shift);
-        float len = radius * (params.falloff == VKAO_GLSL_FALLOFF_SMOOTH ? sqrt(u) : sqrt(sqrt(u)));
+        float len = point_length(fract(golden_sequence(k) + shift), radius);
         vec3 offset = len * (sqrt(r2) * (cos(angle) * t + sin(angle) * b) + sqrt(1.0 - r2) * normal);
         vec3 point = position + offset;
         ivec2 at = ivec2(floor(project_to_texel(point) + 0.5));
         float scene_z = point.z > 0.0 ? load_view_z(at) : 0.0;
         vec3 occluder = view_position(vec2(at), scene_z);
-        vec3 v = occluder - position;
-        bool hit = scene_z > 0.0 && stands_in_front(occluder, position, normal, len * sqrt(1.0 - r2) + bias) &&
-                   dot(v, v) <= radius * radius;
-        blocked += hit ? 1.0 : 0.0;
+        bool hit = scene_z > 0.0 && stands_in_front(occluder, position, normal, len * sqrt(1.0 - r2) + bias);
+        blocked += hit ? range_weight(scene_z - position.z, radius) : 0.0;
     }
     return 1.0 - blocked / float(params.sample_count);
 }

@@ -7,9 +7,9 @@
  * visibility is 1 - factor. A point behind the scene blocks fully, one in front of it the less the further.
  *
  * Rescaled: half the sphere lies inside a flat wall, so visibility = min(1, 2 * (1 - blocked)): more than 50 % of the
- * points must be hidden before a texel darkens. Points come in antipodal pairs, uniform in the ball, so that a plane
- * hides exactly one of each pair. Where the scene is out of reach or unknown a point counts as the plane would have
- * it, which changes nothing. */
+ * points must be hidden before a texel darkens. Points come in antipodal pairs, so that a plane hides exactly one of each
+ * pair; directions are stratified over the sphere, lengths as in point_length. Where the scene is out of range or
+ * unknown a point counts as the plane would have it, which changes nothing. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -56,8 +56,7 @@ float hidden(vec3 position, vec3 normal, vec3 offset)
     ivec2 at = ivec2(floor(project_to_texel(point) + 0.5));
     float scene_z = point.z > 0.0 ? load_view_z(at) : 0.0;
     vec3 occluder = view_position(vec2(at), scene_z);
-    vec3 v = occluder - position;
-    float weight = scene_z > 0.0 ? falloff_weight(dot(v, v), radius) : 0.0;
+    float weight = scene_z > 0.0 ? range_weight(scene_z - position.z, radius) : 0.0;
     bool behind = stands_in_front(occluder, position, normal, height + bias);
     return mix(height < 0.0 ? 1.0 : 0.0, behind ? 1.0 : 0.0, weight);
 }
@@ -69,10 +68,10 @@ float rescaled_blocking(ivec2 texel, vec3 position, vec3 normal)
     uint pairs = (params.sample_count + 1u) / 2u;
     float blocked = 0.0;
     for (uint k = 0u; k < pairs; ++k) {
-        /* z over (0,1) and its antipode over (-1,0); lengths uniform in volume */
+        /* z over (0,1), the antipode over (-1,0) */
         float z = (float(k) + shift) / float(pairs), ring = sqrt(1.0 - z * z);
         float angle = float(k) * GOLDEN_ANGLE + turn;
-        float len = params.normal_x.w * pow(fract(golden_sequence(k) + shift), 1.0 / 3.0);
+        float len = point_length(fract(golden_sequence(k) + shift), params.normal_x.w);
         vec3 offset = len * vec3(ring * cos(angle), ring * sin(angle), z);
         blocked += hidden(position, normal, offset) + hidden(position, normal, -offset);
     }

@@ -305,7 +305,7 @@ typedef struct vkao_ssao_params {
     uint32_t noise_index;  /* any; 0 = the static pattern; a frame counter if something temporal follows */
     float radius;          /* (0,inf) scene units that an occluder reaches. Default 0.5 */
     /* [0,1] fraction of radius by which the scene must stand in front of a point to block it; hides acne from
-     * coarse depth or interpolated normals. Default 0.02 */
+     * coarse depth or interpolated normals. Default 0.01 */
     float bias;
     float blocking_scale; /* (0,inf) 1 / scene units; the constant 50 of SPHERE_LITERAL. Default 50 */
     uint32_t reserved;    /* zero */
@@ -319,7 +319,7 @@ static inline vkao_ssao_params vkao_ssao_params_default(void)
     p.method = VKAO_SSAO_HEMISPHERE;
     p.sample_count = 16;
     p.radius = 0.5f;
-    p.bias = 0.02f;
+    p.bias = 0.01f;
     p.blocking_scale = 50.0f;
     return p;
 }
