@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * OpenEXR files, seen from C. exr_file.cpp is the only file that talks to OpenEXR, through its C++ API: the C API
- * of 3.1 cannot decode DWAA and DWAB. Names are UTF-8 as stored. Windows are inclusive, as in OpenEXR. */
+ * OpenEXR files, seen from C. The exr_*.cpp files alone talk to OpenEXR, through its C++ API: the C
+ * API of 3.1 cannot decode DWAA and DWAB. Names are UTF-8 as stored. Windows are inclusive, as in
+ * OpenEXR. */
 #ifndef VKAO_TOOLS_EXR_FILE_H_
 #define VKAO_TOOLS_EXR_FILE_H_
 
@@ -27,8 +28,8 @@ struct exr_channel {
     int32_t x_sampling, y_sampling;
 };
 
-/* One header attribute. Numbers and matrices are given as doubles, text as text, whatever else as its type name
- * alone. */
+/* One header attribute. Numbers and matrices are given as doubles, text as text, whatever else as
+ * its type name alone. */
 struct exr_attribute {
     char *name;
     char *type;      /* "m44f", "float", "string" ... */
@@ -41,7 +42,8 @@ struct exr_part {
     char *name;              /* "" in single-part files without one */
     char *view;              /* "" if the part belongs to no view */
     char *type;              /* "scanlineimage", "tiledimage", "deepscanline", "deeptile" */
-    const char *compression; /* "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab" */
+    /* "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab" */
+    const char *compression;
     const char *line_order;  /* "increasing", "decreasing", "random" */
     struct exr_box data_window, display_window;
     float pixel_aspect;
@@ -60,19 +62,21 @@ struct exr_info {
     size_t part_count;
 };
 
-/* Reads headers only. Error codes: EXIT_INPUT (missing, not EXR, damaged, unknown compression), EXIT_MEMORY. */
+/* Reads headers only. Error codes: EXIT_INPUT (missing, not EXR, damaged, unknown compression),
+ * EXIT_MEMORY. */
 bool exr_info_read(const char *path, struct exr_info *info, struct tool_error *err);
 void exr_info_free(struct exr_info *info);
 
-/* One channel to read: values land at values[(row * width + column) * stride], converted to float. */
+/* One channel to read: values land at values[(row * width + column) * stride], converted to float.
+ * */
 struct exr_read {
     const char *channel;
     float *values;
     size_t stride; /* in floats */
 };
 
-/* Reads channels of one part over its data window (level 0 of mip-mapped files). A file that ends early or whose
- * chunks do not decode is an error; nothing is made up for missing pixels. */
+/* Reads channels of one part over its data window (level 0 of mip-mapped files). A file that ends
+ * early or whose chunks do not decode is an error; nothing is made up for missing pixels. */
 bool exr_read_channels(const char *path, size_t part, const struct exr_read *reads, size_t count,
                        struct tool_error *err);
 
@@ -103,19 +107,20 @@ struct exr_new_part {
     size_t channel_count;
     const struct exr_string *strings; /* string attributes to add */
     size_t string_count;
-    /* File and part whose other attributes (time code, chromaticities, owner, camera, anything unknown) are copied
-     * verbatim, or NULL. */
+    /* File and part whose other attributes (time code, chromaticities, owner, camera, anything
+     * unknown) are copied verbatim, or NULL. */
     const char *attributes_from;
     size_t attributes_from_part;
     const struct exr_matrix *matrices; /* m44f attributes to add */
     size_t matrix_count;
 };
 
-/* Writes a new file. With copy_from every part of that file is copied first, its pixels as raw chunks and its
- * attributes as they are, and the new parts follow. The file is written beside path, synced and renamed; on error
- * nothing is left. If replace is false an existing path is EXIT_OUTPUT, also when it appears meanwhile. */
-bool exr_write_file(const char *path, const char *copy_from, const struct exr_new_part *parts, size_t count,
-                    bool replace, struct tool_error *err);
+/* Writes a new file. With copy_from every part of that file is copied first, its pixels as raw
+ * chunks and its attributes as they are, and the new parts follow. The file is written beside path,
+ * synced and renamed; on error nothing is left. If replace is false an existing path is
+ * EXIT_OUTPUT, also when it appears meanwhile. */
+bool exr_write_file(const char *path, const char *copy_from, const struct exr_new_part *parts,
+                    size_t count, bool replace, struct tool_error *err);
 
 /* "OpenEXR 3.1.5" */
 const char *exr_library_version(void);

@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Camera files: {"type": "perspective", "fov_x_deg": 58.7, "near": 0.1, "far": 100, "world_to_view": [[...] x 4]},
+ * or {"views": {"left": {...}, "right": {...}}}. */
+#include "camera.h"
+
+#include "text.h"
+
+#include <cjson/cJSON.h>
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct reader {
+    const char *path;
+    const char *view; /* "" or the view being read */
+    struct tool_error *err;
+};
+
+static bool wrong(const struct reader *r, const char *key, const char *wanted)
+{
+    return fail(r->err, EXIT_INPUT, "%s: %s%s'%s' must be %s", r->path, r->view,
+                r->view[0] ? ": " : "", key, wanted);
+}
+
+/* Leaves *value alone if the key is absent. */
+static bool read_number(const struct reader *r, const cJSON *object, const char *key, double low,
+                        double high, const char *wanted, double *value)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+    if (!item)
+        return true;
+    if (!cJSON_IsNumber(item) || !(item->valuedouble > low) || !(item->valuedouble < high))
+        return wrong(r, key, wanted);
+    *value = item->valuedouble;
+    return true;
+}
+
+static bool read_matrix(const struct reader *r, const cJSON *rows, double m[16])
+{
+    static const char wanted[] = "a list of 4 rows of 4 numbers";
+    if (!cJSON_IsArray(rows) || cJSON_GetArraySize(rows) != 4)
+        return wrong(r, "world_to_view", wanted);
+    int i = 0;
+    const cJSON *row, *item;
+    cJSON_ArrayForEach(row, rows)
+    {
+        if (!cJSON_IsArray(row) || cJSON_GetArraySize(row) != 4)
+            return wrong(r, "world_to_view", wanted);
+        cJSON_ArrayForEach(item, row)
+        {
+            if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
+                return wrong(r, "world_to_view", wanted);
+            m[i++] = item->valuedouble;
+        }
+    }
+    return true;
+}
+
+/* The rotation of a rigid (or uniformly scaled) matrix. */
+static bool read_rotation(const struct reader *r, const cJSON *object, struct camera *camera)
+{
+    const cJSON *rows = cJSON_GetObjectItemCaseSensitive(object, "world_to_view");
+    double m[16];
+    if (!rows)
+        return true;
+    if (!read_matrix(r, rows, m))
+        return false;
+    if (fabs(m[12]) + fabs(m[13]) + fabs(m[14]) > 1e-6 || fabs(m[15] - 1.0) > 1e-6)
+        return wrong(r, "world_to_view", "for column vectors: its last row must be 0 0 0 1");
+    for (int i = 0; i < 3; i++) {
+        const double *row = m + i * 4;
+        double length = sqrt(row[0] * row[0] + row[1] * row[1] + row[2] * row[2]);
+        if (!(length > 1e-12))
+            return wrong(r, "world_to_view", "a rotation and a translation");
+        for (int j = 0; j < 3; j++)
+            camera->world_to_view[i * 3 + j] = row[j] / length;
+    }
+    const double *w = camera->world_to_view;
+    double skew = fabs(w[0] * w[3] + w[1] * w[4] + w[2] * w[5]) +
+                  fabs(w[0] * w[6] + w[1] * w[7] + w[2] * w[8]) +
+                  fabs(w[3] * w[6] + w[4] * w[7] + w[5] * w[8]);
+    if (skew > 1e-3)
+        return wrong(r, "world_to_view", "a rotation and a translation, without shear");
+    camera->has_rotation = camera->axis_certain = true;
+    snprintf(camera->rotation_source, sizeof camera->rotation_source, "camera file");
+    return true;
+}
+
+static bool read_type(const struct reader *r, const cJSON *object, struct camera *camera)
+{
+    static const double degree = 3.14159265358979323846 / 180.0;
+    const cJSON *type = cJSON_GetObjectItemCaseSensitive(object, "type");
+    double fov = 0, width = 0;
+    if (!read_number(r, object, "fov_x_deg", 0, 180, "a number between 0 and 180", &fov) ||
+        !read_number(r, object, "ortho_width", 0, HUGE_VAL, "a number > 0", &width))
+        return false;
+    const char *name = cJSON_IsString(type) ? type->valuestring : type ? "" : "perspective";
+    if (strcmp(name, "perspective") == 0) {
+        if (!(fov > 0))
+            return wrong(r, "fov_x_deg", "given for a perspective camera");
+        camera->type = CAMERA_PERSPECTIVE;
+        camera->half_width = tan(fov * degree / 2.0);
+        return true;
+    }
+    if (strcmp(name, "orthographic") == 0) {
+        if (!(width > 0))
+            return wrong(r, "ortho_width", "given for an orthographic camera");
+        camera->type = CAMERA_ORTHOGRAPHIC;
+        camera->half_width = width / 2.0;
+        return true;
+    }
+    return wrong(r, "type", "\"perspective\" or \"orthographic\"");
+}
+
+static bool read_camera(const struct reader *r, const cJSON *object, struct camera *camera)
+{
+    *camera = (struct camera){0};
+    if (!cJSON_IsObject(object))
+        return fail(r->err, EXIT_INPUT, "%s: a camera must be an object { ... }", r->path);
+    if (!read_type(r, object, camera))
+        return false;
+    static const char positive[] = "a number > 0", shift[] = "a number between -10 and 10";
+    snprintf(camera->source, sizeof camera->source, "camera file");
+    return read_number(r, object, "near", 0, HUGE_VAL, positive, &camera->near_plane) &&
+           read_number(r, object, "far", 0, HUGE_VAL, positive, &camera->far_plane) &&
+           read_number(r, object, "shift_x", -10, 10, shift, &camera->shift_x) &&
+           read_number(r, object, "shift_y", -10, 10, shift, &camera->shift_y) &&
+           read_rotation(r, object, camera);
+}
+
+static bool add_view(struct camera_set *set, const struct reader *r, const cJSON *object)
+{
+    struct camera_view *view = &set->views[set->count];
+    view->name = text_copy(r->view, strlen(r->view));
+    if (!view->name)
+        return fail(r->err, EXIT_MEMORY, "%s: out of memory", r->path);
+    set->count++;
+    return read_camera(r, object, &view->camera);
+}
+
+static bool read_views(const cJSON *root, struct reader *r, struct camera_set *set)
+{
+    const cJSON *views = cJSON_GetObjectItemCaseSensitive(root, "views");
+    int count = cJSON_IsObject(views) ? cJSON_GetArraySize(views) : 1;
+    if (views && (!cJSON_IsObject(views) || count < 1))
+        return fail(r->err, EXIT_INPUT, "%s: 'views' must be { \"left\": {...}, ... }", r->path);
+    set->views = calloc((size_t)count, sizeof *set->views);
+    if (!set->views)
+        return fail(r->err, EXIT_MEMORY, "%s: out of memory", r->path);
+    if (!views)
+        return add_view(set, r, root);
+    const cJSON *object;
+    cJSON_ArrayForEach(object, views)
+    {
+        r->view = object->string;
+        if (!add_view(set, r, object))
+            return false;
+    }
+    return true;
+}
+
+bool camera_set_parse(const char *json, const char *path, struct camera_set *set, struct tool_error *err)
+{
+    *set = (struct camera_set){0};
+    const char *end = NULL;
+    cJSON *root = cJSON_ParseWithOpts(json, &end, true);
+    if (!root) {
+        int line = 1;
+        for (const char *p = json; end && p < end; p++)
+            line += *p == '\n';
+        return fail(err, EXIT_INPUT, "%s: not JSON (line %d)", path, line);
+    }
+    struct reader r = {.path = path, .view = "", .err = err};
+    bool ok = read_views(root, &r, set);
+    cJSON_Delete(root);
+    if (!ok)
+        camera_set_free(set);
+    return ok;
+}
+
+bool camera_set_read(const char *path, struct camera_set *set, struct tool_error *err)
+{
+    enum { MAX_BYTES = 1 << 20 };
+    *set = (struct camera_set){0};
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        return fail(err, EXIT_INPUT, "%s: cannot open: %s", path, strerror(errno));
+    char *json = malloc(MAX_BYTES + 1);
+    if (!json) {
+        fclose(file);
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    }
+    size_t length = fread(json, 1, MAX_BYTES + 1, file);
+    bool bad = ferror(file) || length > MAX_BYTES;
+    fclose(file);
+    json[bad ? 0 : length] = '\0';
+    bool ok = bad ? fail(err, EXIT_INPUT, "%s: cannot read, or larger than 1 MiB", path)
+                  : camera_set_parse(json, path, set, err);
+    free(json);
+    return ok;
+}

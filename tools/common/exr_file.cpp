@@ -1,0 +1,304 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Reading: the C functions for headers and pixels. */
+#include "exr_internal.h"
+
+#include <ImfBoxAttribute.h>
+#include <ImfChannelList.h>
+#include <ImfDoubleAttribute.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfInputPart.h>
+#include <ImfIntAttribute.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfPartType.h>
+#include <ImfStringAttribute.h>
+#include <ImfStringVectorAttribute.h>
+#include <ImfThreading.h>
+#include <ImfVecAttribute.h>
+#include <OpenEXRConfig.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <map>
+
+using namespace exr;
+
+namespace {
+
+template <typename T> T *allocate(size_t count)
+{
+    void *memory = calloc(count ? count : 1, sizeof(T));
+    if (!memory)
+        throw std::bad_alloc();
+    return static_cast<T *>(memory);
+}
+
+char *copy_string(const std::string &text)
+{
+    char *copy = allocate<char>(text.size() + 1);
+    memcpy(copy, text.c_str(), text.size() + 1);
+    return copy;
+}
+
+void set_numbers(exr_attribute &out, const double *values, size_t count)
+{
+    out.numbers = allocate<double>(count);
+    memcpy(out.numbers, values, count * sizeof *values);
+    out.number_count = count;
+}
+
+/* One function per shape of attribute: true if it was that. */
+template <typename T> bool scalar(const Imf::Attribute &attribute, exr_attribute &out)
+{
+    const auto *typed = dynamic_cast<const Imf::TypedAttribute<T> *>(&attribute);
+    if (typed) {
+        const double value = double(typed->value());
+        set_numbers(out, &value, 1);
+    }
+    return typed;
+}
+
+template <typename T> bool vec(const Imf::Attribute &attribute, exr_attribute &out)
+{
+    const auto *typed = dynamic_cast<const Imf::TypedAttribute<T> *>(&attribute);
+    if (typed) {
+        double values[4];
+        for (unsigned i = 0; i < T::dimensions(); i++)
+            values[i] = double(typed->value()[int(i)]);
+        set_numbers(out, values, T::dimensions());
+    }
+    return typed;
+}
+
+template <typename T> bool matrix(const Imf::Attribute &attribute, exr_attribute &out)
+{
+    const auto *typed = dynamic_cast<const Imf::TypedAttribute<T> *>(&attribute);
+    if (typed) {
+        const unsigned n = T::dimensions();
+        double values[16];
+        for (unsigned i = 0; i < n * n; i++)
+            values[i] = double(typed->value().x[i / n][i % n]);
+        set_numbers(out, values, n * n);
+    }
+    return typed;
+}
+
+template <typename T> bool box(const Imf::Attribute &attribute, exr_attribute &out)
+{
+    const auto *typed = dynamic_cast<const Imf::TypedAttribute<T> *>(&attribute);
+    if (typed) {
+        const T &b = typed->value();
+        const double values[] = {double(b.min.x), double(b.min.y), double(b.max.x),
+                                 double(b.max.y)};
+        set_numbers(out, values, 4);
+    }
+    return typed;
+}
+
+void fill_attribute(const char *name, const Imf::Attribute &attribute, exr_attribute &out)
+{
+    static bool (*const shapes[])(const Imf::Attribute &, exr_attribute &) = {
+        scalar<int>,         scalar<float>,       scalar<double>,    vec<Imath::V2i>,
+        vec<Imath::V2f>,     vec<Imath::V2d>,     vec<Imath::V3i>,   vec<Imath::V3f>,
+        vec<Imath::V3d>,     matrix<Imath::M33f>, matrix<Imath::M33d>, matrix<Imath::M44f>,
+        matrix<Imath::M44d>, box<Imath::Box2i>,   box<Imath::Box2f>,
+    };
+    out.name = copy_string(name);
+    out.type = copy_string(attribute.typeName());
+    const auto *text = dynamic_cast<const Imf::StringAttribute *>(&attribute);
+    if (text) {
+        out.text = copy_string(text->value());
+        return;
+    }
+    for (const auto &shape : shapes) {
+        if (shape(attribute, out))
+            return;
+    }
+}
+
+exr_box to_box(const Imath::Box2i &b)
+{
+    return {b.min.x, b.min.y, b.max.x, b.max.y};
+}
+
+void fill_channels(const Imf::ChannelList &channels, exr_part &part)
+{
+    size_t count = 0;
+    for (auto i = channels.begin(); i != channels.end(); ++i)
+        count++;
+    part.channels = allocate<exr_channel>(count);
+    for (auto i = channels.begin(); i != channels.end(); ++i) {
+        exr_channel &out = part.channels[part.channel_count++];
+        out.name = copy_string(i.name());
+        out.type = exr_pixel_type(i.channel().type);
+        out.x_sampling = i.channel().xSampling;
+        out.y_sampling = i.channel().ySampling;
+    }
+}
+
+void fill_attributes(const Imf::Header &header, exr_part &part)
+{
+    size_t count = 0;
+    for (auto i = header.begin(); i != header.end(); ++i)
+        count++;
+    part.attributes = allocate<exr_attribute>(count);
+    for (auto i = header.begin(); i != header.end(); ++i)
+        fill_attribute(i.name(), i.attribute(), part.attributes[part.attribute_count++]);
+
+    /* By hand, because OpenEXR's view functions trip over an empty list (CVE-2026-61555). */
+    const auto *views = header.findTypedAttribute<Imf::StringVectorAttribute>("multiView");
+    if (views) {
+        part.multi_view = allocate<char *>(views->value().size());
+        for (const std::string &view : views->value())
+            part.multi_view[part.multi_view_count++] = copy_string(view);
+    }
+}
+
+void fill_part(const Imf::Header &header, const part_layout &layout, exr_part &part)
+{
+    const auto *view = header.findTypedAttribute<Imf::StringAttribute>("view");
+    part.name = copy_string(layout.name);
+    part.view = copy_string(view ? view->value() : "");
+    part.type = copy_string(layout.type);
+    part.compression = compression_names[layout.compression];
+    part.line_order = line_order_names[header.lineOrder()];
+    part.data_window = to_box(header.dataWindow());
+    part.display_window = to_box(header.displayWindow());
+    part.pixel_aspect = header.pixelAspectRatio();
+    part.deep = layout.deep;
+    fill_channels(header.channels(), part);
+    fill_attributes(header, part);
+}
+
+void read_info(const char *path, exr_info *info)
+{
+    const input_file in(path);
+    info->path = copy_string(path);
+    info->parts = allocate<exr_part>(in.layout.parts.size());
+    for (const part_layout &layout : in.layout.parts) {
+        const int i = int(info->part_count++);
+        fill_part(in.file.header(i), layout, info->parts[i]);
+    }
+}
+
+/* Refuses channels that are not there or not one value per pixel. */
+void check_channel(const char *path, size_t part, const Imf::Header &header, const char *name)
+{
+    const Imf::Channel *channel = header.channels().findChannel(name);
+    if (!channel)
+        raise(EXIT_CHANNELS, nullptr, "%s: part %zu has no channel '%s'", path, part, name);
+    if (channel->xSampling != 1 || channel->ySampling != 1)
+        raise(EXIT_INPUT, "resample it to full resolution first",
+              "%s: channel '%s' is subsampled %dx%d, which is not supported", path, name,
+              channel->xSampling, channel->ySampling);
+}
+
+void read_channels(const char *path, size_t index, const exr_read *reads, size_t count)
+{
+    input_file in(path);
+    if (index >= in.layout.parts.size())
+        raise(EXIT_CHANNELS, nullptr, "%s: no part %zu; the file has %zu", path, index,
+              in.layout.parts.size());
+    const part_layout &layout = in.layout.parts[index];
+    if (layout.deep) {
+        const std::string hint =
+            std::string("flatten first: oiiotool ") + path + " --flatten -o flat.exr";
+        raise(EXIT_INPUT, hint.c_str(), "%s: deep data (part %zu '%s') is not supported", path,
+              index, layout.type.c_str());
+    }
+    Imf::InputPart part(in.file, int(index));
+    const Imath::Box2i window = part.header().dataWindow();
+    const size_t width = size_t(layout.x_max - layout.x_min + 1);
+    const size_t height = size_t(layout.y_max - layout.y_min + 1);
+    Imf::FrameBuffer frame;
+    for (size_t i = 0; i < count; i++) {
+        check_channel(path, index, part.header(), reads[i].channel);
+        const size_t x_stride = reads[i].stride * sizeof(float);
+        if (!frame.findSlice(reads[i].channel))
+            frame.insert(reads[i].channel, Imf::Slice::Make(Imf::FLOAT, reads[i].values, window,
+                                                            x_stride, x_stride * width));
+    }
+    if (count == 0)
+        return;
+    part.setFrameBuffer(frame);
+    part.readPixels(window.min.y, window.max.y);
+
+    /* A frame buffer holds each channel once; whoever asked again gets a copy. */
+    std::map<std::string, const exr_read *> first;
+    for (size_t i = 0; i < count; i++) {
+        const exr_read &from = *first.emplace(reads[i].channel, &reads[i]).first->second;
+        for (size_t k = 0; &from != &reads[i] && k < width * height; k++)
+            reads[i].values[k * reads[i].stride] = from.values[k * from.stride];
+    }
+}
+
+} // namespace
+
+void exr::set_limits()
+{
+    static const bool done = [] {
+        Imf::Header::setMaxImageSize(65536, 65536);
+        Imf::Header::setMaxTileSize(65536, 65536);
+        return true;
+    }();
+    (void)done;
+}
+
+bool exr_info_read(const char *path, struct exr_info *info, struct tool_error *err)
+{
+    *info = {};
+    set_limits();
+    if (at_border(err, EXIT_INPUT, path, "damaged", [&] { read_info(path, info); }))
+        return true;
+    exr_info_free(info);
+    return false;
+}
+
+void exr_info_free(struct exr_info *info)
+{
+    for (size_t i = 0; i < info->part_count; i++) {
+        exr_part &part = info->parts[i];
+        for (size_t k = 0; k < part.channel_count; k++)
+            free(part.channels[k].name);
+        for (size_t k = 0; k < part.attribute_count; k++) {
+            free(part.attributes[k].name);
+            free(part.attributes[k].type);
+            free(part.attributes[k].text);
+            free(part.attributes[k].numbers);
+        }
+        for (size_t k = 0; k < part.multi_view_count; k++)
+            free(part.multi_view[k]);
+        free(part.channels);
+        free(part.attributes);
+        free(part.multi_view);
+        free(part.name);
+        free(part.view);
+        free(part.type);
+    }
+    free(info->parts);
+    free(info->path);
+    *info = {};
+}
+
+bool exr_read_channels(const char *path, size_t part, const struct exr_read *reads, size_t count,
+                       struct tool_error *err)
+{
+    set_limits();
+    return at_border(err, EXIT_INPUT, path, "damaged",
+                     [&] { read_channels(path, part, reads, count); });
+}
+
+const char *exr_library_version(void)
+{
+    return OPENEXR_PACKAGE_STRING;
+}
+
+void exr_set_threads(int count)
+{
+    /* The pool stays as it is if its threads cannot be made: slower, not wrong. */
+    try {
+        Imf::setGlobalThreadCount(count < 0 ? 0 : count);
+    } catch (...) {
+    }
+}

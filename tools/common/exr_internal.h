@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the exr_*.cpp files share. Inside, errors are C++ exceptions; at_border() turns them into a
+ * tool_error at every function that C calls. */
+#ifndef VKAO_TOOLS_EXR_INTERNAL_H_
+#define VKAO_TOOLS_EXR_INTERNAL_H_
+
+#include "exr_file.h"
+
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfMultiPartInputFile.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace exr {
+
+namespace Imf = OPENEXR_IMF_NAMESPACE;
+
+struct tool_exception : std::exception {
+    tool_error error = {};
+};
+
+/* hint may be NULL. */
+[[noreturn]] void raise(exit_code code, const char *hint, const char *format, ...)
+    TOOL_PRINTF(3, 4);
+
+/* Text from a file or of OpenEXR, fit for one line on a terminal. */
+std::string printable(const std::string &text);
+/* What OpenEXR said, without the file name it likes to begin with and the full stop. */
+std::string library_message(const std::exception &error);
+
+/* Runs f; whatever it throws is put into *err, OpenEXR's own complaints as `path: what: complaint`
+ * with this code. */
+template <typename F>
+bool at_border(tool_error *err, exit_code code, const char *path, const char *what, F &&f)
+{
+    try {
+        f();
+        return true;
+    } catch (const tool_exception &e) {
+        fail(err, exit_code(e.error.code), "%s", e.error.message);
+        if (e.error.hint[0])
+            fail_hint(err, "%s", e.error.hint);
+    } catch (const std::bad_alloc &) {
+        fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    } catch (const std::exception &e) {
+        fail(err, code, "%s: %s: %s", path, what, library_message(e).c_str());
+    } catch (...) {
+        fail(err, EXIT_BUG, "%s: %s: unknown exception", path, what);
+    }
+    return false;
+}
+
+/* A regular file, opened once for both the checks here and OpenEXR, so that both see the same file
+ * even if it is replaced meanwhile. */
+class input_stream : public Imf::IStream {
+public:
+    explicit input_stream(const char *path);
+    ~input_stream() override;
+    bool read(char data[], int bytes) override;
+    uint64_t tellg() override;
+    void seekg(uint64_t position) override;
+    uint64_t size() const { return size_; }
+    /* Little-endian, as everything in the format. */
+    uint8_t get_u8();
+    int32_t get_i32();
+    uint64_t get_u64();
+
+private:
+    FILE *file_ = nullptr;
+    uint64_t size_ = 0, position_ = 0;
+};
+
+struct part_layout {
+    std::string name, type;
+    bool tiled, deep;
+    int compression;
+    int64_t x_min, y_min, x_max, y_max;
+    int64_t tile_width, tile_height;
+    int level_mode, level_rounding;
+    int64_t pixel_bytes; /* of one pixel that has all channels */
+    int64_t level_bytes; /* decoded size of level 0, less what subsampling saves; 0 if deep */
+    int64_t chunk_count;
+};
+
+/* Where things are in a file, found by a walk of our own over the headers. */
+struct file_layout {
+    bool multi_part;
+    uint64_t table_offset; /* of the first chunk table */
+    uint64_t first_chunk;  /* offset of the chunk that lies first */
+    std::vector<part_layout> parts;
+};
+
+/* Refuses what is not an OpenEXR file, what the library would not understand, whose sizes are
+ * absurd for its length, or that ends early, before OpenEXR allocates anything for it. */
+file_layout read_layout(input_stream &stream);
+/* Checks that every chunk lies inside the file, which OpenEXR does not before it allocates for raw
+ * copies, and that tiles lie as it expects them. */
+void check_chunks(input_stream &stream, const file_layout &layout);
+
+/* A checked file: its layout, and OpenEXR's view of it. */
+struct input_file {
+    explicit input_file(const char *path);
+    input_stream stream;
+    file_layout layout;
+    Imf::MultiPartInputFile file;
+};
+
+/* Tells OpenEXR our own limits; cheap when repeated. */
+void set_limits();
+
+extern const char *const compression_names[10];
+extern const char *const line_order_names[3];
+
+} // namespace exr
+
+#endif

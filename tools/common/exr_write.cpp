@@ -1,0 +1,390 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Writing: new files, and copies of files with parts appended. */
+#include "atomic_file.h"
+#include "exr_internal.h"
+
+#include <ImfChannelList.h>
+#include <ImfChromaticitiesAttribute.h>
+#include <ImfDeepScanLineInputPart.h>
+#include <ImfDeepScanLineOutputPart.h>
+#include <ImfDeepTiledInputPart.h>
+#include <ImfDeepTiledOutputPart.h>
+#include <ImfFrameBuffer.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStringAttribute.h>
+#include <ImfThreading.h>
+#include <ImfTiledInputPart.h>
+#include <ImfTiledOutputPart.h>
+#include <half.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <set>
+
+#include <unistd.h>
+
+using namespace exr;
+
+namespace {
+
+/* OpenEXR writes in crumbs and seeks back for the chunk tables, where its destructors swallow
+ * errors: so the first error is kept here, and finish() tells. */
+class output_stream : public Imf::OStream {
+public:
+    output_stream(const char *path, bool replace) : Imf::OStream(path)
+    {
+        if (!atomic_file_open(&file_, path, replace, &error_))
+            throw_error();
+    }
+    ~output_stream() override { atomic_file_abort(&file_); }
+    void write(const char data[], int bytes) override
+    {
+        throw_error();
+        buffer_.insert(buffer_.end(), data, data + bytes);
+        if (buffer_.size() >= buffer_bytes)
+            flush();
+    }
+    uint64_t tellp() override { return position_ + buffer_.size(); }
+    void seekp(uint64_t position) override;
+    void throw_error() const
+    {
+        if (error_.code == EXIT_OK)
+            return;
+        tool_exception e;
+        e.error = error_;
+        throw e;
+    }
+    void commit()
+    {
+        flush();
+        if (!atomic_file_commit(&file_, &error_))
+            throw_error();
+    }
+
+private:
+    static constexpr size_t buffer_bytes = 1 << 18;
+    void flush();
+    atomic_file file_ = {};
+    tool_error error_ = {};
+    std::vector<char> buffer_;
+    uint64_t position_ = 0; /* in the file, of the buffer's first byte */
+};
+
+void output_stream::flush()
+{
+    throw_error();
+    if (!atomic_file_write(&file_, buffer_.data(), buffer_.size(), &error_))
+        throw_error();
+    position_ += buffer_.size();
+    buffer_.clear();
+}
+
+void output_stream::seekp(uint64_t position)
+{
+    flush();
+    if (lseek(file_.fd, off_t(position), SEEK_SET) < 0)
+        fail(&error_, EXIT_OUTPUT, "%s: cannot seek: %s", fileName(), strerror(errno));
+    throw_error();
+    position_ = position;
+}
+
+Imath::Box2i from_box(const exr_box &b)
+{
+    return {{b.x_min, b.y_min}, {b.x_max, b.y_max}};
+}
+
+void insert(Imf::Header &header, const char *name, const Imf::Attribute &attribute)
+{
+    /* insert refuses to change the type of an attribute, and erase of 3.1 leaks it: so only if it
+     * must be. */
+    const auto old = header.find(name);
+    if (old != header.end() && strcmp(old.attribute().typeName(), attribute.typeName()) != 0)
+        header.erase(name);
+    header.insert(name, attribute);
+}
+
+/* What describes the pixels of the part it is in, and not the picture. */
+bool is_structural(const char *name)
+{
+    static const std::set<std::string> names = {
+        "channels",    "chunkCount",           "compression",   "dataWindow",
+        "deepImageState", "displayWindow",     "dwaCompressionLevel", "idManifest",
+        "lineOrder",   "maxSamplesPerPixel",   "multiView",     "name",
+        "pixelAspectRatio", "preview",         "tiles",         "type",
+        "version",     "view",
+    };
+    return names.count(name) || strncmp(name, "cryptomatte/", strlen("cryptomatte/")) == 0;
+}
+
+/* The format wants the parts of a file to agree on these, and on displayWindow and
+ * pixelAspectRatio. */
+const char *const shared_names[] = {"timeCode", "chromaticities"};
+
+bool is_shared(const char *name)
+{
+    return std::any_of(std::begin(shared_names), std::end(shared_names),
+                       [name](const char *shared) { return strcmp(shared, name) == 0; });
+}
+
+/* first: the header of the file's first part, NULL if this becomes the first. */
+void copy_attributes(const Imf::Header *from, const Imf::Header *first, Imf::Header &to)
+{
+    if (from) {
+        for (auto i = from->begin(); i != from->end(); ++i) {
+            if (!is_structural(i.name()) && !(first && is_shared(i.name())))
+                insert(to, i.name(), i.attribute());
+        }
+    }
+    for (const char *name : shared_names) {
+        if (first && first->find(name) != first->end())
+            insert(to, name, first->find(name).attribute());
+    }
+}
+
+Imf::Compression compression_number(const char *path, const char *name)
+{
+    for (int i = 0; i < int(std::size(compression_names)); i++) {
+        if (strcmp(compression_names[i], name) == 0)
+            return Imf::Compression(i);
+    }
+    raise(EXIT_OUTPUT, nullptr, "%s: unknown compression '%s'", path, name);
+}
+
+Imf::Header new_header(const char *path, const exr_new_part &part, const Imf::Header *from,
+                       const Imf::Header *first)
+{
+    const exr_box &w = part.data_window;
+    if (w.x_max < w.x_min || w.y_max < w.y_min)
+        raise(EXIT_OUTPUT, nullptr, "%s: the new part has an empty dataWindow", path);
+    Imf::Header header(first ? first->displayWindow() : from_box(part.display_window), from_box(w),
+                       first ? first->pixelAspectRatio() : part.pixel_aspect);
+    copy_attributes(from, first, header);
+    header.compression() = compression_number(path, part.compression);
+    header.setType(Imf::SCANLINEIMAGE);
+    if (part.name && part.name[0])
+        header.setName(part.name);
+    if (part.view && part.view[0])
+        header.setView(part.view);
+    for (size_t i = 0; i < part.channel_count; i++)
+        header.channels().insert(part.channels[i].channel,
+                                 Imf::Channel(Imf::PixelType(part.channels[i].type)));
+    for (size_t i = 0; i < part.string_count; i++)
+        insert(header, part.strings[i].name, Imf::StringAttribute(part.strings[i].value));
+    return header;
+}
+
+/* A part of a single-part file may lack what a multi-part file demands. taken: names of the parts
+ * to come. */
+void promote(Imf::Header &header, const part_layout &layout, const std::set<std::string> &taken)
+{
+    header.setType(layout.type);
+    if (!layout.tiled)
+        header.erase("tiles"); /* stray ones make OpenEXR take the part for a tiled one */
+    if (header.hasName() && !header.name().empty())
+        return;
+    const Imf::ChannelList &channels = header.channels();
+    const bool color = channels.findChannel("R") && channels.findChannel("G") &&
+                       channels.findChannel("B");
+    const std::string base = color ? "rgba" : "part";
+    std::string name = color ? base : base + "0";
+    for (int i = 1; taken.count(name); i++)
+        name = base + std::to_string(i);
+    header.setName(name);
+}
+
+void check_names(const char *path, const std::vector<Imf::Header> &headers)
+{
+    std::set<std::string> names;
+    for (const Imf::Header &header : headers) {
+        if (!header.hasName() || header.name().empty())
+            raise(EXIT_OUTPUT, nullptr, "%s: a part of a multi-part file needs a name", path);
+        if (!names.insert(header.name()).second)
+            raise(EXIT_OUTPUT, "choose another name for the new part",
+                  "%s: there would be two parts named '%s'", path,
+                  printable(header.name()).c_str());
+    }
+}
+
+/* The other file whose attributes a new part takes: often the one that is copied anyway. */
+std::unique_ptr<Imf::Header> attributes_of(const exr_new_part &part, const char *copy_from,
+                                           const input_file *source)
+{
+    std::unique_ptr<input_file> other;
+    if (!part.attributes_from)
+        return nullptr;
+    if (!copy_from || strcmp(part.attributes_from, copy_from) != 0)
+        source = (other = std::make_unique<input_file>(part.attributes_from)).get();
+    if (part.attributes_from_part >= source->layout.parts.size())
+        raise(EXIT_INPUT, nullptr, "%s: no part %zu", part.attributes_from,
+              part.attributes_from_part);
+    return std::make_unique<Imf::Header>(source->file.header(int(part.attributes_from_part)));
+}
+
+std::vector<Imf::Header> make_headers(const char *path, const char *copy_from,
+                                      const input_file *source, const exr_new_part *parts,
+                                      size_t count)
+{
+    std::vector<Imf::Header> headers;
+    std::set<std::string> taken;
+    for (size_t i = 0; i < count; i++)
+        taken.insert(parts[i].name ? parts[i].name : "");
+    const size_t copies = source ? source->layout.parts.size() : 0;
+    for (size_t i = 0; i < copies; i++) {
+        headers.push_back(source->file.header(int(i)));
+        if (copies + count > 1)
+            promote(headers.back(), source->layout.parts[i], taken);
+    }
+    for (size_t i = 0; i < count; i++) {
+        const auto from = attributes_of(parts[i], copy_from, source);
+        headers.push_back(new_header(path, parts[i], from.get(),
+                                     headers.empty() ? nullptr : &headers.front()));
+    }
+    if (headers.empty())
+        raise(EXIT_OUTPUT, nullptr, "%s: no parts to write", path);
+    if (headers.size() > 1)
+        check_names(path, headers);
+    return headers;
+}
+
+/* Compressed chunks as they are; nothing is decoded. */
+void copy_part(input_file &source, Imf::MultiPartOutputFile &file, int i)
+{
+    const part_layout &layout = source.layout.parts[size_t(i)];
+    /* In single-part files OpenEXR copies tiles from wherever the stream is, in the order of the
+     * file. */
+    source.stream.seekg(source.layout.first_chunk);
+    if (layout.deep && layout.tiled) {
+        Imf::DeepTiledInputPart in(source.file, i);
+        Imf::DeepTiledOutputPart(file, i).copyPixels(in);
+    } else if (layout.deep) {
+        Imf::DeepScanLineInputPart in(source.file, i);
+        Imf::DeepScanLineOutputPart(file, i).copyPixels(in);
+    } else if (layout.tiled) {
+        Imf::TiledInputPart in(source.file, i);
+        Imf::TiledOutputPart(file, i).copyPixels(in);
+    } else {
+        Imf::InputPart in(source.file, i);
+        Imf::OutputPart(file, i).copyPixels(in);
+    }
+}
+
+uint16_t to_half(float value)
+{
+    /* Clamped, because an infinity in an image spreads with every filter; NaN stays NaN. */
+    return Imath::half(std::clamp(value, -65504.0f, 65504.0f)).bits();
+}
+
+uint32_t to_uint(float value)
+{
+    if (!(value > 0.0f))
+        return 0;
+    return value >= 4294967040.0f ? UINT32_MAX : uint32_t(std::nearbyint(value));
+}
+
+/* OpenEXR converts on reading only: makes the pixels of one channel in lines [first, first + count)
+ * of the part. */
+template <typename T>
+void convert(const exr_write &channel, size_t width, size_t first, size_t count, T (*to)(float),
+             std::vector<char> &band)
+{
+    band.resize(width * count * sizeof(T));
+    for (size_t i = 0; i < width * count; i++) {
+        const T value = to(channel.values[(first * width + i) * channel.stride]);
+        memcpy(&band[i * sizeof(T)], &value, sizeof(T));
+    }
+}
+
+void write_part(const exr_new_part &part, Imf::MultiPartOutputFile &file, int index)
+{
+    /* A multiple of the lines per chunk of every compression. */
+    constexpr size_t band_lines = 256;
+    const exr_box &w = part.data_window;
+    const size_t width = size_t(int64_t{w.x_max} - w.x_min + 1);
+    const size_t height = size_t(int64_t{w.y_max} - w.y_min + 1);
+    std::vector<std::vector<char>> bands(part.channel_count);
+    Imf::OutputPart out(file, index);
+    for (size_t first = 0; first < height; first += band_lines) {
+        const size_t lines = std::min(band_lines, height - first);
+        const int y = w.y_min + int(first);
+        const Imath::Box2i window({w.x_min, y}, {w.x_max, y + int(lines) - 1});
+        Imf::FrameBuffer frame;
+        for (size_t i = 0; i < part.channel_count; i++) {
+            const exr_write &channel = part.channels[i];
+            const void *pixels = channel.values + first * width * channel.stride;
+            size_t x_stride = channel.stride * sizeof(float);
+            if (channel.type == EXR_HALF) {
+                convert(channel, width, first, lines, to_half, bands[i]);
+                x_stride = sizeof(uint16_t);
+            } else if (channel.type == EXR_UINT) {
+                convert(channel, width, first, lines, to_uint, bands[i]);
+                x_stride = sizeof(uint32_t);
+            }
+            if (channel.type != EXR_FLOAT)
+                pixels = bands[i].data();
+            frame.insert(channel.channel,
+                         Imf::Slice::Make(Imf::PixelType(channel.type), pixels, window, x_stride,
+                                          x_stride * width));
+        }
+        out.setFrameBuffer(frame);
+        out.writePixels(int(lines));
+    }
+}
+
+void write_parts(output_stream &stream, const char *copy_from, input_file *source,
+                 const std::vector<Imf::Header> &headers, const exr_new_part *parts, size_t count)
+{
+    Imf::MultiPartOutputFile file(stream, headers.data(), int(headers.size()), false,
+                                  Imf::globalThreadCount());
+    const int copies = int(headers.size() - count);
+    for (int i = 0; i < copies; i++) {
+        try {
+            copy_part(*source, file, i);
+        } catch (const Iex::BaseExc &e) {
+            stream.throw_error();
+            raise(EXIT_INPUT, "render or copy the file again",
+                  "%s: damaged: cannot copy part %d: %s", copy_from, i,
+                  library_message(e).c_str());
+        }
+    }
+    for (size_t i = 0; i < count; i++)
+        write_part(parts[i], file, copies + int(i));
+}
+
+void write_file(const char *path, const char *copy_from, const exr_new_part *parts, size_t count,
+                bool replace)
+{
+    std::unique_ptr<input_file> source;
+    if (copy_from) {
+        source = std::make_unique<input_file>(copy_from);
+        check_chunks(source->stream, source->layout);
+    }
+    const std::vector<Imf::Header> headers =
+        make_headers(path, copy_from, source.get(), parts, count);
+    output_stream stream(path, replace);
+    try {
+        write_parts(stream, copy_from, source.get(), headers, parts, count);
+    } catch (const tool_exception &) {
+        throw;
+    } catch (const Iex::BaseExc &) {
+        stream.throw_error(); /* OpenEXR's wrapping of it has lost the reason */
+        throw;
+    }
+    stream.commit();
+}
+
+} // namespace
+
+bool exr_write_file(const char *path, const char *copy_from, const struct exr_new_part *parts,
+                    size_t count, bool replace, struct tool_error *err)
+{
+    set_limits();
+    return at_border(err, EXIT_OUTPUT, path, "cannot write",
+                     [&] { write_file(path, copy_from, parts, count, replace); });
+}

@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: MIT */
+#include "gbuffer.h"
+
+#include "gbuffer_internal.h"
+#include "text.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *depth_type_name(enum depth_type type)
+{
+    static const char *const names[] = {"auto", "planar", "radial", "radial-near", "inverse", "device"};
+    return names[type];
+}
+
+const char *normal_space_name(enum normal_space space)
+{
+    static const char *const names[] = {"auto", "world", "camera"};
+    return names[space];
+}
+
+const char *normal_encoding_name(enum normal_encoding encoding)
+{
+    static const char *const names[] = {"auto", "signed", "unsigned"};
+    return names[encoding];
+}
+
+const char *pixel_type_name(enum exr_pixel_type type)
+{
+    static const char *const names[] = {"uint", "half", "float"};
+    return names[type];
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+double gbuffer_median(double *values, size_t count)
+{
+    if (count == 0)
+        return 0;
+    qsort(values, count, sizeof *values, compare_doubles);
+    return values[count / 2];
+}
+
+static bool check_role(const struct exr_info *info, const struct role *role, struct tool_error *err)
+{
+    for (size_t i = 0; i <= ROLE_MAX_COMPONENTS; i++) {
+        const struct exr_channel *c = role->channels[i];
+        if (c && (c->x_sampling != 1 || c->y_sampling != 1))
+            return fail(err, EXIT_INPUT, "%s: channel '%s' is sub-sampled %dx%d, want full resolution",
+                        info->path, c->name, (int)c->x_sampling, (int)c->y_sampling);
+    }
+    return true;
+}
+
+static float *allocate(size_t texels, size_t components, const char *path, struct tool_error *err)
+{
+    size_t count, bytes;
+    float *values = NULL;
+    if (size_multiply(texels, components, &count) && size_multiply(count, sizeof *values, &bytes))
+        values = malloc(bytes);
+    if (!values)
+        fail(err, EXIT_MEMORY, "%s: out of memory for %zu texels", path, texels);
+    return values;
+}
+
+static bool same_box(const struct exr_box *a, const struct exr_box *b)
+{
+    return a->x_min == b->x_min && a->y_min == b->y_min && a->x_max == b->x_max &&
+           a->y_max == b->y_max;
+}
+
+/* Copies where the boxes overlap; the rest of dst stays. */
+static void copy_overlap(float *dst, const struct exr_box *dst_box, const float *src,
+                         const struct exr_box *src_box, size_t components)
+{
+    int64_t x0 = dst_box->x_min > src_box->x_min ? dst_box->x_min : src_box->x_min;
+    int64_t x1 = dst_box->x_max < src_box->x_max ? dst_box->x_max : src_box->x_max;
+    int64_t y0 = dst_box->y_min > src_box->y_min ? dst_box->y_min : src_box->y_min;
+    int64_t y1 = dst_box->y_max < src_box->y_max ? dst_box->y_max : src_box->y_max;
+    int64_t dst_width = (int64_t)dst_box->x_max - dst_box->x_min + 1;
+    int64_t src_width = (int64_t)src_box->x_max - src_box->x_min + 1;
+    for (int64_t y = y0; x0 <= x1 && y <= y1; y++) {
+        int64_t to = (y - dst_box->y_min) * dst_width + (x0 - dst_box->x_min);
+        int64_t from = (y - src_box->y_min) * src_width + (x0 - src_box->x_min);
+        memcpy(dst + (size_t)to * components, src + (size_t)from * components,
+               (size_t)(x1 - x0 + 1) * components * sizeof *dst);
+    }
+}
+
+/* A role with four floats per texel in the window of the depth; what its own window lacks is zero, and so is a
+ * missing fourth component. */
+static float *read_vector(const struct exr_info *info, const struct gbuffer *g,
+                          const struct role *role, struct tool_error *err)
+{
+    const struct exr_box *box = &info->parts[role->part].data_window;
+    size_t width = (size_t)((int64_t)box->x_max - box->x_min + 1);
+    size_t height = (size_t)((int64_t)box->y_max - box->y_min + 1), texels;
+    if (!size_multiply(width, height, &texels))
+        texels = SIZE_MAX;
+    float *values = allocate(texels, 4, info->path, err);
+    if (!values)
+        return NULL;
+    memset(values, 0, texels * 4 * sizeof *values);
+    struct exr_read reads[4];
+    size_t count = 0;
+    for (size_t i = 0; i < 4; i++)
+        if (role->channels[i])
+            reads[count++] = (struct exr_read){role->channels[i]->name, values + i, 4};
+    float *aligned = values;
+    if (!exr_read_channels(info->path, role->part, reads, count, err)) {
+        aligned = NULL;
+    } else if (!same_box(box, &g->data_window)) {
+        aligned = allocate(gbuffer_texels(g), 4, info->path, err);
+        if (aligned) {
+            memset(aligned, 0, gbuffer_texels(g) * 4 * sizeof *aligned);
+            copy_overlap(aligned, &g->data_window, values, box, 4);
+        }
+    }
+    if (aligned != values)
+        free(values);
+    return aligned;
+}
+
+static bool read_depth(const struct exr_info *info, struct gbuffer *g, struct tool_error *err)
+{
+    const struct role *role = &g->roles.kind[ROLE_DEPTH];
+    g->depth = allocate(gbuffer_texels(g), 1, info->path, err);
+    const struct exr_read read = {role->channels[0]->name, g->depth, 1};
+    return g->depth && exr_read_channels(info->path, role->part, &read, 1, err);
+}
+
+static bool read_color(const struct exr_info *info, struct gbuffer *g, struct tool_error *err)
+{
+    const struct role *role = &g->roles.kind[ROLE_COLOR];
+    g->color = read_vector(info, g, role, err);
+    if (!g->color)
+        return false;
+    g->color_has_alpha = role->channels[ROLE_MAX_COMPONENTS] != NULL;
+    for (size_t i = 0; !g->color_has_alpha && i < gbuffer_texels(g); i++)
+        g->color[i * 4 + 3] = 1.0f;
+    return true;
+}
+
+/* Everything that the header alone decides. */
+static bool resolve(const struct exr_info *info, const struct gbuffer_options *options,
+                    const struct camera *camera_file, struct gbuffer *g, struct tool_error *err)
+{
+    enum { MAX_EXTENT = 65536 };
+    if (!roles_resolve(info, &options->roles, &g->roles, err))
+        return false;
+    const struct role *depth = &g->roles.kind[ROLE_DEPTH];
+    const struct exr_part *part = &info->parts[depth->part];
+    int64_t width = (int64_t)part->data_window.x_max - part->data_window.x_min + 1;
+    int64_t height = (int64_t)part->data_window.y_max - part->data_window.y_min + 1;
+    if (width < 1 || height < 1 || width > MAX_EXTENT || height > MAX_EXTENT)
+        return fail(err, EXIT_INPUT, "%s: data window is %lld x %lld, want 1 to %d texels", info->path,
+                    (long long)width, (long long)height, MAX_EXTENT);
+    g->width = (uint32_t)width;
+    g->height = (uint32_t)height;
+    g->data_window = part->data_window;
+    g->display_window = part->display_window;
+    g->pixel_aspect = part->pixel_aspect;
+    camera_resolve(&options->camera, camera_file, info, depth->part, &g->camera);
+    g->depth_type = options->depth_type != DEPTH_AUTO ? options->depth_type
+                    : depth->depth_type != DEPTH_AUTO ? depth->depth_type
+                                                      : DEPTH_PLANAR;
+    if (options->want_color && !g->roles.kind[ROLE_COLOR].found) {
+        fail_hint(err, "say which it is: --color NAME");
+        return fail(err, EXIT_CHANNELS, "%s: no colour found, which --mode comp needs", info->path);
+    }
+    return check_role(info, depth, err) && check_role(info, &g->roles.kind[ROLE_NORMAL], err) &&
+           (!options->want_color || check_role(info, &g->roles.kind[ROLE_COLOR], err));
+}
+
+bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *options,
+                  const struct camera *camera_file, struct report *report, struct gbuffer *gbuffer,
+                  struct tool_error *err)
+{
+    *gbuffer = (struct gbuffer){.view = vkao_view_default()};
+    struct gbuffer *g = gbuffer;
+    if (!resolve(info, options, camera_file, g, err))
+        return false;
+    if (!g->camera.source[0])
+        report_warn(report, "camera",
+                    "%s: no camera in the header; assuming 40 degrees horizontal field of view "
+                    "(--fov or --camera sets it)",
+                    info->path);
+    if (!read_depth(info, g, err) || !gbuffer_prepare_depth(g, options, info->path, report, err))
+        goto failed;
+    if (g->roles.kind[ROLE_NORMAL].found) {
+        g->normals = read_vector(info, g, &g->roles.kind[ROLE_NORMAL], err);
+        if (!g->normals)
+            goto failed;
+    }
+    if (!gbuffer_prepare_normals(g, options, info->path, report, err))
+        goto failed;
+    if (options->want_color && !read_color(info, g, err))
+        goto failed;
+    return true;
+failed:
+    gbuffer_free(g);
+    return false;
+}
+
+void gbuffer_free(struct gbuffer *gbuffer)
+{
+    free(gbuffer->depth);
+    free(gbuffer->normals);
+    free(gbuffer->color);
+    gbuffer->depth = gbuffer->normals = gbuffer->color = NULL;
+}

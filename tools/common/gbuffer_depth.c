@@ -1,0 +1,224 @@
+/* SPDX-License-Identifier: MIT */
+#include "gbuffer_internal.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+
+/* What renderers write where there is nothing: Falcor, Cycles, Arnold, clip ranges. No scene measures exactly this. */
+static bool is_sentinel(float z)
+{
+    static const float values[] = {1e8f, 1e10f, 1e12f, 1e20f, 1e30f, FLT_MAX};
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++)
+        if (!(z < values[i]) && !(z > values[i]))
+            return true;
+    return false;
+}
+
+static bool is_valid(float z)
+{
+    return isfinite(z) && z > 0 && !is_sentinel(z);
+}
+
+/* The median of the values as stored, without what is certainly background. */
+static bool stored_median(const struct gbuffer *g, double *median)
+{
+    size_t step = gbuffer_sample_step(g), count = 0;
+    double *values = malloc((gbuffer_texels(g) / step + 1) * sizeof *values);
+    if (!values)
+        return false;
+    for (size_t i = 0; i < gbuffer_texels(g); i += step)
+        if (is_valid(g->depth[i]))
+            values[count++] = (double)g->depth[i];
+    *median = gbuffer_median(values, count);
+    free(values);
+    return true;
+}
+
+/* Distances of any kind: what is no distance becomes 0, which the library takes for background. */
+static void clean_distances(struct gbuffer *g, double median)
+{
+    double limit = median * 1e7;
+    size_t invalid = 0;
+    bool half = g->roles.kind[ROLE_DEPTH].channels[0]->type == EXR_HALF;
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        float z = g->depth[i];
+        invalid += isnan(z) || z < 0;
+        /* 65504 is the largest half, where a far background saturates. */
+        bool saturated = half && z >= 65504.0f && median < 6550.4;
+        if (!is_valid(z) || (double)z >= limit || saturated)
+            g->depth[i] = 0;
+    }
+    g->invalid_share = (double)invalid / (double)gbuffer_texels(g);
+}
+
+static void clean_inverse(struct gbuffer *g)
+{
+    size_t invalid = 0;
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        invalid += isnan(g->depth[i]) || g->depth[i] < 0;
+        if (!isfinite(g->depth[i]) || g->depth[i] <= 0)
+            g->depth[i] = 0;
+    }
+    g->invalid_share = (double)invalid / (double)gbuffer_texels(g);
+}
+
+static void clean_device(struct gbuffer *g, bool reversed)
+{
+    size_t invalid = 0;
+    g->background_depth = reversed ? 0.0f : 1.0f;
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        bool inside = g->depth[i] >= 0 && g->depth[i] <= 1;
+        invalid += !inside;
+        if (!inside)
+            g->depth[i] = g->background_depth;
+    }
+    g->invalid_share = (double)invalid / (double)gbuffer_texels(g);
+}
+
+/* How much longer the ray of a texel is than its way along the view axis. */
+static double ray_length(const struct gbuffer *g, size_t texel)
+{
+    double x, y;
+    if (g->camera.type == CAMERA_ORTHOGRAPHIC)
+        return 1.0;
+    camera_ray(&g->camera, &g->display_window, &g->data_window, (double)(texel % g->width),
+               (double)(texel / g->width), &x, &y);
+    return sqrt(1.0 + x * x + y * y);
+}
+
+/* Rays of Mitsuba start at the near plane; in double, since the result is compared with that of planar files. */
+static void near_ray_to_planar(struct gbuffer *g)
+{
+    for (size_t i = 0; i < gbuffer_texels(g); i++)
+        if (g->depth[i] > 0)
+            g->depth[i] = (float)((double)g->depth[i] / ray_length(g, i) + g->camera.near_plane);
+}
+
+static double view_z(const struct gbuffer *g, size_t texel)
+{
+    double d = (double)g->depth[texel];
+    const float *m = g->view.projection;
+    switch (g->view.depth_encoding) {
+    case VKAO_DEPTH_DISTANCE: return d / ray_length(g, texel);
+    case VKAO_DEPTH_INVERSE_Z: return 1.0 / d;
+    case VKAO_DEPTH_PROJECTED:
+        return g->camera.type == CAMERA_ORTHOGRAPHIC ? ((double)m[14] - d) / (double)m[10]
+                                                     : (double)m[14] / (d + (double)m[10]);
+    default: return d;
+    }
+}
+
+static bool measure(struct gbuffer *g)
+{
+    size_t step = gbuffer_sample_step(g), count = 0, foreground = 0;
+    double *values = malloc((gbuffer_texels(g) / step + 1) * sizeof *values);
+    if (!values)
+        return false;
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        if (!gbuffer_is_foreground(g, i))
+            continue;
+        double z = view_z(g, i);
+        if (foreground++ == 0)
+            g->min_z = g->max_z = z;
+        g->min_z = z < g->min_z ? z : g->min_z;
+        g->max_z = z > g->max_z ? z : g->max_z;
+        if (i % step == 0)
+            values[count++] = z;
+    }
+    g->median_z = count ? gbuffer_median(values, count) : g->min_z;
+    g->background_share = 1.0 - (double)foreground / (double)gbuffer_texels(g);
+    free(values);
+    return true;
+}
+
+/* Depth that is no device depth needs no exact planes, only ones that leave all of the scene between them. */
+static struct camera_planes enclosing_planes(const struct gbuffer *g)
+{
+    struct camera_planes planes = {.near_plane = 0.1, .far_plane = INFINITY};
+    if (g->min_z > 0)
+        planes.near_plane = g->min_z * 0.5;
+    if (g->camera.near_plane > 0 && g->camera.near_plane < planes.near_plane)
+        planes.near_plane = g->camera.near_plane;
+    if (g->camera.type == CAMERA_ORTHOGRAPHIC) {
+        planes.near_plane = 0;
+        planes.far_plane = g->max_z > 0 ? g->max_z * 2.0 : 1.0;
+    }
+    return planes;
+}
+
+static bool check_planes(const struct gbuffer *g, const char *path, struct tool_error *err)
+{
+    double n = g->camera.near_plane, f = g->camera.far_plane;
+    if (g->depth_type == DEPTH_RADIAL_NEAR && !(n > 0 && isfinite(n))) {
+        fail_hint(err, "add --near DISTANCE (the renderer's near clip), or --camera with \"near\"; "
+                       "--depth-type radial if distances start at the eye");
+        return fail(err, EXIT_CHANNELS,
+                    "%s: depth '%s' is measured from the near plane: its distance is needed", path,
+                    g->roles.kind[ROLE_DEPTH].label);
+    }
+    if (g->depth_type != DEPTH_DEVICE)
+        return true;
+    if (!(n > 0) || !(f > 0)) {
+        fail_hint(err, "add --near and --far; near > far for a reversed depth buffer");
+        return fail(err, EXIT_CHANNELS, "%s: device depth needs both planes", path);
+    }
+    bool infinite = isinf(n) || isinf(f);
+    if (!(n < f || n > f) || (infinite && (g->camera.type == CAMERA_ORTHOGRAPHIC)))
+        return fail(err, EXIT_CHANNELS, "%s: planes at %g and %g give no projection", path, n, f);
+    return true;
+}
+
+static void warn_about_depth(const struct gbuffer *g, const char *path, struct report *report)
+{
+    if (g->invalid_share > 0)
+        report_warn(report, "invalid depth",
+                    "%s: %.2g %% of depth values are NaN, negative or out of range: treated as background",
+                    path, g->invalid_share * 100.0);
+    if (!(g->median_z > 0))
+        report_warn(report, "no depth", "%s: all depth is background: AO is 1 everywhere", path);
+    if (g->depth_step > 0)
+        report_warn(report, "half depth",
+                    "%s: depth is HALF; at the median distance %.4g the step is %.2g: expect banding",
+                    path, g->median_z, g->depth_step);
+}
+
+bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
+                           struct report *report, struct tool_error *err)
+{
+    (void)options;
+    struct camera_planes planes = {g->camera.near_plane, g->camera.far_plane};
+    double median;
+    if (!check_planes(g, path, err))
+        return false;
+    if (!stored_median(g, &median))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    switch (g->depth_type) {
+    case DEPTH_INVERSE:
+        g->view.depth_encoding = VKAO_DEPTH_INVERSE_Z;
+        clean_inverse(g);
+        break;
+    case DEPTH_DEVICE:
+        g->view.depth_encoding = VKAO_DEPTH_PROJECTED;
+        clean_device(g, planes.near_plane > planes.far_plane);
+        camera_project(&g->camera, &planes, &g->display_window, &g->data_window, &g->view);
+        break;
+    default:
+        g->view.depth_encoding =
+            g->depth_type == DEPTH_RADIAL ? VKAO_DEPTH_DISTANCE : VKAO_DEPTH_VIEW_Z;
+        clean_distances(g, median);
+        if (g->depth_type == DEPTH_RADIAL_NEAR)
+            near_ray_to_planar(g);
+        break;
+    }
+    if (!measure(g))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    if (g->depth_type != DEPTH_DEVICE) {
+        planes = enclosing_planes(g);
+        camera_project(&g->camera, &planes, &g->display_window, &g->data_window, &g->view);
+    }
+    if (g->roles.kind[ROLE_DEPTH].channels[0]->type == EXR_HALF && median > 0)
+        g->depth_step = ldexp(1.0, (int)floor(log2(median)) - 10);
+    warn_about_depth(g, path, report);
+    return true;
+}

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The steps of gbuffer_load. */
+#ifndef VKAO_TOOLS_GBUFFER_INTERNAL_H_
+#define VKAO_TOOLS_GBUFFER_INTERNAL_H_
+
+#include "gbuffer.h"
+
+#include <stddef.h>
+
+/* Statistics look at this many texels at most, spread evenly. */
+enum { GBUFFER_MAX_SAMPLES = 1 << 18 };
+
+static inline size_t gbuffer_texels(const struct gbuffer *g)
+{
+    return (size_t)g->width * g->height;
+}
+
+static inline size_t gbuffer_sample_step(const struct gbuffer *g)
+{
+    return gbuffer_texels(g) / GBUFFER_MAX_SAMPLES + 1;
+}
+
+static inline bool gbuffer_is_foreground(const struct gbuffer *g, size_t texel)
+{
+    return !(g->depth[texel] <= g->background_depth && g->depth[texel] >= g->background_depth);
+}
+
+/* Sorts values; 0 if there are none. */
+double gbuffer_median(double *values, size_t count);
+
+/* Depth as read becomes depth as the library takes it; fills projection and statistics. */
+bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
+                           struct report *report, struct tool_error *err);
+/* Needs the depth. g->normals as read becomes signed, or is freed. */
+bool gbuffer_prepare_normals(struct gbuffer *g, const struct gbuffer_options *options,
+                             const char *path, struct report *report, struct tool_error *err);
+
+#endif

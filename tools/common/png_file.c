@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT */
+#include "png_file.h"
+
+#include "atomic_file.h"
+
+#include <png.h>
+#include <setjmp.h>
+#include <stdlib.h>
+
+struct sink {
+    struct atomic_file file;
+    struct tool_error *err;
+};
+
+static void write_bytes(png_structp png, png_bytep data, size_t bytes)
+{
+    struct sink *sink = png_get_io_ptr(png);
+    if (!atomic_file_write(&sink->file, data, bytes, sink->err))
+        png_error(png, "write");
+}
+
+static void flush_nothing(png_structp png)
+{
+    (void)png;
+}
+
+static void on_error(png_structp png, png_const_charp message)
+{
+    struct sink *sink = png_get_error_ptr(png);
+    fail(sink->err, EXIT_OUTPUT, "%s: cannot write PNG: %s", sink->file.path, message);
+    png_longjmp(png, 1);
+}
+
+static void on_warning(png_structp png, png_const_charp message)
+{
+    (void)png;
+    (void)message;
+}
+
+/* libpng leaves by longjmp: nothing here may be needed afterwards that changes after setjmp. */
+static bool encode(struct sink *sink, png_structp png, png_infop info, uint32_t width, uint32_t height,
+                   unsigned channels, const uint8_t *pixels)
+{
+    if (setjmp(png_jmpbuf(png)))
+        return false;
+    png_set_write_fn(png, sink, write_bytes, flush_nothing);
+    png_set_IHDR(png, info, width, height, 8, channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(png, info);
+    for (size_t row = 0; row < height; row++)
+        png_write_row(png, pixels + row * width * channels);
+    png_write_end(png, info);
+    return true;
+}
+
+bool png_file_write(const char *path, uint32_t width, uint32_t height, unsigned channels,
+                    const uint8_t *pixels, bool replace, struct tool_error *err)
+{
+    struct sink *sink = calloc(1, sizeof *sink);
+    if (!sink)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    sink->err = err;
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, sink, on_error, on_warning);
+    png_infop info = png ? png_create_info_struct(png) : NULL;
+    bool ok = false;
+    if (!info) {
+        fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    } else if (atomic_file_open(&sink->file, path, replace, err)) {
+        ok = encode(sink, png, info, width, height, channels, pixels);
+        if (ok)
+            ok = atomic_file_commit(&sink->file, err);
+        else
+            atomic_file_abort(&sink->file);
+    }
+    png_destroy_write_struct(&png, &info);
+    free(sink);
+    return ok;
+}

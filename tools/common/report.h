@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the tools say on stderr: one line each, `vkao: ` in front, a remedy indented below. */
+#ifndef VKAO_TOOLS_REPORT_H_
+#define VKAO_TOOLS_REPORT_H_
+
+#include "error.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum verbosity { REPORT_QUIET = -1, REPORT_NORMAL = 0, REPORT_VERBOSE = 1 };
+
+struct report {
+    enum verbosity verbosity;
+    const char *said[32]; /* keys of the warnings given so far; the strings are static */
+    size_t said_count;
+};
+
+/* Whatever the verbosity. */
+void report_error(const struct tool_error *err);
+/* Once per key, which must be a string literal; silent when quiet. Warnings of a sequence would be noise otherwise. */
+void report_warn(struct report *report, const char *key, const char *format, ...) TOOL_PRINTF(3, 4);
+/* Progress and summaries, at normal verbosity. */
+void report_note(const struct report *report, const char *format, ...) TOOL_PRINTF(2, 3);
+/* Details, with -v. */
+void report_detail(const struct report *report, const char *format, ...) TOOL_PRINTF(2, 3);
+
+#endif

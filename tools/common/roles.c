@@ -1,0 +1,559 @@
+/* SPDX-License-Identifier: MIT */
+#include "roles.h"
+
+#include "text.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MAX_HITS = 16, NAME_MAX_BYTES = 256 };
+
+static const char *const kind_names[ROLE_KINDS] = {"depth", "normal", "color", "position", "AO"};
+
+/* A channel's name taken apart: layers 'A.B', component 'Z', without its view. */
+struct name {
+    char layer[NAME_MAX_BYTES];
+    const char *leaf;      /* last component of layer */
+    const char *component; /* points into the channel's own name */
+    bool bare;             /* no layer in the channel's name: layer is that of the part */
+};
+
+struct hit {
+    size_t part;
+    char layer[NAME_MAX_BYTES];
+    const char *component;
+    size_t set;
+    const struct exr_channel *channels[ROLE_MAX_COMPONENTS + 1];
+    size_t channel_count;
+    bool bare;
+};
+
+struct search {
+    const struct exr_info *info;
+    const char *view; /* "" = any */
+    struct hit hits[MAX_HITS];
+    size_t count;
+};
+
+/* --- Views --- */
+
+static bool first_with_view(const struct exr_info *info, size_t part)
+{
+    const char *view = info->parts[part].view;
+    if (!view || !*view)
+        return false;
+    for (size_t i = 0; i < part; i++)
+        if (info->parts[i].view && strcmp(info->parts[i].view, view) == 0)
+            return false;
+    return true;
+}
+
+size_t roles_view_count(const struct exr_info *info)
+{
+    if (info->part_count == 1 && info->parts[0].multi_view_count > 0)
+        return info->parts[0].multi_view_count;
+    size_t count = 0;
+    for (size_t i = 0; i < info->part_count; i++)
+        count += first_with_view(info, i);
+    return count;
+}
+
+const char *roles_view_name(const struct exr_info *info, size_t index)
+{
+    if (info->part_count == 1 && info->parts[0].multi_view_count > 0)
+        return info->parts[0].multi_view[index];
+    for (size_t i = 0; i < info->part_count; i++)
+        if (first_with_view(info, i) && index-- == 0)
+            return info->parts[i].view;
+    return "";
+}
+
+static bool part_has_view(const struct exr_part *part, const char *view)
+{
+    return !part->deep && (!*view || !part->view || !*part->view || strcmp(part->view, view) == 0);
+}
+
+/* --- Names --- */
+
+/* Parts of one pass and view are called depth_left or ViewLayer.Depth-left: the layer is what stands before. */
+static void part_layer(const struct exr_part *part, char layer[NAME_MAX_BYTES])
+{
+    snprintf(layer, NAME_MAX_BYTES, "%s", part->name ? part->name : "");
+    size_t length = strlen(layer), view = part->view ? strlen(part->view) : 0;
+    if (view && length > view + 1 && strcmp(layer + length - view, part->view) == 0 &&
+        strchr("-_.", layer[length - view - 1]))
+        layer[length - view - 1] = '\0';
+}
+
+static bool is_view(const struct exr_part *part, const char *word, size_t length)
+{
+    for (size_t i = 0; i < part->multi_view_count; i++)
+        if (strlen(part->multi_view[i]) == length &&
+            strncmp(part->multi_view[i], word, length) == 0)
+            return true;
+    return false;
+}
+
+/* In single-part stereo files the last but one component is the view (Blender names all views so, OpenEXR leaves out
+ * the default one). False if the channel belongs to another view than the wanted one. */
+static bool take_apart(const struct exr_part *part, const char *channel, const char *view,
+                       bool multi_part, struct name *name)
+{
+    const char *dot = strrchr(channel, '.');
+    size_t layer = dot ? (size_t)(dot - channel) : 0;
+    name->component = dot ? dot + 1 : channel;
+    if (part->multi_view_count) {
+        size_t start = layer;
+        while (start > 0 && channel[start - 1] != '.')
+            start--;
+        const char *owner = part->multi_view[0];
+        size_t owner_length = strlen(owner);
+        if (dot && is_view(part, channel + start, layer - start)) {
+            owner = channel + start;
+            owner_length = layer - start;
+            layer = start > 0 ? start - 1 : 0;
+        }
+        if (*view && (strlen(view) != owner_length || strncmp(owner, view, owner_length) != 0))
+            return false;
+    }
+    name->bare = layer == 0;
+    if (name->bare && multi_part)
+        part_layer(part, name->layer);
+    else
+        snprintf(name->layer, sizeof name->layer, "%.*s", (int)layer, channel);
+    const char *leaf = strrchr(name->layer, '.');
+    name->leaf = leaf ? leaf + 1 : name->layer;
+    return true;
+}
+
+static bool contains_nocase(const char *text, const char *word, size_t length)
+{
+    for (; *text; text++) {
+        size_t i = 0;
+        while (i < length && tolower((unsigned char)text[i]) == tolower((unsigned char)word[i]))
+            i++;
+        if (i == length)
+            return true;
+    }
+    return false;
+}
+
+/* Whether leaf is one of the alternatives in layers. */
+static bool layer_fits(const char *layers, const char *leaf)
+{
+    if (layers[0] == '*')
+        return true;
+    if (layers[0] == '~')
+        return contains_nocase(leaf, layers + 1, strlen(layers + 1));
+    size_t length = strlen(leaf);
+    for (const char *p = layers; length; p++) {
+        size_t word = strcspn(p, "|");
+        if (word == length && contains_nocase(leaf, p, word))
+            return true;
+        p += word;
+        if (!*p)
+            break;
+    }
+    return false;
+}
+
+/* Bare R, G, B of a part called 'N' are normals, not colour; a part called 'beauty' may hold anything. */
+static bool part_name_forbids(const char *leaf, enum role_kind kind)
+{
+    for (size_t i = 0; *leaf && i < role_table_count; i++) {
+        const struct role_row *row = &role_table[i];
+        if (row->layers && row->layers[0] != '*' && row->kind != kind && row->kind != ROLE_COLOR &&
+            layer_fits(row->layers, leaf))
+            return true;
+    }
+    return false;
+}
+
+static bool never_depth(const struct name *name)
+{
+    for (size_t i = 0; i < role_never_depth_count; i++) {
+        const char *word = role_never_depth[i];
+        if (contains_nocase(name->leaf, word, strlen(word)) || text_equal_nocase(name->component, word))
+            return true;
+    }
+    return false;
+}
+
+/* --- Matching --- */
+
+static bool same_layer(const struct name *a, const struct name *b)
+{
+    return a->bare == b->bare && strcmp(a->layer, b->layer) == 0;
+}
+
+/* The sibling of a channel with another component; the same case of letters is preferred. */
+static const struct exr_channel *sibling(const struct search *s, size_t part_index,
+                                         const struct name *name, const char *component)
+{
+    const struct exr_part *part = &s->info->parts[part_index];
+    const struct exr_channel *found = NULL;
+    for (size_t i = 0; i < part->channel_count; i++) {
+        struct name other;
+        if (!take_apart(part, part->channels[i].name, s->view, s->info->part_count > 1, &other) ||
+            !same_layer(name, &other) || !text_equal_nocase(other.component, component))
+            continue;
+        if (!found || strcmp(other.component, component) == 0)
+            found = &part->channels[i];
+    }
+    return found;
+}
+
+static bool is_vector(const struct search *s, size_t part, const struct name *name)
+{
+    return sibling(s, part, name, "X") && sibling(s, part, name, "Y");
+}
+
+static bool row_applies(const struct search *s, const struct role_row *row, size_t part_index)
+{
+    const struct exr_part *part = &s->info->parts[part_index];
+    bool companion = !row->companion, attribute = !row->attribute;
+    for (size_t i = 0; i < part->channel_count && !companion; i++)
+        companion = strcmp(part->channels[i].name, row->companion) == 0;
+    const struct exr_part *first = &s->info->parts[0];
+    for (size_t i = 0; i < first->attribute_count && !attribute; i++)
+        attribute = text_starts_with(first->attributes[i].name, row->attribute);
+    bool multi = s->info->part_count > 1;
+    return companion && attribute && !(row->place == ROLE_SINGLE_PART && multi) &&
+           !(row->place == ROLE_MULTI_PART && !multi);
+}
+
+static bool row_fits(const struct search *s, const struct role_row *row, size_t part,
+                     const struct name *name)
+{
+    bool layer = row->layers ? layer_fits(row->layers, name->leaf)
+                             : name->bare && !part_name_forbids(name->leaf, row->kind);
+    if (!layer || row->kind != ROLE_DEPTH)
+        return layer;
+    return !never_depth(name) && (row->in_vector || !is_vector(s, part, name));
+}
+
+/* Remembers the hit, or a better spelling of one in the same layer. */
+static void add_hit(struct search *s, const struct hit *hit)
+{
+    for (size_t i = 0; i < s->count; i++) {
+        struct hit *old = &s->hits[i];
+        if (old->part == hit->part && old->bare == hit->bare && strcmp(old->layer, hit->layer) == 0) {
+            if (hit->set < old->set)
+                *old = *hit;
+            return;
+        }
+    }
+    if (s->count < MAX_HITS)
+        s->hits[s->count++] = *hit;
+}
+
+/* Adds a hit if the channel is the first component of a set that is there as a whole. */
+static void match_sets(struct search *s, const char *const sets[][ROLE_MAX_COMPONENTS], size_t part,
+                       const struct name *name)
+{
+    for (size_t set = 0; set < ROLE_MAX_SETS && sets[set][0]; set++) {
+        if (!text_equal_nocase(name->component, sets[set][0]))
+            continue;
+        struct hit hit = {.part = part, .set = set, .bare = name->bare};
+        snprintf(hit.layer, sizeof hit.layer, "%s", name->layer);
+        for (size_t c = 0; c < ROLE_MAX_COMPONENTS && sets[set][c]; c++) {
+            hit.channels[c] = sibling(s, part, name, sets[set][c]);
+            if (!hit.channels[c])
+                return;
+            hit.channel_count++;
+        }
+        hit.channels[ROLE_MAX_COMPONENTS] = sibling(s, part, name, "A");
+        add_hit(s, &hit);
+    }
+}
+
+static void search_row(struct search *s, const struct role_row *row)
+{
+    s->count = 0;
+    for (size_t p = 0; p < s->info->part_count; p++) {
+        const struct exr_part *part = &s->info->parts[p];
+        if (!part_has_view(part, s->view) || !row_applies(s, row, p))
+            continue;
+        for (size_t c = 0; c < part->channel_count; c++) {
+            struct name name;
+            if (take_apart(part, part->channels[c].name, s->view, s->info->part_count > 1, &name) &&
+                row_fits(s, row, p, &name))
+                match_sets(s, row->sets, p, &name);
+        }
+    }
+}
+
+/* --- Names given by the user --- */
+
+static bool names_layer(const struct search *s, size_t part_index, const struct exr_channel *channel,
+                        const struct name *name, const char *wanted)
+{
+    const struct exr_part *part = &s->info->parts[part_index];
+    size_t length = strlen(wanted);
+    return strcmp(name->layer, wanted) == 0 ||
+           (strncmp(channel->name, wanted, length) == 0 && channel->name[length] == '.' &&
+            !strchr(channel->name + length + 1, '.')) ||
+           (part->name && *part->name && strcmp(part->name, wanted) == 0);
+}
+
+static void search_channel(struct search *s, size_t part, const char *wanted)
+{
+    const struct exr_part *p = &s->info->parts[part];
+    for (size_t c = 0; c < p->channel_count; c++) {
+        struct name name;
+        if (!take_apart(p, p->channels[c].name, s->view, s->info->part_count > 1, &name))
+            continue;
+        char without_view[2 * NAME_MAX_BYTES];
+        snprintf(without_view, sizeof without_view, "%s%s%s", name.bare ? "" : name.layer,
+                 name.bare ? "" : ".", name.component);
+        if (strcmp(p->channels[c].name, wanted) != 0 && strcmp(without_view, wanted) != 0)
+            continue;
+        struct hit hit = {.part = part, .channels = {&p->channels[c]}, .channel_count = 1};
+        snprintf(hit.layer, sizeof hit.layer, "%s", p->channels[c].name);
+        add_hit(s, &hit);
+    }
+}
+
+static void search_layer(struct search *s, enum role_kind kind, size_t part, const char *wanted)
+{
+    static const char *const depth[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS] = {
+        {"Z"}, {"R"}, {"depth"}, {"Y"}, {"V"}, {"T"}, {"D"}};
+    static const char *const vector[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS] = {{"X", "Y", "Z"},
+                                                                           {"R", "G", "B"}};
+    const struct exr_part *p = &s->info->parts[part];
+    for (size_t c = 0; c < p->channel_count; c++) {
+        struct name name;
+        if (take_apart(p, p->channels[c].name, s->view, s->info->part_count > 1, &name) &&
+            names_layer(s, part, &p->channels[c], &name, wanted))
+            match_sets(s, kind == ROLE_DEPTH ? depth : vector, part, &name);
+    }
+}
+
+/* name is a channel, a layer, a part or part/one of these. */
+static void search_named(struct search *s, enum role_kind kind, const char *name)
+{
+    s->count = 0;
+    for (int layers = 0; layers < 2 && s->count == 0; layers++) {
+        if (!layers && kind != ROLE_DEPTH)
+            continue;
+        for (size_t i = 0; i < s->info->part_count; i++) {
+            const struct exr_part *part = &s->info->parts[i];
+            if (!part_has_view(part, s->view))
+                continue;
+            size_t length = part->name ? strlen(part->name) : 0;
+            const char *rest = name;
+            if (length && strncmp(name, part->name, length) == 0 && name[length] == '/')
+                rest = name + length + 1;
+            if (layers)
+                search_layer(s, kind, i, rest);
+            else
+                search_channel(s, i, rest);
+        }
+    }
+}
+
+/* --- Results --- */
+
+static size_t common_prefix(const char *a, const char *b)
+{
+    size_t n = 0;
+    while (a[n] && a[n] == b[n])
+        n++;
+    return n;
+}
+
+/* Two view layers each have normals: those that go with the depth are meant. */
+static void prefer_neighbours(struct search *s, const struct role *depth)
+{
+    size_t best = 0, kept = 0;
+    const char *near_name = depth->channels[0]->name;
+    for (size_t i = 0; i < s->count; i++) {
+        size_t n = common_prefix(s->hits[i].channels[0]->name, near_name);
+        best = n > best ? n : best;
+    }
+    for (size_t i = 0; i < s->count; i++)
+        if (common_prefix(s->hits[i].channels[0]->name, near_name) == best)
+            s->hits[kept++] = s->hits[i];
+    s->count = kept;
+    kept = 0;
+    for (size_t i = 0; i < s->count; i++)
+        kept += s->hits[i].part == depth->part;
+    if (kept == 1)
+        for (size_t i = 0; i < s->count; i++)
+            if (s->hits[i].part == depth->part) {
+                s->hits[0] = s->hits[i];
+                s->count = 1;
+            }
+}
+
+/* Whether another part of the view has a channel of the same name. */
+static bool needs_part_name(const struct search *s, size_t part_index, const char *channel)
+{
+    for (size_t p = 0; p < s->info->part_count; p++)
+        for (size_t c = 0; p != part_index && c < s->info->parts[p].channel_count; c++)
+            if (part_has_view(&s->info->parts[p], s->view) &&
+                strcmp(s->info->parts[p].channels[c].name, channel) == 0)
+                return true;
+    return false;
+}
+
+static void make_label(const struct search *s, const struct hit *hit, char label[ROLE_LABEL_MAX])
+{
+    const struct exr_part *part = &s->info->parts[hit->part];
+    const char *channel = hit->channels[0]->name;
+    bool multi = s->info->part_count > 1 && part->name && *part->name;
+    bool with_part = multi && needs_part_name(s, hit->part, channel);
+    const char *dot = strrchr(channel, '.');
+    int length = hit->channel_count == 1 ? (int)strlen(channel) : dot ? (int)(dot - channel) : 0;
+    if (length == 0)
+        snprintf(label, ROLE_LABEL_MAX, "%s", multi ? part->name : "(no layer)");
+    else
+        snprintf(label, ROLE_LABEL_MAX, "%s%s%.*s", with_part ? part->name : "",
+                 with_part ? "/" : "", length, channel);
+}
+
+static void take_hit(const struct search *s, const struct hit *hit, const struct role_row *row,
+                     struct role *role)
+{
+    role->found = true;
+    role->part = hit->part;
+    memcpy(role->channels, hit->channels, sizeof role->channels);
+    role->channel_count = hit->channel_count;
+    role->depth_type = row ? row->depth_type : DEPTH_AUTO;
+    role->normal_space = row ? row->normal_space : NORMAL_SPACE_AUTO;
+    make_label(s, hit, role->label);
+}
+
+static bool fail_ambiguous(const struct search *s, enum role_kind kind, struct tool_error *err)
+{
+    struct text list = {0}, arguments = {0};
+    for (size_t i = 0; i < s->count; i++) {
+        char label[ROLE_LABEL_MAX];
+        make_label(s, &s->hits[i], label);
+        text_add(&list, "%s'%s'", i ? ", " : "", label);
+        text_add(&arguments, "%s--%s '%s'", i ? " or " : "", kind_names[kind], label);
+    }
+    fail_hint(err, "add %s", arguments.data ? arguments.data : "");
+    fail(err, EXIT_CHANNELS, "%s: %zu %s candidates: %s", s->info->path, s->count, kind_names[kind],
+         list.data ? list.data : "");
+    text_free(&list);
+    text_free(&arguments);
+    return false;
+}
+
+/* 'R G B A N.X (part "beauty"); Z (part "depth")', as much as fits in a message. */
+static void list_channels(const struct exr_info *info, const char *view, struct text *list)
+{
+    enum { ENOUGH = 600 };
+    for (size_t p = 0; p < info->part_count; p++) {
+        const struct exr_part *part = &info->parts[p];
+        if (*view && part->view && *part->view && strcmp(part->view, view) != 0)
+            continue;
+        if (list->length)
+            text_add(list, ";");
+        for (size_t c = 0; c < part->channel_count; c++) {
+            if (list->length > ENOUGH) {
+                text_add(list, " ... ('vkao inspect' lists all)");
+                return;
+            }
+            text_add(list, "%s%s", list->length ? " " : "", part->channels[c].name);
+        }
+        if (part->name && *part->name)
+            text_add(list, " (part \"%s\")", part->name);
+    }
+}
+
+static bool fail_missing(const struct exr_info *info, const char *view, enum role_kind kind,
+                         const char *name, struct tool_error *err)
+{
+    struct text list = {0};
+    list_channels(info, view, &list);
+    const char *channels = list.data ? list.data : "none";
+    if (name) {
+        fail(err, EXIT_CHANNELS, "%s: no channel or layer '%s'%s%s; channels: %s", info->path, name,
+             *view ? " in view " : "", view, channels);
+        fail_hint(err, "--%s takes a channel, a layer or part/channel", kind_names[kind]);
+    } else {
+        fail(err, EXIT_CHANNELS, "%s: no depth channel found%s%s; channels: %s", info->path,
+             *view ? " in view " : "", view, channels);
+        fail_hint(err, "say which it is: --depth NAME");
+    }
+    text_free(&list);
+    return false;
+}
+
+static bool fail_deep(const struct exr_info *info, size_t part, struct tool_error *err)
+{
+    fail_hint(err, "flatten it first: oiiotool %s --flatten -o flat.exr", info->path);
+    return fail(err, EXIT_INPUT, "%s: deep data is not supported (part %zu, %s)", info->path, part,
+                info->parts[part].type);
+}
+
+/* --- One role --- */
+
+static bool resolve_named(struct search *s, enum role_kind kind, const char *name, struct role *role,
+                          struct tool_error *err)
+{
+    search_named(s, kind, name);
+    if (s->count == 0)
+        return fail_missing(s->info, s->view, kind, name, err);
+    if (s->count > 1)
+        return fail_ambiguous(s, kind, err);
+    /* A row that knows the channel still tells what it measures. */
+    const struct hit hit = s->hits[0];
+    const struct role_row *known = NULL;
+    for (size_t i = 0; i < role_table_count && !known; i++) {
+        if (role_table[i].kind != kind)
+            continue;
+        search_row(s, &role_table[i]);
+        for (size_t h = 0; h < s->count; h++)
+            if (s->hits[h].channels[0] == hit.channels[0])
+                known = &role_table[i];
+    }
+    take_hit(s, &hit, known, role);
+    return true;
+}
+
+static bool resolve_found(struct search *s, enum role_kind kind, const struct role *depth,
+                          struct role *role, struct tool_error *err)
+{
+    for (size_t i = 0; i < role_table_count; i++) {
+        if (role_table[i].kind != kind)
+            continue;
+        search_row(s, &role_table[i]);
+        if (s->count == 0)
+            continue;
+        if (s->count > 1 && kind != ROLE_DEPTH)
+            prefer_neighbours(s, depth);
+        if (s->count > 1 && (kind == ROLE_DEPTH || kind == ROLE_NORMAL))
+            return fail_ambiguous(s, kind, err);
+        take_hit(s, &s->hits[0], &role_table[i], role);
+        return true;
+    }
+    return true;
+}
+
+bool roles_resolve(const struct exr_info *info, const struct role_request *request, struct roles *roles,
+                   struct tool_error *err)
+{
+    struct search s = {.info = info, .view = request->view ? request->view : ""};
+    *roles = (struct roles){0};
+    for (int kind = ROLE_DEPTH; kind < ROLE_KINDS; kind++) {
+        struct role *role = &roles->kind[kind];
+        const char *name = request->name[kind];
+        if (kind == ROLE_NORMAL && request->no_normals)
+            continue;
+        bool ok = name ? resolve_named(&s, (enum role_kind)kind, name, role, err)
+                       : resolve_found(&s, (enum role_kind)kind, &roles->kind[ROLE_DEPTH], role, err);
+        if (!ok)
+            return false;
+        if (kind == ROLE_DEPTH && !role->found) {
+            for (size_t p = 0; p < info->part_count; p++)
+                if (info->parts[p].deep)
+                    return fail_deep(info, p, err);
+            return fail_missing(info, s.view, ROLE_DEPTH, NULL, err);
+        }
+    }
+    return true;
+}

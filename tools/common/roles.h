@@ -1,0 +1,89 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Which channels are depth, normals and colour: found by the names that renderers use. roles_table.c is that
+ * knowledge; one row adds a renderer. */
+#ifndef VKAO_TOOLS_ROLES_H_
+#define VKAO_TOOLS_ROLES_H_
+
+#include "error.h"
+#include "exr_file.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+
+enum role_kind { ROLE_DEPTH, ROLE_NORMAL, ROLE_COLOR, ROLE_POSITION, ROLE_AO, ROLE_KINDS };
+
+/* What a depth value measures. */
+enum depth_type {
+    DEPTH_AUTO,        /* nothing known: planar */
+    DEPTH_PLANAR,      /* distance along the view axis */
+    DEPTH_RADIAL,      /* distance from the eye */
+    DEPTH_RADIAL_NEAR, /* distance along the ray from where it crosses the near plane (Mitsuba) */
+    DEPTH_INVERSE,     /* 1 / planar, 0 = infinitely far (Nuke) */
+    DEPTH_DEVICE       /* what a rasteriser's depth buffer holds, in [0,1] */
+};
+
+enum normal_space { NORMAL_SPACE_AUTO, NORMAL_SPACE_WORLD, NORMAL_SPACE_CAMERA };
+
+enum {
+    ROLE_MAX_SETS = 7,       /* spellings of the components in one row */
+    ROLE_MAX_COMPONENTS = 3, /* alpha comes on top */
+    ROLE_LABEL_MAX = 512
+};
+
+/* Where a row with bare channels (no layer) holds. */
+enum role_place { ROLE_ANYWHERE, ROLE_SINGLE_PART, ROLE_MULTI_PART };
+
+/* One way to name a role. Rows of one kind are tried in order; the first that fits wins. */
+struct role_row {
+    enum role_kind kind;
+    /* Last component of the layer, alternatives separated by '|', case ignored. NULL: no layer. "*": any layer.
+     * '~' in front: the layer contains the word. */
+    const char *layers;
+    /* Spellings of the components, case ignored; all of one set must be there. */
+    const char *sets[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS];
+    enum role_place place;
+    /* Only in parts with this channel, or in files with an attribute that starts so; NULL = no condition. */
+    const char *companion, *attribute;
+    bool in_vector; /* the component may be one of a vector's: depth of pbrt, P.Z */
+    enum depth_type depth_type;
+    enum normal_space normal_space;
+};
+
+extern const struct role_row role_table[];
+extern const size_t role_table_count;
+/* Layers that are never depth, whatever their channels are called. Lower case. */
+extern const char *const role_never_depth[];
+extern const size_t role_never_depth_count;
+
+/* A role as found. Pointers lead into the exr_info. */
+struct role {
+    bool found;
+    size_t part;
+    const struct exr_channel *channels[ROLE_MAX_COMPONENTS + 1]; /* the last: alpha of colour, or NULL */
+    size_t channel_count;                                        /* without alpha */
+    enum depth_type depth_type;     /* as the name implies, or AUTO */
+    enum normal_space normal_space; /* likewise */
+    char label[ROLE_LABEL_MAX];     /* the name, in the form that --depth, --normal and --color take */
+};
+
+struct roles {
+    struct role kind[ROLE_KINDS];
+};
+
+struct role_request {
+    const char *name[ROLE_KINDS]; /* channel, layer or part/channel; NULL = find it */
+    const char *view;             /* NULL or "" in files without views */
+    bool no_normals;              /* --normal none */
+};
+
+/* Views of a file in its order: of its parts, or of a single part's multiView attribute. */
+size_t roles_view_count(const struct exr_info *info);
+const char *roles_view_name(const struct exr_info *info, size_t index);
+
+/* Fails without depth or with several equally good hits; other roles may stay unfound, unless the request names them.
+ * Errors: EXIT_CHANNELS; EXIT_INPUT if all there is is deep data. */
+bool roles_resolve(const struct exr_info *info, const struct role_request *request, struct roles *roles,
+                   struct tool_error *err);
+
+#endif

@@ -1,0 +1,78 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Names of channels by renderer, from their sources and manuals. */
+#include "roles.h"
+
+/* clang-format off */
+#define DEPTH_COMPONENTS {{"Z"}, {"R"}, {"depth"}, {"Y"}, {"V"}, {"T"}, {"D"}}
+#define VECTOR_COMPONENTS {{"X", "Y", "Z"}, {"R", "G", "B"}}
+#define COLOR_COMPONENTS {{"R", "G", "B"}, {"red", "green", "blue"}}
+
+const struct role_row role_table[] = {
+    /* Blender Depth.Z, Arnold and Redshift Z.Z or depth.Z, Karma depth.Z, V-Ray ZDepth.R, Nuke depth.Z, parts that are
+     * named so */
+    {.kind = ROLE_DEPTH, .layers = "depth|z|linearDepth|cameraDepth|camera_depth|ZDepth|VRayZDepth|CGeometry_ZDepth",
+     .sets = DEPTH_COMPONENTS},
+    /* RenderMan, Arnold, V-Ray, Redshift, OSPRay, old Blender; Karma; Mantra; V-Ray */
+    {.kind = ROLE_DEPTH, .sets = {{"Z"}}},
+    {.kind = ROLE_DEPTH, .sets = {{"depth"}}},
+    {.kind = ROLE_DEPTH, .sets = {{"Pz"}}},
+    {.kind = ROLE_DEPTH, .sets = {{"zDepth"}, {"VRayZDepth"}}},
+    /* Unreal: FinalImageMovieRenderQueue_WorldDepth.R and relatives */
+    {.kind = ROLE_DEPTH, .layers = "~worlddepth", .sets = {{"R"}, {"Z"}}},
+    /* RenderMan's integrator */
+    {.kind = ROLE_DEPTH, .layers = "__depth", .sets = {{"R"}}},
+    /* Mitsuba: the layer is the user's, the T is Mitsuba's */
+    {.kind = ROLE_DEPTH, .layers = "*", .sets = {{"T"}}, .depth_type = DEPTH_RADIAL_NEAR},
+    /* Blender, for its denoiser */
+    {.kind = ROLE_DEPTH, .layers = "Denoising Depth", .sets = {{"Z"}}},
+    {.kind = ROLE_DEPTH, .layers = "linearZ", .sets = {{"R"}, {"Z"}}, .depth_type = DEPTH_PLANAR},
+    /* pbrt writes positions, and nothing but it writes dzdx; in camera space unless told otherwise */
+    {.kind = ROLE_DEPTH, .layers = "P", .sets = {{"Z"}}, .companion = "dzdx", .in_vector = true,
+     .depth_type = DEPTH_PLANAR},
+
+    /* pbrt: shading normals in the space of P */
+    {.kind = ROLE_NORMAL, .layers = "Ns", .sets = VECTOR_COMPONENTS, .companion = "dzdx",
+     .normal_space = NORMAL_SPACE_CAMERA},
+    {.kind = ROLE_NORMAL, .layers = "N", .sets = VECTOR_COMPONENTS, .companion = "dzdx",
+     .normal_space = NORMAL_SPACE_CAMERA},
+    /* V-Ray */
+    {.kind = ROLE_NORMAL, .layers = "VRayNormals|bump_normals|VRayBumpNormals", .sets = VECTOR_COMPONENTS,
+     .normal_space = NORMAL_SPACE_CAMERA},
+    {.kind = ROLE_NORMAL, .layers = "normals|normal", .sets = VECTOR_COMPONENTS, .attribute = "vrayInfo",
+     .normal_space = NORMAL_SPACE_CAMERA},
+    /* RenderMan */
+    {.kind = ROLE_NORMAL, .layers = "Nn", .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_CAMERA},
+    /* Blender Normal, Arnold, Redshift and Karma N, OSPRay normal, Mitsuba by its manual */
+    {.kind = ROLE_NORMAL, .layers = "Ns|sh_normal|nn|sn", .sets = VECTOR_COMPONENTS},
+    {.kind = ROLE_NORMAL, .layers = "N", .sets = VECTOR_COMPONENTS},
+    {.kind = ROLE_NORMAL, .layers = "normal", .sets = VECTOR_COMPONENTS},
+    {.kind = ROLE_NORMAL, .layers = "normals", .sets = VECTOR_COMPONENTS},
+    {.kind = ROLE_NORMAL, .layers = "__Nworld|Nworld|normal_world|normW|guideNormalW|SHADING_NORMAL|CGeometry_NormalsShading",
+     .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_WORLD},
+    /* Unreal */
+    {.kind = ROLE_NORMAL, .layers = "~worldnormal", .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_WORLD},
+    /* Geometric ones show facets, and filtered ones are blurred: better than none */
+    {.kind = ROLE_NORMAL, .layers = "gn|Ng|geo_normal|GEOMETRIC_NORMAL|CGeometry_NormalsGeometry",
+     .sets = VECTOR_COMPONENTS},
+    {.kind = ROLE_NORMAL, .layers = "N_denoise|Denoising Normal|OptiXNormals|denoise_normal",
+     .sets = VECTOR_COMPONENTS},
+
+    {.kind = ROLE_COLOR, .sets = COLOR_COMPONENTS, .place = ROLE_SINGLE_PART},
+    {.kind = ROLE_COLOR, .layers = "rgba|rgb|beauty|Combined|C|Ci|RGB_color|color|Composite", .sets = COLOR_COMPONENTS},
+    {.kind = ROLE_COLOR, .layers = "~_beauty", .sets = COLOR_COMPONENTS},
+    {.kind = ROLE_COLOR, .layers = "~FinalImage", .sets = COLOR_COMPONENTS, .attribute = "unreal/"},
+    {.kind = ROLE_COLOR, .sets = COLOR_COMPONENTS, .place = ROLE_MULTI_PART},
+
+    {.kind = ROLE_POSITION, .layers = "P|Pworld|__Pworld|position|pos|worldPosition|posW|VRayWorldPosition|CGeometry_WorldPosition",
+     .sets = VECTOR_COMPONENTS},
+
+    {.kind = ROLE_AO, .layers = "AO|ambient_occlusion|AmbientOcclusion|Ambient Occlusion|VRayExtraTex_AO",
+     .sets = {{"R"}, {"Y"}, {"AO"}, {"Z"}}},
+    {.kind = ROLE_AO, .sets = {{"AO"}}},
+};
+/* clang-format on */
+const size_t role_table_count = sizeof role_table / sizeof *role_table;
+
+const char *const role_never_depth[] = {"mist", "zback", "crypto", "uv", "motion"};
+const size_t role_never_depth_count = sizeof role_never_depth / sizeof *role_never_depth;

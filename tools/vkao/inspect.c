@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Facts are collected as JSON, once; the text is printed from it. */
+#include "commands.h"
+
+#include "plan.h"
+#include "views.h"
+
+#include <cjson/cJSON.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const kind_names[ROLE_KINDS] = {"depth", "normal", "color", "position", "ao"};
+
+/* --- Collecting --- */
+
+static void add_box(cJSON *object, const char *name, const struct exr_box *box)
+{
+    const int values[] = {box->x_min, box->y_min, box->x_max, box->y_max};
+    cJSON_AddItemToObject(object, name, cJSON_CreateIntArray(values, 4));
+}
+
+static cJSON *describe_part(const struct exr_part *part, size_t index)
+{
+    cJSON *object = cJSON_CreateObject();
+    cJSON_AddNumberToObject(object, "index", (double)index);
+    cJSON_AddStringToObject(object, "name", part->name ? part->name : "");
+    cJSON_AddStringToObject(object, "view", part->view ? part->view : "");
+    cJSON_AddStringToObject(object, "type", part->type);
+    cJSON_AddStringToObject(object, "compression", part->compression);
+    cJSON_AddStringToObject(object, "line_order", part->line_order);
+    add_box(object, "data_window", &part->data_window);
+    add_box(object, "display_window", &part->display_window);
+    cJSON_AddNumberToObject(object, "pixel_aspect", (double)part->pixel_aspect);
+    cJSON *channels = cJSON_AddArrayToObject(object, "channels");
+    for (size_t i = 0; i < part->channel_count; i++) {
+        const struct exr_channel *c = &part->channels[i];
+        cJSON *channel = cJSON_CreateObject();
+        cJSON_AddStringToObject(channel, "name", c->name);
+        cJSON_AddStringToObject(channel, "type", pixel_type_name(c->type));
+        cJSON_AddNumberToObject(channel, "x_sampling", c->x_sampling);
+        cJSON_AddNumberToObject(channel, "y_sampling", c->y_sampling);
+        cJSON_AddItemToArray(channels, channel);
+    }
+    return object;
+}
+
+static void add_roles(cJSON *object, const struct roles *roles)
+{
+    cJSON *list = cJSON_AddObjectToObject(object, "roles");
+    for (int k = 0; k < ROLE_KINDS; k++) {
+        const struct role *role = &roles->kind[k];
+        if (!role->found) {
+            cJSON_AddNullToObject(list, kind_names[k]);
+            continue;
+        }
+        cJSON *entry = cJSON_AddObjectToObject(list, kind_names[k]);
+        cJSON_AddStringToObject(entry, "name", role->label);
+        cJSON_AddNumberToObject(entry, "part", (double)role->part);
+        cJSON_AddStringToObject(entry, "type", pixel_type_name(role->channels[0]->type));
+        cJSON *channels = cJSON_AddArrayToObject(entry, "channels");
+        for (size_t c = 0; c < role->channel_count; c++)
+            cJSON_AddItemToArray(channels, cJSON_CreateString(role->channels[c]->name));
+    }
+}
+
+static void add_camera(cJSON *object, const struct camera *camera)
+{
+    cJSON *entry = cJSON_AddObjectToObject(object, "camera");
+    bool ortho = camera->type == CAMERA_ORTHOGRAPHIC;
+    cJSON_AddStringToObject(entry, "type", ortho ? "orthographic" : "perspective");
+    cJSON_AddStringToObject(entry, "source", camera->source[0] ? camera->source : "assumed");
+    if (ortho)
+        cJSON_AddNumberToObject(entry, "ortho_width", camera->half_width * 2.0);
+    else
+        cJSON_AddNumberToObject(entry, "fov_x_deg", camera_fov_x_deg(camera));
+    if (camera->near_plane > 0 && isfinite(camera->near_plane))
+        cJSON_AddNumberToObject(entry, "near", camera->near_plane);
+    if (camera->far_plane > 0 && isfinite(camera->far_plane))
+        cJSON_AddNumberToObject(entry, "far", camera->far_plane);
+    cJSON_AddNumberToObject(entry, "shift_x", camera->shift_x);
+    cJSON_AddNumberToObject(entry, "shift_y", camera->shift_y);
+    cJSON_AddStringToObject(entry, "rotation", camera->has_rotation ? camera->rotation_source : "unknown");
+}
+
+static void add_conventions(cJSON *object, const struct gbuffer *g)
+{
+    cJSON *entry = cJSON_AddObjectToObject(object, "conventions");
+    cJSON_AddStringToObject(entry, "depth_type", depth_type_name(g->depth_type));
+    if (!g->depth)
+        return; /* pixels could not be used: the problem says why */
+    cJSON_AddNumberToObject(entry, "min_z", g->min_z);
+    cJSON_AddNumberToObject(entry, "median_z", g->median_z);
+    cJSON_AddNumberToObject(entry, "max_z", g->max_z);
+    cJSON_AddNumberToObject(entry, "background_share", g->background_share);
+    cJSON_AddNumberToObject(entry, "invalid_share", g->invalid_share);
+    bool normals = g->normal_space != NORMAL_SPACE_AUTO;
+    cJSON_AddStringToObject(entry, "normal_space", normals ? normal_space_name(g->normal_space) : "none");
+    if (normals)
+        cJSON_AddStringToObject(entry, "normal_encoding", normal_encoding_name(g->normal_encoding));
+}
+
+static cJSON *describe_view(const struct options *options, const struct frame_source *source,
+                            const struct view *view, struct report *report)
+{
+    struct gbuffer_options wanted = view_options(options, view);
+    struct tool_error err = {0};
+    struct gbuffer g;
+    cJSON *object = cJSON_CreateObject();
+    wanted.want_color = false;
+    bool ok = gbuffer_load(&source->info, &wanted, view->camera, report, &g, &err);
+    cJSON_AddStringToObject(object, "name", view->name);
+    add_roles(object, &g.roles);
+    if (g.width > 0) {
+        add_camera(object, &g.camera);
+        add_conventions(object, &g);
+    }
+    if (!ok) {
+        cJSON_AddStringToObject(object, "problem", err.message);
+        cJSON_AddStringToObject(object, "hint", err.hint);
+    }
+    gbuffer_free(&g);
+    return object;
+}
+
+/* A file whose roles are not found is inspected all the same: that is what the command is for. Damaged files are an
+ * error. */
+static cJSON *describe(const struct options *options, const struct plan_frame *frame,
+                       struct report *report, struct tool_error *err)
+{
+    struct frame_source source = {0};
+    struct tool_error views_err = {0};
+    if (!frame_source_read_header(frame->input, &source, err))
+        return NULL;
+    cJSON *root = cJSON_CreateObject();
+    cJSON_AddStringToObject(root, "file", frame->input);
+    cJSON *parts = cJSON_AddArrayToObject(root, "parts");
+    for (size_t i = 0; i < source.info.part_count; i++)
+        cJSON_AddItemToArray(parts, describe_part(&source.info.parts[i], i));
+    struct options every = *options;
+    if (!every.view && !every.gbuffer.roles.name[ROLE_DEPTH])
+        every.view = roles_view_count(&source.info) > 0 ? "all" : NULL;
+    cJSON *views = cJSON_AddArrayToObject(root, "views");
+    if (!frame_source_choose_views(&every, frame->camera, &source, &views_err)) {
+        cJSON_AddStringToObject(root, "problem", views_err.message);
+        cJSON_AddStringToObject(root, "hint", views_err.hint);
+    } else {
+        for (size_t i = 0; i < source.view_count; i++)
+            cJSON_AddItemToArray(views, describe_view(options, &source, &source.views[i], report));
+    }
+    frame_source_close(&source);
+    return root;
+}
+
+/* --- Printing --- */
+
+static const char *text_of(const cJSON *object, const char *key)
+{
+    const char *text = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(object, key));
+    return text ? text : "";
+}
+
+static double number_of(const cJSON *object, const char *key)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, key);
+    return cJSON_IsNumber(item) ? item->valuedouble : 0;
+}
+
+static bool has(const cJSON *object, const char *key)
+{
+    return cJSON_GetObjectItemCaseSensitive(object, key) != NULL;
+}
+
+static void print_box(const cJSON *object, const char *key, const char *label)
+{
+    int v[4] = {0};
+    for (int i = 0; i < 4; i++)
+        v[i] = cJSON_GetArrayItem(cJSON_GetObjectItemCaseSensitive(object, key), i)->valueint;
+    printf("%s (%d,%d)-(%d,%d)", label, v[0], v[1], v[2], v[3]);
+}
+
+static void print_part(const cJSON *part)
+{
+    printf("part %d", (int)number_of(part, "index"));
+    if (*text_of(part, "name"))
+        printf(" '%s'", text_of(part, "name"));
+    if (*text_of(part, "view"))
+        printf(" view %s", text_of(part, "view"));
+    printf(": %s %s", text_of(part, "type"), text_of(part, "compression"));
+    print_box(part, "data_window", ", data");
+    print_box(part, "display_window", ", display");
+    if (fabs(number_of(part, "pixel_aspect") - 1.0) > 1e-6)
+        printf(", pixel aspect %g", number_of(part, "pixel_aspect"));
+    printf("\n");
+    const cJSON *channel;
+    cJSON_ArrayForEach(channel, cJSON_GetObjectItemCaseSensitive(part, "channels"))
+    {
+        printf("  %-5s %s", text_of(channel, "type"), text_of(channel, "name"));
+        if (number_of(channel, "x_sampling") > 1 || number_of(channel, "y_sampling") > 1)
+            printf(" (sub-sampled %gx%g)", number_of(channel, "x_sampling"),
+                   number_of(channel, "y_sampling"));
+        printf("\n");
+    }
+}
+
+static void print_camera(const cJSON *camera)
+{
+    bool ortho = strcmp(text_of(camera, "type"), "orthographic") == 0;
+    printf("  camera    %s, ", text_of(camera, "type"));
+    if (ortho)
+        printf("width %.6g", number_of(camera, "ortho_width"));
+    else
+        printf("%.4g degrees horizontal", number_of(camera, "fov_x_deg"));
+    printf(" (%s)", text_of(camera, "source"));
+    if (fabs(number_of(camera, "shift_x")) + fabs(number_of(camera, "shift_y")) > 0)
+        printf(", shift %g %g", number_of(camera, "shift_x"), number_of(camera, "shift_y"));
+    if (has(camera, "near"))
+        printf(", near %g", number_of(camera, "near"));
+    if (has(camera, "far"))
+        printf(", far %g", number_of(camera, "far"));
+    printf("; rotation: %s\n", text_of(camera, "rotation"));
+}
+
+static void print_conventions(const cJSON *c)
+{
+    printf("  depth is  %s", text_of(c, "depth_type"));
+    if (has(c, "min_z"))
+        printf(": z %.5g to %.5g, median %.5g; background %.3g %%", number_of(c, "min_z"),
+               number_of(c, "max_z"), number_of(c, "median_z"), number_of(c, "background_share") * 100);
+    if (number_of(c, "invalid_share") > 0)
+        printf(", invalid %.3g %%", number_of(c, "invalid_share") * 100);
+    printf("\n");
+    if (has(c, "normal_encoding"))
+        printf("  normals   %s space, %s\n", text_of(c, "normal_space"), text_of(c, "normal_encoding"));
+    else if (has(c, "normal_space"))
+        printf("  normals   from depth\n");
+}
+
+static void print_problem(const cJSON *object)
+{
+    if (!has(object, "problem"))
+        return;
+    printf("  problem   %s\n", text_of(object, "problem"));
+    if (*text_of(object, "hint"))
+        printf("            %s\n", text_of(object, "hint"));
+}
+
+static void print_view(const cJSON *view)
+{
+    if (*text_of(view, "name"))
+        printf("view %s\n", text_of(view, "name"));
+    const cJSON *roles = cJSON_GetObjectItemCaseSensitive(view, "roles");
+    for (int k = 0; k < ROLE_KINDS; k++) {
+        const cJSON *role = cJSON_GetObjectItemCaseSensitive(roles, kind_names[k]);
+        if (cJSON_IsObject(role))
+            printf("  %-9s %s (%s, part %d)\n", kind_names[k], text_of(role, "name"),
+                   text_of(role, "type"), (int)number_of(role, "part"));
+        else
+            printf("  %-9s -\n", kind_names[k]);
+    }
+    if (has(view, "camera"))
+        print_camera(cJSON_GetObjectItemCaseSensitive(view, "camera"));
+    if (has(view, "conventions"))
+        print_conventions(cJSON_GetObjectItemCaseSensitive(view, "conventions"));
+    print_problem(view);
+}
+
+static void print_text(const cJSON *root)
+{
+    const cJSON *item;
+    printf("%s\n", text_of(root, "file"));
+    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "parts")) print_part(item);
+    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "views")) print_view(item);
+    print_problem(root);
+}
+
+static bool print(const cJSON *root, bool json, struct tool_error *err)
+{
+    if (!json) {
+        print_text(root);
+        return true;
+    }
+    char *text = cJSON_Print(root);
+    if (!text)
+        return fail(err, EXIT_MEMORY, "out of memory");
+    puts(text);
+    free(text);
+    return true;
+}
+
+/* Of a sequence, its first frame. */
+int command_inspect(const struct options *options, struct report *report)
+{
+    struct tool_error err = {0};
+    struct plan plan;
+    if (plan_make(options, &plan, &err)) {
+        struct report silent = *report;
+        silent.verbosity = report->verbosity == REPORT_VERBOSE ? REPORT_VERBOSE : REPORT_QUIET;
+        cJSON *root = describe(options, &plan.frames[0], &silent, &err);
+        if (root)
+            print(root, options->json, &err);
+        cJSON_Delete(root);
+        plan_free(&plan);
+    }
+    if (err.code != EXIT_OK)
+        report_error(&err);
+    return err.code;
+}

@@ -1,0 +1,90 @@
+/* SPDX-License-Identifier: MIT */
+#include "atomic_file.h"
+#include "commands.h"
+#include "options.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <unistd.h>
+
+static void on_signal(int number)
+{
+    atomic_file_remove_pending();
+    _exit(128 + number);
+}
+
+static void catch_signals(void)
+{
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+    struct sigaction action = {.sa_handler = on_signal};
+    sigfillset(&action.sa_mask);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct sigaction old;
+        /* nohup and shells ignore signals on behalf of the process: leave that so. */
+        if (sigaction(numbers[i], NULL, &old) == 0 && old.sa_handler != SIG_IGN)
+            sigaction(numbers[i], &action, NULL);
+    }
+}
+
+static void print_version(void)
+{
+    uint32_t v = vkao_version(), loader = VK_API_VERSION_1_0;
+    vkEnumerateInstanceVersion(&loader);
+    printf("vkao %u.%u.%u\n", VK_API_VERSION_MAJOR(v), VK_API_VERSION_MINOR(v), VK_API_VERSION_PATCH(v));
+    printf("%s, reads and writes none rle zips zip piz pxr24 b44 b44a dwaa dwab\n",
+           exr_library_version());
+    printf("Vulkan loader %u.%u.%u\n", VK_API_VERSION_MAJOR(loader), VK_API_VERSION_MINOR(loader),
+           VK_API_VERSION_PATCH(loader));
+}
+
+static int print_help(void)
+{
+    struct text text = {0};
+    options_help(&text);
+    if (text.data && !text.out_of_memory)
+        fputs(text.data, stdout);
+    text_free(&text);
+    return EXIT_OK;
+}
+
+static int processors(void)
+{
+    long count = sysconf(_SC_NPROCESSORS_ONLN);
+    return count < 1 ? 1 : count > 64 ? 64 : (int)count;
+}
+
+static int run(const struct options *options)
+{
+    struct report report = {.verbosity = options->verbosity};
+    if (options->help)
+        return print_help();
+    if (options->version) {
+        print_version();
+        return EXIT_OK;
+    }
+    if (options->command == COMMAND_DEVICES)
+        return command_devices(options);
+    int threads = options->threads > 0 ? (int)options->threads : processors();
+    exr_set_threads(threads > 1 ? threads : 0);
+    return options->command == COMMAND_INSPECT ? command_inspect(options, &report)
+                                               : command_render(options, &report);
+}
+
+int main(int argc, char **argv)
+{
+    struct options options;
+    struct tool_error err = {0};
+    catch_signals();
+    if (!options_parse(argc, argv, &options, &err)) {
+        report_error(&err);
+        return err.code;
+    }
+    int code = run(&options);
+    /* A full disk behind 'vkao inspect > x' shows only here. */
+    if ((fflush(stdout) != 0 || ferror(stdout)) && code == EXIT_OK) {
+        fail(&err, EXIT_OUTPUT, "standard output: cannot write");
+        report_error(&err);
+        return err.code;
+    }
+    return code;
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Results to files. */
+#ifndef VKAO_TOOLS_OUTPUT_H_
+#define VKAO_TOOLS_OUTPUT_H_
+
+#include "ao.h"
+#include "error.h"
+#include "gbuffer.h"
+#include "options.h"
+#include "plan.h"
+#include "views.h"
+
+/* One view, done. */
+struct rendered_view {
+    const char *name; /* "" or the view */
+    struct gbuffer gbuffer;
+    struct ao_result result;
+    vkao_ssao_params ssao; /* as resolved: radius, bias */
+};
+
+/* Whether the new part's name is free, asked before any work. */
+bool output_check_names(const struct options *options, const struct frame_source *source,
+                        struct tool_error *err);
+/* The EXR file and, if asked for, the PNG. Errors: EXIT_OUTPUT, EXIT_MEMORY. */
+bool output_write(const struct options *options, const struct plan_frame *frame,
+                  const struct frame_source *source, const struct rendered_view *views,
+                  const char *device, struct tool_error *err);
+
+/* The record that goes into the attribute vkao/params: JSON on one line, malloc'ed; NULL if memory runs out. */
+char *output_params_json(const struct options *options, const struct rendered_view *view,
+                         const char *device);
+
+#endif

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+#include "output.h"
+
+#include <cjson/cJSON.h>
+#include <stdio.h>
+
+static const char *method_name(const struct options *o)
+{
+    return o->ssao.method == VKAO_SSAO_SPHERE ? "sphere" : "hemisphere";
+}
+
+/* Floats as the user wrote them: 0.6, not 0.60000002384185791. */
+static void add_number(cJSON *object, const char *name, float value)
+{
+    char digits[32];
+    snprintf(digits, sizeof digits, "%.7g", (double)value);
+    cJSON_AddRawToObject(object, name, digits);
+}
+
+static void add_camera(cJSON *root, const struct camera *camera)
+{
+    cJSON *object = cJSON_AddObjectToObject(root, "camera");
+    if (camera->type == CAMERA_ORTHOGRAPHIC)
+        add_number(object, "ortho_width", (float)(camera->half_width * 2.0));
+    else
+        add_number(object, "fov_x_deg", (float)camera_fov_x_deg(camera));
+    if (camera->near_plane > 0)
+        add_number(object, "near", (float)camera->near_plane);
+    cJSON_AddStringToObject(object, "source", camera->source[0] ? camera->source : "assumed");
+}
+
+char *output_params_json(const struct options *o, const struct rendered_view *view, const char *device)
+{
+    const struct gbuffer *g = &view->gbuffer;
+    cJSON *root = cJSON_CreateObject();
+    cJSON_AddStringToObject(root, "method", method_name(o));
+    if (o->ssao.method == VKAO_SSAO_SPHERE)
+        cJSON_AddStringToObject(root, "sphere_form",
+                                o->ssao.sphere_form == VKAO_SPHERE_LITERAL ? "literal" : "rescaled");
+    add_number(root, "radius", view->ssao.radius);
+    cJSON_AddStringToObject(root, "falloff",
+                            o->ssao.falloff == VKAO_FALLOFF_SMOOTH ? "smooth" : "threshold");
+    cJSON_AddNumberToObject(root, "samples", o->ssao.sample_count);
+    add_number(root, "bias", view->ssao.bias);
+    add_number(root, "intensity", o->blur.intensity);
+    add_number(root, "power", o->blur.power);
+    cJSON_AddNumberToObject(root, "blur", o->blur.radius);
+    add_number(root, "blur_sharpness", o->blur.sharpness);
+    cJSON_AddStringToObject(root, "depth", g->roles.kind[ROLE_DEPTH].label);
+    cJSON_AddStringToObject(root, "depth_type", depth_type_name(g->depth_type));
+    bool normals = g->normal_space != NORMAL_SPACE_AUTO;
+    cJSON_AddStringToObject(root, "normal", normals ? g->roles.kind[ROLE_NORMAL].label : "none");
+    if (normals)
+        cJSON_AddStringToObject(root, "normal_space", normal_space_name(g->normal_space));
+    add_camera(root, &g->camera);
+    cJSON_AddStringToObject(root, "device", device);
+    char *json = cJSON_PrintUnformatted(root);
+    cJSON_Delete(root);
+    return json;
+}

@@ -1,0 +1,260 @@
+/* SPDX-License-Identifier: MIT */
+#include "commands.h"
+
+#include "ao.h"
+#include "gpu.h"
+#include "output.h"
+#include "plan.h"
+#include "views.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+/* What stays from frame to frame. */
+struct session {
+    const struct options *options;
+    struct report *report;
+    struct gpu gpu;
+    struct ao_session *ao; /* NULL until the first frame is there to be computed */
+    float auto_radius;     /* 0 = not known yet */
+    bool summarised;
+};
+
+struct times {
+    double read, compute, write; /* milliseconds */
+};
+
+static double now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+/* --- Device --- */
+
+static bool session_start(struct session *s, struct tool_error *err)
+{
+    if (s->ao)
+        return true;
+    const struct gpu_options options = {.device = s->options->device,
+                                        .validation = s->options->validation};
+    if (!gpu_create(&options, &s->gpu, err))
+        return false;
+    s->ao = ao_session_create(&s->gpu, 1u << s->options->ssao.method, err);
+    if (!s->ao)
+        gpu_destroy(&s->gpu);
+    return s->ao != NULL;
+}
+
+static void session_end(struct session *s)
+{
+    if (!s->ao)
+        return;
+    ao_session_destroy(s->ao);
+    if (s->gpu.validation_messages > 0)
+        report_warn(s->report, "validation", "%u messages of the validation layers",
+                    s->gpu.validation_messages);
+    gpu_destroy(&s->gpu);
+    s->ao = NULL;
+}
+
+/* "llvmpipe" of "llvmpipe (LLVM 15.0.6, 256 bits)" */
+static void device_name(const struct session *s, char *name, size_t size)
+{
+    snprintf(name, size, "%s", s->gpu.properties.deviceName);
+    char *bracket = strstr(name, " (");
+    if (bracket)
+        *bracket = '\0';
+}
+
+/* --- Parameters --- */
+
+/* 5 % of the median distance, to two digits. One radius for all frames: AO must not flicker. */
+static float choose_radius(struct session *s, const struct gbuffer *g)
+{
+    if (!s->options->radius_is_auto)
+        return s->options->ssao.radius;
+    if (s->auto_radius > 0)
+        return s->auto_radius;
+    if (!(g->median_z > 0))
+        return 1.0f;
+    char digits[32];
+    snprintf(digits, sizeof digits, "%.2g", g->median_z * 0.05);
+    float radius = strtof(digits, NULL);
+    s->auto_radius = radius > 1e-18f ? radius : 1e-18f;
+    return s->auto_radius;
+}
+
+/* Steps of half depth must not occlude one another. */
+static float choose_bias(const struct session *s, const struct gbuffer *g, float radius)
+{
+    float bias = s->options->ssao.bias;
+    float step = (float)(g->depth_step / (double)radius);
+    if (s->options->bias_is_given || !(step > bias))
+        return bias;
+    bias = step < 1.0f ? step : 1.0f;
+    report_warn(s->report, "bias", "bias raised to %.2g for the steps of half depth", (double)bias);
+    return bias;
+}
+
+static void summarise(struct session *s, const struct rendered_view *view)
+{
+    const struct gbuffer *g = &view->gbuffer;
+    const struct role *depth = &g->roles.kind[ROLE_DEPTH], *normal = &g->roles.kind[ROLE_NORMAL];
+    char normals[ROLE_LABEL_MAX + 32] = "from depth", camera[160], device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
+    if (s->summarised)
+        return;
+    s->summarised = true;
+    if (g->normal_space != NORMAL_SPACE_AUTO)
+        snprintf(normals, sizeof normals, "%s (%s%s)", normal->label, normal_space_name(g->normal_space),
+                 g->normal_encoding == NORMAL_ENCODING_UNSIGNED ? ", 0..1" : "");
+    const char *source = g->camera.source[0] ? g->camera.source : "assumed";
+    if (g->camera.type == CAMERA_ORTHOGRAPHIC)
+        snprintf(camera, sizeof camera, "ortho=%.5g (%s)", g->camera.half_width * 2.0, source);
+    else
+        snprintf(camera, sizeof camera, "fov=%.3gh (%s)", camera_fov_x_deg(&g->camera), source);
+    device_name(s, device, sizeof device);
+    report_note(s->report, "using: depth=%s (%s, %s) normal=%s %s radius=%g%s device=%s", depth->label,
+                depth_type_name(g->depth_type), pixel_type_name(depth->channels[0]->type), normals,
+                camera, (double)view->ssao.radius, s->options->radius_is_auto ? " (auto)" : "", device);
+}
+
+static void tell_details(const struct session *s, const struct frame_source *source,
+                         const struct rendered_view *view)
+{
+    static const char *const names[ROLE_KINDS] = {"depth", "normal", "color", "position", "AO"};
+    const struct gbuffer *g = &view->gbuffer;
+    for (int k = 0; k < ROLE_KINDS; k++)
+        if (g->roles.kind[k].found)
+            report_detail(s->report, "%s: %s%s%s: %s (part %zu)", source->info.path, view->name,
+                          *view->name ? ": " : "", names[k], g->roles.kind[k].label,
+                          g->roles.kind[k].part);
+    report_detail(s->report, "%s: view z %.5g to %.5g, median %.5g; background %.3g %%",
+                  source->info.path, g->min_z, g->max_z, g->median_z, g->background_share * 100.0);
+}
+
+/* --- One frame --- */
+
+static bool render_view(struct session *s, const struct frame_source *source, const struct view *view,
+                        struct rendered_view *out, struct times *times, struct tool_error *err)
+{
+    const struct gbuffer_options options = view_options(s->options, view);
+    double start = now_ms();
+    out->name = view->name;
+    if (!gbuffer_load(&source->info, &options, view->camera, s->report, &out->gbuffer, err))
+        return false;
+    struct gbuffer *g = &out->gbuffer;
+    times->read += now_ms() - start;
+    out->ssao = s->options->ssao;
+    out->ssao.radius = choose_radius(s, g);
+    out->ssao.bias = choose_bias(s, g, out->ssao.radius);
+    if (!session_start(s, err))
+        return false;
+    summarise(s, out);
+    tell_details(s, source, out);
+    start = now_ms();
+    const struct ao_job job = {
+        .width = g->width,
+        .height = g->height,
+        .depth = g->depth,
+        .normals = g->normals,
+        .color = g->color,
+        .view = g->view,
+        .ssao = out->ssao,
+        .blur = s->options->blur,
+        .composite = vkao_composite_params_default(),
+    };
+    bool ok = ao_run(s->ao, &job, &out->result, err);
+    times->compute += now_ms() - start;
+    free(g->depth);
+    free(g->normals);
+    g->depth = g->normals = NULL;
+    return ok;
+}
+
+static bool render_frame(struct session *s, const struct plan_frame *frame, struct tool_error *err)
+{
+    struct frame_source source = {0};
+    struct rendered_view views[MAX_VIEWS];
+    struct times times = {0};
+    memset(views, 0, sizeof views);
+    double start = now_ms();
+    bool ok = plan_check_outputs(s->options, frame, err) &&
+              frame_source_open(s->options, frame->input, frame->camera, &source, err) &&
+              output_check_names(s->options, &source, err);
+    times.read = now_ms() - start;
+    for (size_t i = 0; ok && i < source.view_count; i++)
+        ok = render_view(s, &source, &source.views[i], &views[i], &times, err);
+    start = now_ms();
+    char device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
+    device_name(s, device, sizeof device);
+    ok = ok && output_write(s->options, frame, &source, views, device, err);
+    times.write = now_ms() - start;
+    if (ok)
+        report_detail(s->report, "%s: read %.0f ms, compute %.0f ms, write %.0f ms", frame->output,
+                      times.read, times.compute, times.write);
+    for (size_t i = 0; i < MAX_VIEWS; i++) {
+        gbuffer_free(&views[i].gbuffer);
+        ao_result_free(&views[i].result);
+    }
+    frame_source_close(&source);
+    return ok;
+}
+
+/* A missing file of a sequence: say which ones there are. */
+static void hint_at_frames(const struct plan *plan, const struct plan_frame *frame,
+                           const struct options *options, struct tool_error *err)
+{
+    if (err->code == EXIT_INPUT && plan->is_sequence && access(frame->input, F_OK) != 0)
+        fail_hint(err, "frames found: %s (pattern %s)", plan->found[0] ? plan->found : "none",
+                  options->input);
+}
+
+/* Errors that the next frame would meet again. */
+static bool is_fatal(int code)
+{
+    return code == EXIT_DEVICE || code == EXIT_MEMORY || code == EXIT_BUG;
+}
+
+static int render_plan(struct session *s, const struct plan *plan)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < plan->count; i++) {
+        const struct plan_frame *frame = &plan->frames[i];
+        struct tool_error err = {0};
+        if (plan->is_sequence)
+            report_note(s->report, "frame %zu/%zu (%" PRId64 "): %s", i + 1, plan->count, frame->number,
+                        frame->output);
+        if (render_frame(s, frame, &err))
+            continue;
+        hint_at_frames(plan, frame, s->options, &err);
+        report_error(&err);
+        if (!s->options->continue_on_error || is_fatal(err.code))
+            return err.code;
+        failed++;
+    }
+    if (failed)
+        report_note(s->report, "%zu of %zu frames failed", failed, plan->count);
+    return failed ? EXIT_SOME_FRAMES : EXIT_OK;
+}
+
+int command_render(const struct options *options, struct report *report)
+{
+    struct session session = {.options = options, .report = report};
+    struct tool_error err = {0};
+    struct plan plan;
+    if (!plan_make(options, &plan, &err)) {
+        report_error(&err);
+        return err.code;
+    }
+    int code = render_plan(&session, &plan);
+    session_end(&session);
+    plan_free(&plan);
+    return code;
+}
