@@ -82,6 +82,9 @@ static vkao_result check_info(const struct vkao_logger *log, const vkao_context_
     if (info->method_mask >> VKAO_METHOD_COUNT)
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "context.method_mask is 0x%x, want bits of 0x%x",
                            info->method_mask, (1u << VKAO_METHOD_COUNT) - 1u);
+    if ((uint32_t)info->log_level > VKAO_LOG_INFO)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "context.log_level is %d, want 0..%d",
+                           (int)info->log_level, (int)VKAO_LOG_INFO);
     const VkAllocationCallbacks *a = info->allocator;
     if (a && (!a->pfnAllocation || !a->pfnReallocation || !a->pfnFree))
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
@@ -126,8 +129,10 @@ static vkao_result create_layouts(vkao_context *ctx)
         .bindingCount = VKAO_BINDING_COUNT,
         .pBindings = bindings,
     }, ctx->allocator, &ctx->set_layout);
-    if (result != VK_SUCCESS)
+    if (result != VK_SUCCESS) {
+        ctx->set_layout = VK_NULL_HANDLE; /* drivers may leave anything behind a failure */
         return vkao_vk_failed(&ctx->log, "vkCreateDescriptorSetLayout", result);
+    }
     result = ctx->vk.CreatePipelineLayout(ctx->device, &(VkPipelineLayoutCreateInfo){
         .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
         .setLayoutCount = 1,
@@ -135,8 +140,10 @@ static vkao_result create_layouts(vkao_context *ctx)
         .pushConstantRangeCount = 1,
         .pPushConstantRanges = &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, VKAO_PUSH_BYTES},
     }, ctx->allocator, &ctx->pipeline_layout);
-    if (result != VK_SUCCESS)
+    if (result != VK_SUCCESS) {
+        ctx->pipeline_layout = VK_NULL_HANDLE;
         return vkao_vk_failed(&ctx->log, "vkCreatePipelineLayout", result);
+    }
     return VKAO_SUCCESS;
 }
 
@@ -177,11 +184,11 @@ vkao_result vkao_context_create(const vkao_context_info *caller_info, vkao_conte
 {
     struct vkao_logger silent = {0}, log;
     vkao_context_info info;
-    if (!out)
-        return VKAO_ERROR_INVALID_ARGUMENT;
-    *out = NULL;
     if (caller_info && caller_info->struct_size >= sizeof info)
         silent = (struct vkao_logger){caller_info->log, caller_info->log_user_data, caller_info->log_level};
+    if (!out)
+        return vkao_refuse(&silent, VKAO_ERROR_INVALID_ARGUMENT, "vkao_context_create: out is NULL");
+    *out = NULL;
     vkao_result result = vkao_import(&silent, "context", caller_info, &info, sizeof info);
     if (result != VKAO_SUCCESS)
         return result;

@@ -145,8 +145,10 @@ static vkao_result describe(const vkao_context *ctx, const vkao_frame_info *call
 
 vkao_result vkao_frame_scratch(const vkao_context *ctx, const vkao_frame_info *info, VkMemoryRequirements *out)
 {
-    if (!ctx || !out)
+    if (!ctx)
         return VKAO_ERROR_INVALID_ARGUMENT;
+    if (!out)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "vkao_frame_scratch: out is NULL");
     vkao_frame frame = {0};
     vkao_frame_info known;
     vkao_result result = describe(ctx, info, false, &known, &frame);
@@ -282,11 +284,12 @@ static vkao_result create_scratch(vkao_frame *frame, const vkao_frame_info *info
 
 vkao_result vkao_frame_create(const vkao_context *ctx, const vkao_frame_info *caller_info, vkao_frame **out)
 {
-    if (!out)
-        return VKAO_ERROR_INVALID_ARGUMENT;
-    *out = NULL;
+    if (out)
+        *out = NULL;
     if (!ctx)
         return VKAO_ERROR_INVALID_ARGUMENT;
+    if (!out)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "vkao_frame_create: out is NULL");
     vkao_frame described = {0};
     vkao_frame_info info;
     vkao_result result = describe(ctx, caller_info, true, &info, &described);

@@ -104,8 +104,8 @@ static vkao_result resolve_rect(const struct vkao_logger *log, const char *name,
     return VKAO_SUCCESS;
 }
 
-vkao_result view_rects(const struct vkao_logger *log, const vkao_view *view, VkExtent2D extent,
-                       struct vkao_rect *valid, struct vkao_rect *rect)
+static vkao_result resolve_rects(const struct vkao_logger *log, const vkao_view *view, VkExtent2D extent,
+                                 struct vkao_rect *valid, struct vkao_rect *rect)
 {
     struct vkao_rect image = {0, 0, extent.width, extent.height};
     vkao_result result = resolve_rect(log, "valid", view->valid, image, valid);
@@ -192,6 +192,13 @@ static vkao_result check_enums(const struct vkao_logger *log, const vkao_view *v
     return VKAO_SUCCESS;
 }
 
+vkao_result view_rects(const struct vkao_logger *log, const vkao_view *view, VkExtent2D extent,
+                       struct vkao_rect *valid, struct vkao_rect *rect)
+{
+    vkao_result result = check_enums(log, view);
+    return result == VKAO_SUCCESS ? resolve_rects(log, view, extent, valid, rect) : result;
+}
+
 vkao_result view_constants_init(const struct vkao_logger *log, const vkao_view *view, VkExtent2D extent,
                                 VkFormat depth_format, struct view_constants *out)
 {
@@ -204,7 +211,7 @@ vkao_result view_constants_init(const struct vkao_logger *log, const vkao_view *
     if (result != VKAO_SUCCESS)
         return result;
     *out = (struct view_constants){.orthographic = p.orthographic};
-    result = view_rects(log, view, extent, &out->valid, &out->rect);
+    result = resolve_rects(log, view, extent, &out->valid, &out->rect);
     if (result != VKAO_SUCCESS)
         return result;
     read_unproject(&p, view, out);
