@@ -111,8 +111,8 @@ void camera_resolve(const struct camera_flags *flags, const struct camera *file,
         camera->half_width = camera->half_height * aspect;
 }
 
-void camera_ray(const struct camera *camera, const struct exr_box *display, const struct exr_box *data,
-                double column, double row, double *x, double *y)
+void camera_ray(const struct camera *camera, const struct exr_box *display,
+                const struct exr_box *data, double column, double row, double *x, double *y)
 {
     double left = (double)data->x_min - (double)display->x_min;
     double top = (double)data->y_min - (double)display->y_min;
@@ -122,8 +122,10 @@ void camera_ray(const struct camera *camera, const struct exr_box *display, cons
     *y = camera->half_height * (raster_y + 2.0 * camera->shift_y);
 }
 
-/* Row 2 for z in [0,1] between the planes. Infinite planes are the limits of the same expression. */
-static void project_depth(const struct camera *camera, const struct camera_planes *planes, float m[16])
+/* Row 2 for z in [0,1] between the planes. Infinite planes are the limits of the same expression.
+ */
+static void project_depth(const struct camera *camera, const struct camera_planes *planes,
+                          float m[16])
 {
     double n = planes->near_plane, f = planes->far_plane;
     if (camera->type == CAMERA_ORTHOGRAPHIC) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The camera that made an image: from a JSON file, from header attributes or from the command line; and the
- * projection that the library wants. View space is +x right, +y up, looking along -z. */
+ * The camera that made an image: from a JSON file, from header attributes or from the command line;
+ * and the projection that the library wants. View space is +x right, +y up, looking along -z. */
 #ifndef VKAO_TOOLS_CAMERA_H_
 #define VKAO_TOOLS_CAMERA_H_
 
@@ -14,17 +14,18 @@
 
 enum camera_type { CAMERA_UNKNOWN, CAMERA_PERSPECTIVE, CAMERA_ORTHOGRAPHIC };
 
-/* Half sizes are those of the display window, for a perspective camera on the plane at distance 1, for an
- * orthographic one in scene units. One of them may be 0: it follows from the other by the aspect ratio. */
+/* Half sizes are those of the display window, for a perspective camera on the plane at distance 1,
+ * for an orthographic one in scene units. One of them may be 0: it follows from the other by the
+ * aspect ratio. */
 struct camera {
     enum camera_type type;
     double half_width, half_height;
-    double shift_x, shift_y;     /* in image widths and heights; NDC = raster NDC + 2 * shift, +y up */
+    double shift_x, shift_y; /* in image widths and heights; NDC = raster NDC + 2 * shift, +y up */
     double near_plane, far_plane; /* scene units; 0 = unknown */
     bool has_rotation;
-    bool axis_certain;       /* false: the header does not say whether the camera looks along +z or -z */
+    bool axis_certain; /* false: the header does not say whether the camera looks along +z or -z */
     double world_to_view[9]; /* rotation, m[row * 3 + column], for column vectors */
-    char source[64];          /* of the projection: "camera file", "cameraFov" ...; "" if there is none */
+    char source[64]; /* of the projection: "camera file", "cameraFov" ...; "" if there is none */
     char rotation_source[64];
 };
 
@@ -40,7 +41,8 @@ struct camera_set {
 
 /* Errors: EXIT_INPUT, naming file and key. */
 bool camera_set_read(const char *path, struct camera_set *set, struct tool_error *err);
-bool camera_set_parse(const char *json, const char *path, struct camera_set *set, struct tool_error *err);
+bool camera_set_parse(const char *json, const char *path, struct camera_set *set,
+                      struct tool_error *err);
 void camera_set_free(struct camera_set *set);
 /* The camera of a view, NULL if there is none. A single camera serves all views. */
 const struct camera *camera_set_find(const struct camera_set *set, const char *view);
@@ -56,17 +58,19 @@ struct camera_flags {
     double near_plane, far_plane; /* 0 = not given */
 };
 
-/* Flags before file before header, each for what it knows. Without any projection it assumes 40 degrees and leaves
- * camera->source empty. file may be NULL. The header is that of the part, or of the first part if that one has no
- * camera. Both half sizes of the result are set. */
+/* Flags before file before header, each for what it knows. Without any projection it assumes 40
+ * degrees and leaves camera->source empty. file may be NULL. The header is that of the part, or of
+ * the first part if that one has no camera. Both half sizes of the result are set. */
 void camera_resolve(const struct camera_flags *flags, const struct camera *file,
                     const struct exr_info *info, size_t part, struct camera *camera);
 
-/* Where a texel of the data window looks: x and y at z = -1 (perspective), or at the image plane (orthographic). */
-void camera_ray(const struct camera *camera, const struct exr_box *display, const struct exr_box *data,
-                double column, double row, double *x, double *y);
+/* Where a texel of the data window looks: x and y at z = -1 (perspective), or at the image plane
+ * (orthographic). */
+void camera_ray(const struct camera *camera, const struct exr_box *display,
+                const struct exr_box *data, double column, double row, double *x, double *y);
 
-/* Planes for camera_project. Perspective: far_plane may be INFINITY, near_plane too, to reverse the depth buffer. */
+/* Planes for camera_project. Perspective: far_plane may be INFINITY, near_plane too, to reverse the
+ * depth buffer. */
 struct camera_planes {
     double near_plane, far_plane;
 };

@@ -32,8 +32,8 @@ static const struct exr_attribute *find(const struct exr_part *part, const char 
     return NULL;
 }
 
-/* The index-th number of a float, double, vector or text attribute ("36.0,24.0"); 0 if there is none. Unreal writes
- * all of its numbers as text. */
+/* The index-th number of a float, double, vector or text attribute ("36.0,24.0"); 0 if there is
+ * none. Unreal writes all of its numbers as text. */
 static double number(const struct exr_part *part, const char *pattern, size_t index)
 {
     const struct exr_attribute *a = find(part, pattern);
@@ -146,8 +146,8 @@ static bool has_translation(const struct matrix *m)
     return sum > 0;
 }
 
-/* camera space to NDC. What NDC is, [0,1] with y down as specified or [-1,1] with y up as others write, shows on the
- * optical axis. */
+/* camera space to NDC. What NDC is, [0,1] with y down as specified or [-1,1] with y up as others
+ * write, shows on the optical axis. */
 static bool take_ndc(const struct matrix *m, struct camera *camera)
 {
     double z_to_w = m->m[2][3], one_to_w = m->m[3][3];
@@ -176,8 +176,10 @@ static bool take_ndc(const struct matrix *m, struct camera *camera)
     return true;
 }
 
-/* OpenEXR's camera space looks along +z, ours along -z: turn its z round, unless w says that it looks along -z. */
-static void take_world_to_camera(const struct matrix *m, bool looks_along_minus_z, struct camera *camera)
+/* OpenEXR's camera space looks along +z, ours along -z: turn its z round, unless w says that it
+ * looks along -z. */
+static void take_world_to_camera(const struct matrix *m, bool looks_along_minus_z,
+                                 struct camera *camera)
 {
     for (int row = 0; row < 3; row++) {
         double length = sqrt(m->m[0][row] * m->m[0][row] + m->m[1][row] * m->m[1][row] +
@@ -225,8 +227,8 @@ static void take_matrices(const struct exr_part *part, struct camera *camera)
 /* --- Fields of view --- */
 
 struct fov_row {
-    const char *fov;                   /* degrees, horizontal */
-    const char *focal, *sensor;        /* millimetres, if fov is NULL */
+    const char *fov;            /* degrees, horizontal */
+    const char *focal, *sensor; /* millimetres, if fov is NULL */
     bool sensor_may_be_inches;
 };
 
@@ -237,7 +239,8 @@ static const struct fov_row fov_table[] = {
     {.fov = "unreal/camera/*/fov"},
     {.fov = "arnold/camera/fov"},
     {.focal = "unreal/camera/*/focalLength", .sensor = "unreal/camera/*/sensorWidth"},
-    {.focal = "CameraFocalLength", .sensor = "CameraFilmApertureHorizontal",
+    {.focal = "CameraFocalLength",
+     .sensor = "CameraFilmApertureHorizontal",
      .sensor_may_be_inches = true},
     {.focal = "pinholeFocalLength", .sensor = "sensorOverallDimensions"},
     {.focal = "cameraFocalLength", .sensor = "cameraAperture"},

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Camera files: {"type": "perspective", "fov_x_deg": 58.7, "near": 0.1, "far": 100, "world_to_view": [[...] x 4]},
- * or {"views": {"left": {...}, "right": {...}}}. */
+ * Camera files: {"type": "perspective", "fov_x_deg": 58.7, "near": 0.1, "far": 100,
+ * "world_to_view": [[...] x 4]}, or {"views": {"left": {...}, "right": {...}}}. */
 #include "camera.h"
 
 #include "text.h"
@@ -45,12 +45,10 @@ static bool read_matrix(const struct reader *r, const cJSON *rows, double m[16])
         return wrong(r, "world_to_view", wanted);
     int i = 0;
     const cJSON *row, *item;
-    cJSON_ArrayForEach(row, rows)
-    {
+    cJSON_ArrayForEach (row, rows) {
         if (!cJSON_IsArray(row) || cJSON_GetArraySize(row) != 4)
             return wrong(r, "world_to_view", wanted);
-        cJSON_ArrayForEach(item, row)
-        {
+        cJSON_ArrayForEach (item, row) {
             if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
                 return wrong(r, "world_to_view", wanted);
             m[i++] = item->valuedouble;
@@ -153,8 +151,7 @@ static bool read_views(const cJSON *root, struct reader *r, struct camera_set *s
     if (!views)
         return add_view(set, r, root);
     const cJSON *object;
-    cJSON_ArrayForEach(object, views)
-    {
+    cJSON_ArrayForEach (object, views) {
         r->view = object->string;
         if (!add_view(set, r, object))
             return false;
@@ -162,7 +159,8 @@ static bool read_views(const cJSON *root, struct reader *r, struct camera_set *s
     return true;
 }
 
-bool camera_set_parse(const char *json, const char *path, struct camera_set *set, struct tool_error *err)
+bool camera_set_parse(const char *json, const char *path, struct camera_set *set,
+                      struct tool_error *err)
 {
     *set = (struct camera_set){0};
     const char *end = NULL;

@@ -113,6 +113,8 @@ struct exr_new_part {
     size_t attributes_from_part;
     const struct exr_matrix *matrices; /* m44f attributes to add */
     size_t matrix_count;
+    float level; /* zip and zips: effort, 1 to 9; dwaa and dwab: error, about 1 to 1000.
+                  * 0 = OpenEXR's defaults, 4 and 45 */
 };
 
 /* Writes a new file. With copy_from every part of that file is copied first, its pixels as raw

@@ -12,6 +12,7 @@
 #include <ImfDeepTiledOutputPart.h>
 #include <ImfFrameBuffer.h>
 #include <ImfInputPart.h>
+#include <ImfMatrixAttribute.h>
 #include <ImfMultiPartOutputFile.h>
 #include <ImfOutputPart.h>
 #include <ImfPartType.h>
@@ -167,6 +168,10 @@ Imf::Header new_header(const char *path, const exr_new_part &part, const Imf::He
                        first ? first->pixelAspectRatio() : part.pixel_aspect);
     copy_attributes(from, first, header);
     header.compression() = compression_number(path, part.compression);
+    if (part.level > 0) {
+        header.zipCompressionLevel() = std::min(int(part.level), 9);
+        header.dwaCompressionLevel() = part.level;
+    }
     header.setType(Imf::SCANLINEIMAGE);
     if (part.name && part.name[0])
         header.setName(part.name);
@@ -177,6 +182,11 @@ Imf::Header new_header(const char *path, const exr_new_part &part, const Imf::He
                                  Imf::Channel(Imf::PixelType(part.channels[i].type)));
     for (size_t i = 0; i < part.string_count; i++)
         insert(header, part.strings[i].name, Imf::StringAttribute(part.strings[i].value));
+    for (size_t i = 0; i < part.matrix_count; i++) {
+        Imath::M44f m;
+        std::copy_n(part.matrices[i].m, 16, m.getValue());
+        insert(header, part.matrices[i].name, Imf::M44fAttribute(m));
+    }
     return header;
 }
 

@@ -77,11 +77,13 @@ static bool read_range(const char *spec, const char **at, enum frame_syntax synt
     if (**at == ':' && syntax == FRAME_SYNTAX_VFX) {
         fail_hint(err, "write 1-10x2 (step) or pass --frames-syntax openjd");
         return fail(err, EXIT_USAGE,
-                    "frames '%s': ':' means step in OpenJD but interleave in fileseq/OpenCue", spec);
+                    "frames '%s': ':' means step in OpenJD but interleave in fileseq/OpenCue",
+                    spec);
     }
     if (**at == 'y' || **at == 'Y') {
         fail_hint(err, "list the frames: 1-3,5-7");
-        return fail(err, EXIT_USAGE, "frames '%s': 'y' (all but every n-th) is not supported", spec);
+        return fail(err, EXIT_USAGE, "frames '%s': 'y' (all but every n-th) is not supported",
+                    spec);
     }
     if (**at == 'x' || **at == ':') {
         (*at)++;
@@ -176,13 +178,14 @@ void frame_list_describe(const struct frame_list *list, char *buffer, size_t siz
     buffer[0] = '\0';
     for (size_t i = 0; i < list->count;) {
         size_t end = i;
-        while (end + 1 < list->count && list->frames[end + 1].number == list->frames[end].number + 1)
+        while (end + 1 < list->count &&
+               list->frames[end + 1].number == list->frames[end].number + 1)
             end++;
         char item[64];
-        int length =
-            end > i ? snprintf(item, sizeof item, "%s%" PRId64 "-%" PRId64, i ? ", " : "",
-                               list->frames[i].number, list->frames[end].number)
-                    : snprintf(item, sizeof item, "%s%" PRId64, i ? ", " : "", list->frames[i].number);
+        int length = end > i ? snprintf(item, sizeof item, "%s%" PRId64 "-%" PRId64, i ? ", " : "",
+                                        list->frames[i].number, list->frames[end].number)
+                             : snprintf(item, sizeof item, "%s%" PRId64, i ? ", " : "",
+                                        list->frames[i].number);
         if (used + (size_t)length + sizeof ", ..." > size) {
             snprintf(buffer + used, size - used, ", ...");
             return;
@@ -240,7 +243,8 @@ bool frame_pattern_parse(const char *path, struct frame_pattern *pattern, struct
         if (find_token(token + length, &second, &unused))
             return fail(err, EXIT_USAGE, "%s: more than one frame token in the file name", path);
         if (pattern->digits > MAX_DIGITS)
-            return fail(err, EXIT_USAGE, "%s: frame numbers have at most %d digits", path, MAX_DIGITS);
+            return fail(err, EXIT_USAGE, "%s: frame numbers have at most %d digits", path,
+                        MAX_DIGITS);
         pattern->suffix = text_copy(token + length, strlen(token + length));
     }
     pattern->prefix = text_copy(path, token ? (size_t)(token - path) : strlen(path));

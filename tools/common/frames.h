@@ -10,8 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* How A-B:S is read: as a step in OpenJD, where S is a step; everywhere else it is refused, since other tools
- * interleave there. */
+/* How A-B:S is read: as a step in OpenJD, where S is a step; everywhere else it is refused, since
+ * other tools interleave there. */
 enum frame_syntax { FRAME_SYNTAX_VFX, FRAME_SYNTAX_OPENJD };
 
 struct frame {
@@ -24,16 +24,16 @@ struct frame_list {
     size_t count;
 };
 
-/* A, A-B, A-BxS, comma lists, negative numbers, B-A for the reverse; repeated numbers count once. Errors:
- * EXIT_USAGE. */
+/* A, A-B, A-BxS, comma lists, negative numbers, B-A for the reverse; repeated numbers count once.
+ * Errors: EXIT_USAGE. */
 bool frame_list_parse(const char *spec, enum frame_syntax syntax, struct frame_list *list,
                       struct tool_error *err);
 void frame_list_free(struct frame_list *list);
 /* "1-99, 102-240" of a sorted list, cut with "..." where buffer ends. */
 void frame_list_describe(const struct frame_list *list, char *buffer, size_t size);
 
-/* A path with at most one frame token in its last component: a run of # or @ (one # alone means four digits), %d,
- * %4d, %04d, $F or $F4. */
+/* A path with at most one frame token in its last component: a run of # or @ (one # alone means
+ * four digits), %d, %4d, %04d, $F or $F4. */
 struct frame_pattern {
     char *prefix; /* all of the path before the token */
     char *suffix; /* and behind it; NULL if there is no token */
@@ -46,8 +46,8 @@ void frame_pattern_free(struct frame_pattern *pattern);
 bool frame_pattern_has_token(const struct frame_pattern *pattern);
 /* The path of one frame, malloc'ed; NULL if memory runs out. */
 char *frame_pattern_path(const struct frame_pattern *pattern, int64_t number);
-/* Existing files of the pattern with any number of digits, sorted by number. Where two files have the same number,
- * the one that is padded as the pattern says counts. No files is not an error. */
+/* Existing files of the pattern with any number of digits, sorted by number. Where two files have
+ * the same number, the one that is padded as the pattern says counts. No files is not an error. */
 bool frame_pattern_scan(const struct frame_pattern *pattern, struct frame_list *list,
                         struct tool_error *err);
 

@@ -10,7 +10,8 @@
 
 const char *depth_type_name(enum depth_type type)
 {
-    static const char *const names[] = {"auto", "planar", "radial", "radial-near", "inverse", "device"};
+    static const char *const names[] = {"auto",        "planar",  "radial",
+                                        "radial-near", "inverse", "device"};
     return names[type];
 }
 
@@ -51,8 +52,9 @@ static bool check_role(const struct exr_info *info, const struct role *role, str
     for (size_t i = 0; i <= ROLE_MAX_COMPONENTS; i++) {
         const struct exr_channel *c = role->channels[i];
         if (c && (c->x_sampling != 1 || c->y_sampling != 1))
-            return fail(err, EXIT_INPUT, "%s: channel '%s' is sub-sampled %dx%d, want full resolution",
-                        info->path, c->name, (int)c->x_sampling, (int)c->y_sampling);
+            return fail(err, EXIT_INPUT,
+                        "%s: channel '%s' is sub-sampled %dx%d, want full resolution", info->path,
+                        c->name, (int)c->x_sampling, (int)c->y_sampling);
     }
     return true;
 }
@@ -92,8 +94,8 @@ static void copy_overlap(float *dst, const struct exr_box *dst_box, const float 
     }
 }
 
-/* A role with four floats per texel in the window of the depth; what its own window lacks is zero, and so is a
- * missing fourth component. */
+/* A role with four floats per texel in the window of the depth; what its own window lacks is zero,
+ * and so is a missing fourth component. */
 static float *read_vector(const struct exr_info *info, const struct gbuffer *g,
                           const struct role *role, struct tool_error *err)
 {
@@ -158,8 +160,8 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
     int64_t width = (int64_t)part->data_window.x_max - part->data_window.x_min + 1;
     int64_t height = (int64_t)part->data_window.y_max - part->data_window.y_min + 1;
     if (width < 1 || height < 1 || width > MAX_EXTENT || height > MAX_EXTENT)
-        return fail(err, EXIT_INPUT, "%s: data window is %lld x %lld, want 1 to %d texels", info->path,
-                    (long long)width, (long long)height, MAX_EXTENT);
+        return fail(err, EXIT_INPUT, "%s: data window is %lld x %lld, want 1 to %d texels",
+                    info->path, (long long)width, (long long)height, MAX_EXTENT);
     g->width = (uint32_t)width;
     g->height = (uint32_t)height;
     g->data_window = part->data_window;

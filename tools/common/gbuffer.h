@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * One view of one EXR file, loaded and made ready for the library: depth cleaned and in one of its encodings, normals
- * signed, colour as RGBA, all in the data window of the depth, and the vkao_view that describes them. */
+ * One view of one EXR file, loaded and made ready for the library: depth cleaned and in one of its
+ * encodings, normals signed, colour as RGBA, all in the data window of the depth, and the vkao_view
+ * that describes them. */
 #ifndef VKAO_TOOLS_GBUFFER_H_
 #define VKAO_TOOLS_GBUFFER_H_
 
@@ -33,24 +34,24 @@ struct gbuffer {
     struct exr_box data_window, display_window; /* of the depth part */
     float pixel_aspect;
 
-    float *depth;   /* width * height, as view.depth_encoding says; background is background_depth */
+    float *depth; /* width * height, as view.depth_encoding says; background is background_depth */
     float *normals; /* width * height * 4, xyz in [-1,1]; NULL: from depth */
     float *color;   /* width * height * 4 RGBA; NULL: not wanted */
     float background_depth;
     bool color_has_alpha; /* else alpha is 1 throughout */
 
-    enum depth_type depth_type; /* of the file, never AUTO */
+    enum depth_type depth_type;     /* of the file, never AUTO */
     enum normal_space normal_space; /* AUTO if there are no normals */
     enum normal_encoding normal_encoding;
     double min_z, median_z, max_z; /* view z of the foreground, scene units; 0 if there is none */
     double background_share;       /* [0,1], with the invalid ones */
     double invalid_share;          /* [0,1] of NaN, -Inf and negative values */
-    double depth_step;             /* distance between neighbouring half values at the median; 0 for float */
+    double depth_step; /* distance between neighbouring half values at the median; 0 for float */
     vkao_view view;
 };
 
-/* camera_file may be NULL. Errors: EXIT_INPUT, EXIT_CHANNELS, EXIT_MEMORY; *gbuffer is then empty but for what was
- * resolved: roles, camera and windows, for `vkao inspect`. */
+/* camera_file may be NULL. Errors: EXIT_INPUT, EXIT_CHANNELS, EXIT_MEMORY; *gbuffer is then empty
+ * but for what was resolved: roles, camera and windows, for `vkao inspect`. */
 bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *options,
                   const struct camera *camera_file, struct report *report, struct gbuffer *gbuffer,
                   struct tool_error *err);

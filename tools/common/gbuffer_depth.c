@@ -5,7 +5,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What renderers write where there is nothing: Falcor, Cycles, Arnold, clip ranges. No scene measures exactly this. */
+/* What renderers write where there is nothing: Falcor, Cycles, Arnold, clip ranges. No scene
+ * measures exactly this. */
 static bool is_sentinel(float z)
 {
     static const float values[] = {1e8f, 1e10f, 1e12f, 1e20f, 1e30f, FLT_MAX};
@@ -87,7 +88,8 @@ static double ray_length(const struct gbuffer *g, size_t texel)
     return sqrt(1.0 + x * x + y * y);
 }
 
-/* Rays of Mitsuba start at the near plane; in double, since the result is compared with that of planar files. */
+/* Rays of Mitsuba start at the near plane; in double, since the result is compared with that of
+ * planar files. */
 static void near_ray_to_planar(struct gbuffer *g)
 {
     for (size_t i = 0; i < gbuffer_texels(g); i++)
@@ -132,7 +134,8 @@ static bool measure(struct gbuffer *g)
     return true;
 }
 
-/* Depth that is no device depth needs no exact planes, only ones that leave all of the scene between them. */
+/* Depth that is no device depth needs no exact planes, only ones that leave all of the scene
+ * between them. */
 static struct camera_planes enclosing_planes(const struct gbuffer *g)
 {
     struct camera_planes planes = {.near_plane = 0.1, .far_plane = INFINITY};
@@ -172,19 +175,21 @@ static bool check_planes(const struct gbuffer *g, const char *path, struct tool_
 static void warn_about_depth(const struct gbuffer *g, const char *path, struct report *report)
 {
     if (g->invalid_share > 0)
-        report_warn(report, "invalid depth",
-                    "%s: %.2g %% of depth values are NaN, negative or out of range: treated as background",
-                    path, g->invalid_share * 100.0);
+        report_warn(
+            report, "invalid depth",
+            "%s: %.2g %% of depth values are NaN, negative or out of range: treated as background",
+            path, g->invalid_share * 100.0);
     if (!(g->median_z > 0))
         report_warn(report, "no depth", "%s: all depth is background: AO is 1 everywhere", path);
     if (g->depth_step > 0)
-        report_warn(report, "half depth",
-                    "%s: depth is HALF; at the median distance %.4g the step is %.2g: expect banding",
-                    path, g->median_z, g->depth_step);
+        report_warn(
+            report, "half depth",
+            "%s: depth is HALF; at the median distance %.4g the step is %.2g: expect banding", path,
+            g->median_z, g->depth_step);
 }
 
-bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
-                           struct report *report, struct tool_error *err)
+bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *options,
+                           const char *path, struct report *report, struct tool_error *err)
 {
     (void)options;
     struct camera_planes planes = {g->camera.near_plane, g->camera.far_plane};

@@ -30,8 +30,8 @@ static inline bool gbuffer_is_foreground(const struct gbuffer *g, size_t texel)
 double gbuffer_median(double *values, size_t count);
 
 /* Depth as read becomes depth as the library takes it; fills projection and statistics. */
-bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
-                           struct report *report, struct tool_error *err);
+bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *options,
+                           const char *path, struct report *report, struct tool_error *err);
 /* Needs the depth. g->normals as read becomes signed, or is freed. */
 bool gbuffer_prepare_normals(struct gbuffer *g, const struct gbuffer_options *options,
                              const char *path, struct report *report, struct tool_error *err);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Normals come in world or camera space, signed or as colours, and no header says which. Names and the pixels do:
- * what the camera sees faces it. */
+ * Normals come in world or camera space, signed or as colours, and no header says which. Names and
+ * the pixels do: what the camera sees faces it. */
 #include "gbuffer_internal.h"
 
 #include <math.h>
@@ -26,14 +26,16 @@ static bool finite3(const float *n)
 
 struct encoding_facts {
     bool any_negative;
-    double signed_length, unsigned_length; /* medians of |n| and of |2n - 1|, over what is not zero */
+    double signed_length,
+        unsigned_length; /* medians of |n| and of |2n - 1|, over what is not zero */
     size_t count;
 };
 
 static bool measure_encoding(const struct gbuffer *g, struct encoding_facts *facts)
 {
     size_t step = gbuffer_sample_step(g), room = gbuffer_texels(g) / step + 1;
-    double *as_signed = malloc(room * sizeof *as_signed), *as_unsigned = malloc(room * sizeof *as_unsigned);
+    double *as_signed = malloc(room * sizeof *as_signed),
+           *as_unsigned = malloc(room * sizeof *as_unsigned);
     *facts = (struct encoding_facts){0};
     for (size_t i = 0; as_signed && as_unsigned && i < gbuffer_texels(g); i += step) {
         const float *n = g->normals + i * 4;
@@ -73,9 +75,10 @@ static bool resolve_encoding(struct gbuffer *g, enum normal_encoding wanted, con
         return true;
     if (!unit_length(facts.unsigned_length)) {
         fail_hint(err, "add --normal-encoding signed or unsigned, or --normal none");
-        return fail(err, EXIT_CHANNELS,
-                    "%s: normals '%s' are neither signed nor 0..1 encoded: median length %.3g and %.3g",
-                    path, g->roles.kind[ROLE_NORMAL].label, facts.signed_length, facts.unsigned_length);
+        return fail(
+            err, EXIT_CHANNELS,
+            "%s: normals '%s' are neither signed nor 0..1 encoded: median length %.3g and %.3g",
+            path, g->roles.kind[ROLE_NORMAL].label, facts.signed_length, facts.unsigned_length);
     }
     g->normal_encoding = NORMAL_ENCODING_UNSIGNED;
     report_warn(report, "unsigned normals",
@@ -84,8 +87,8 @@ static bool resolve_encoding(struct gbuffer *g, enum normal_encoding wanted, con
     return true;
 }
 
-/* The library replaces zero normals by those of the depth. What lies outside the part's data window is zero too, and
- * must not be decoded. */
+/* The library replaces zero normals by those of the depth. What lies outside the part's data window
+ * is zero too, and must not be decoded. */
 static void decode(struct gbuffer *g)
 {
     for (size_t i = 0; i < gbuffer_texels(g); i++) {
@@ -181,7 +184,8 @@ static void drop_normals(struct gbuffer *g)
 static bool fail_without_rotation(const char *path, struct tool_error *err)
 {
     fail_hint(err, "add --camera FILE.json with \"world_to_view\", or --normal none");
-    return fail(err, EXIT_CHANNELS, "%s: world-space normals need the rotation of the camera", path);
+    return fail(err, EXIT_CHANNELS, "%s: world-space normals need the rotation of the camera",
+                path);
 }
 
 /* World and camera matrices and how well they fit, then the choice. */
@@ -205,14 +209,15 @@ static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const cha
         by_world.share < 0.9) {
         space = NORMAL_SPACE_CAMERA;
         report_warn(report, "camera normals",
-                    "%s: normals '%s' are camera-space by their looks (--normal-space overrides)", path,
-                    role->label);
+                    "%s: normals '%s' are camera-space by their looks (--normal-space overrides)",
+                    path, role->label);
     }
     if (space == NORMAL_SPACE_AUTO || (space == NORMAL_SPACE_WORLD && !rotation)) {
-        report_warn(report, "world normals",
-                    "%s: normals '%s' need the rotation of the camera, which is unknown: deriving them "
-                    "from depth (--camera FILE.json gives it)",
-                    path, role->label);
+        report_warn(
+            report, "world normals",
+            "%s: normals '%s' need the rotation of the camera, which is unknown: deriving them "
+            "from depth (--camera FILE.json gives it)",
+            path, role->label);
         drop_normals(g);
         return true;
     }
@@ -220,10 +225,11 @@ static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const cha
     const struct facing *chosen = in_world ? &by_world : &by_camera;
     memcpy(g->view.normal_to_view, in_world ? world : camera, sizeof world);
     if (chosen->share < 0.6)
-        report_warn(report, "facing normals",
-                    "%s: %.0f %% of the normals face away from the camera: is --normal-space or the "
-                    "camera wrong?",
-                    path, (1.0 - chosen->share) * 100.0);
+        report_warn(
+            report, "facing normals",
+            "%s: %.0f %% of the normals face away from the camera: is --normal-space or the "
+            "camera wrong?",
+            path, (1.0 - chosen->share) * 100.0);
     g->normal_space = space;
     return true;
 }

@@ -38,14 +38,15 @@ static void on_warning(png_structp png, png_const_charp message)
 }
 
 /* libpng leaves by longjmp: nothing here may be needed afterwards that changes after setjmp. */
-static bool encode(struct sink *sink, png_structp png, png_infop info, uint32_t width, uint32_t height,
-                   unsigned channels, const uint8_t *pixels)
+static bool encode(struct sink *sink, png_structp png, png_infop info, uint32_t width,
+                   uint32_t height, unsigned channels, const uint8_t *pixels)
 {
     if (setjmp(png_jmpbuf(png)))
         return false;
     png_set_write_fn(png, sink, write_bytes, flush_nothing);
-    png_set_IHDR(png, info, width, height, 8, channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, info, width, height, 8,
+                 channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_write_info(png, info);
     for (size_t row = 0; row < height; row++)
         png_write_row(png, pixels + row * width * channels);

@@ -19,7 +19,8 @@ struct report {
 
 /* Whatever the verbosity. */
 void report_error(const struct tool_error *err);
-/* Once per key, which must be a string literal; silent when quiet. Warnings of a sequence would be noise otherwise. */
+/* Once per key, which must be a string literal; silent when quiet. Warnings of a sequence would be
+ * noise otherwise. */
 void report_warn(struct report *report, const char *key, const char *format, ...) TOOL_PRINTF(3, 4);
 /* Progress and summaries, at normal verbosity. */
 void report_note(const struct report *report, const char *format, ...) TOOL_PRINTF(2, 3);

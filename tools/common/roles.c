@@ -1,28 +1,18 @@
 /* SPDX-License-Identifier: MIT */
-#include "roles.h"
+#include "roles_internal.h"
 
 #include "text.h"
 
-#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_HITS = 16, NAME_MAX_BYTES = 256 };
+enum { MAX_HITS = 16 };
 
 static const char *const kind_names[ROLE_KINDS] = {"depth", "normal", "color", "position", "AO"};
 
-/* A channel's name taken apart: layers 'A.B', component 'Z', without its view. */
-struct name {
-    char layer[NAME_MAX_BYTES];
-    const char *leaf;      /* last component of layer */
-    const char *component; /* points into the channel's own name */
-    bool bare;             /* no layer in the channel's name: layer is that of the part */
-};
-
 struct hit {
     size_t part;
-    char layer[NAME_MAX_BYTES];
-    const char *component;
+    char layer[ROLE_NAME_BYTES];
     size_t set;
     const struct exr_channel *channels[ROLE_MAX_COMPONENTS + 1];
     size_t channel_count;
@@ -36,166 +26,23 @@ struct search {
     size_t count;
 };
 
-/* --- Views --- */
-
-static bool first_with_view(const struct exr_info *info, size_t part)
-{
-    const char *view = info->parts[part].view;
-    if (!view || !*view)
-        return false;
-    for (size_t i = 0; i < part; i++)
-        if (info->parts[i].view && strcmp(info->parts[i].view, view) == 0)
-            return false;
-    return true;
-}
-
-size_t roles_view_count(const struct exr_info *info)
-{
-    if (info->part_count == 1 && info->parts[0].multi_view_count > 0)
-        return info->parts[0].multi_view_count;
-    size_t count = 0;
-    for (size_t i = 0; i < info->part_count; i++)
-        count += first_with_view(info, i);
-    return count;
-}
-
-const char *roles_view_name(const struct exr_info *info, size_t index)
-{
-    if (info->part_count == 1 && info->parts[0].multi_view_count > 0)
-        return info->parts[0].multi_view[index];
-    for (size_t i = 0; i < info->part_count; i++)
-        if (first_with_view(info, i) && index-- == 0)
-            return info->parts[i].view;
-    return "";
-}
-
-static bool part_has_view(const struct exr_part *part, const char *view)
-{
-    return !part->deep && (!*view || !part->view || !*part->view || strcmp(part->view, view) == 0);
-}
-
-/* --- Names --- */
-
-/* Parts of one pass and view are called depth_left or ViewLayer.Depth-left: the layer is what stands before. */
-static void part_layer(const struct exr_part *part, char layer[NAME_MAX_BYTES])
-{
-    snprintf(layer, NAME_MAX_BYTES, "%s", part->name ? part->name : "");
-    size_t length = strlen(layer), view = part->view ? strlen(part->view) : 0;
-    if (view && length > view + 1 && strcmp(layer + length - view, part->view) == 0 &&
-        strchr("-_.", layer[length - view - 1]))
-        layer[length - view - 1] = '\0';
-}
-
-static bool is_view(const struct exr_part *part, const char *word, size_t length)
-{
-    for (size_t i = 0; i < part->multi_view_count; i++)
-        if (strlen(part->multi_view[i]) == length &&
-            strncmp(part->multi_view[i], word, length) == 0)
-            return true;
-    return false;
-}
-
-/* In single-part stereo files the last but one component is the view (Blender names all views so, OpenEXR leaves out
- * the default one). False if the channel belongs to another view than the wanted one. */
-static bool take_apart(const struct exr_part *part, const char *channel, const char *view,
-                       bool multi_part, struct name *name)
-{
-    const char *dot = strrchr(channel, '.');
-    size_t layer = dot ? (size_t)(dot - channel) : 0;
-    name->component = dot ? dot + 1 : channel;
-    if (part->multi_view_count) {
-        size_t start = layer;
-        while (start > 0 && channel[start - 1] != '.')
-            start--;
-        const char *owner = part->multi_view[0];
-        size_t owner_length = strlen(owner);
-        if (dot && is_view(part, channel + start, layer - start)) {
-            owner = channel + start;
-            owner_length = layer - start;
-            layer = start > 0 ? start - 1 : 0;
-        }
-        if (*view && (strlen(view) != owner_length || strncmp(owner, view, owner_length) != 0))
-            return false;
-    }
-    name->bare = layer == 0;
-    if (name->bare && multi_part)
-        part_layer(part, name->layer);
-    else
-        snprintf(name->layer, sizeof name->layer, "%.*s", (int)layer, channel);
-    const char *leaf = strrchr(name->layer, '.');
-    name->leaf = leaf ? leaf + 1 : name->layer;
-    return true;
-}
-
-static bool contains_nocase(const char *text, const char *word, size_t length)
-{
-    for (; *text; text++) {
-        size_t i = 0;
-        while (i < length && tolower((unsigned char)text[i]) == tolower((unsigned char)word[i]))
-            i++;
-        if (i == length)
-            return true;
-    }
-    return false;
-}
-
-/* Whether leaf is one of the alternatives in layers. */
-static bool layer_fits(const char *layers, const char *leaf)
-{
-    if (layers[0] == '*')
-        return true;
-    if (layers[0] == '~')
-        return contains_nocase(leaf, layers + 1, strlen(layers + 1));
-    size_t length = strlen(leaf);
-    for (const char *p = layers; length; p++) {
-        size_t word = strcspn(p, "|");
-        if (word == length && contains_nocase(leaf, p, word))
-            return true;
-        p += word;
-        if (!*p)
-            break;
-    }
-    return false;
-}
-
-/* Bare R, G, B of a part called 'N' are normals, not colour; a part called 'beauty' may hold anything. */
-static bool part_name_forbids(const char *leaf, enum role_kind kind)
-{
-    for (size_t i = 0; *leaf && i < role_table_count; i++) {
-        const struct role_row *row = &role_table[i];
-        if (row->layers && row->layers[0] != '*' && row->kind != kind && row->kind != ROLE_COLOR &&
-            layer_fits(row->layers, leaf))
-            return true;
-    }
-    return false;
-}
-
-static bool never_depth(const struct name *name)
-{
-    for (size_t i = 0; i < role_never_depth_count; i++) {
-        const char *word = role_never_depth[i];
-        if (contains_nocase(name->leaf, word, strlen(word)) || text_equal_nocase(name->component, word))
-            return true;
-    }
-    return false;
-}
-
 /* --- Matching --- */
 
-static bool same_layer(const struct name *a, const struct name *b)
+static bool same_layer(const struct channel_name *a, const struct channel_name *b)
 {
     return a->bare == b->bare && strcmp(a->layer, b->layer) == 0;
 }
 
 /* The sibling of a channel with another component; the same case of letters is preferred. */
 static const struct exr_channel *sibling(const struct search *s, size_t part_index,
-                                         const struct name *name, const char *component)
+                                         const struct channel_name *name, const char *component)
 {
     const struct exr_part *part = &s->info->parts[part_index];
     const struct exr_channel *found = NULL;
     for (size_t i = 0; i < part->channel_count; i++) {
-        struct name other;
-        if (!take_apart(part, part->channels[i].name, s->view, s->info->part_count > 1, &other) ||
+        struct channel_name other;
+        if (!channel_name_read(part, part->channels[i].name, s->view, s->info->part_count > 1,
+                               &other) ||
             !same_layer(name, &other) || !text_equal_nocase(other.component, component))
             continue;
         if (!found || strcmp(other.component, component) == 0)
@@ -204,7 +51,7 @@ static const struct exr_channel *sibling(const struct search *s, size_t part_ind
     return found;
 }
 
-static bool is_vector(const struct search *s, size_t part, const struct name *name)
+static bool is_vector(const struct search *s, size_t part, const struct channel_name *name)
 {
     return sibling(s, part, name, "X") && sibling(s, part, name, "Y");
 }
@@ -224,13 +71,13 @@ static bool row_applies(const struct search *s, const struct role_row *row, size
 }
 
 static bool row_fits(const struct search *s, const struct role_row *row, size_t part,
-                     const struct name *name)
+                     const struct channel_name *name)
 {
     bool layer = row->layers ? layer_fits(row->layers, name->leaf)
                              : name->bare && !part_name_forbids(name->leaf, row->kind);
     if (!layer || row->kind != ROLE_DEPTH)
         return layer;
-    return !never_depth(name) && (row->in_vector || !is_vector(s, part, name));
+    return !channel_name_is_never_depth(name) && (row->in_vector || !is_vector(s, part, name));
 }
 
 /* Remembers the hit, or a better spelling of one in the same layer. */
@@ -238,7 +85,8 @@ static void add_hit(struct search *s, const struct hit *hit)
 {
     for (size_t i = 0; i < s->count; i++) {
         struct hit *old = &s->hits[i];
-        if (old->part == hit->part && old->bare == hit->bare && strcmp(old->layer, hit->layer) == 0) {
+        if (old->part == hit->part && old->bare == hit->bare &&
+            strcmp(old->layer, hit->layer) == 0) {
             if (hit->set < old->set)
                 *old = *hit;
             return;
@@ -250,7 +98,7 @@ static void add_hit(struct search *s, const struct hit *hit)
 
 /* Adds a hit if the channel is the first component of a set that is there as a whole. */
 static void match_sets(struct search *s, const char *const sets[][ROLE_MAX_COMPONENTS], size_t part,
-                       const struct name *name)
+                       const struct channel_name *name)
 {
     for (size_t set = 0; set < ROLE_MAX_SETS && sets[set][0]; set++) {
         if (!text_equal_nocase(name->component, sets[set][0]))
@@ -276,8 +124,9 @@ static void search_row(struct search *s, const struct role_row *row)
         if (!part_has_view(part, s->view) || !row_applies(s, row, p))
             continue;
         for (size_t c = 0; c < part->channel_count; c++) {
-            struct name name;
-            if (take_apart(part, part->channels[c].name, s->view, s->info->part_count > 1, &name) &&
+            struct channel_name name;
+            if (channel_name_read(part, part->channels[c].name, s->view, s->info->part_count > 1,
+                                  &name) &&
                 row_fits(s, row, p, &name))
                 match_sets(s, row->sets, p, &name);
         }
@@ -286,8 +135,9 @@ static void search_row(struct search *s, const struct role_row *row)
 
 /* --- Names given by the user --- */
 
-static bool names_layer(const struct search *s, size_t part_index, const struct exr_channel *channel,
-                        const struct name *name, const char *wanted)
+static bool names_layer(const struct search *s, size_t part_index,
+                        const struct exr_channel *channel, const struct channel_name *name,
+                        const char *wanted)
 {
     const struct exr_part *part = &s->info->parts[part_index];
     size_t length = strlen(wanted);
@@ -301,10 +151,10 @@ static void search_channel(struct search *s, size_t part, const char *wanted)
 {
     const struct exr_part *p = &s->info->parts[part];
     for (size_t c = 0; c < p->channel_count; c++) {
-        struct name name;
-        if (!take_apart(p, p->channels[c].name, s->view, s->info->part_count > 1, &name))
+        struct channel_name name;
+        if (!channel_name_read(p, p->channels[c].name, s->view, s->info->part_count > 1, &name))
             continue;
-        char without_view[2 * NAME_MAX_BYTES];
+        char without_view[2 * ROLE_NAME_BYTES];
         snprintf(without_view, sizeof without_view, "%s%s%s", name.bare ? "" : name.layer,
                  name.bare ? "" : ".", name.component);
         if (strcmp(p->channels[c].name, wanted) != 0 && strcmp(without_view, wanted) != 0)
@@ -323,8 +173,8 @@ static void search_layer(struct search *s, enum role_kind kind, size_t part, con
                                                                            {"R", "G", "B"}};
     const struct exr_part *p = &s->info->parts[part];
     for (size_t c = 0; c < p->channel_count; c++) {
-        struct name name;
-        if (take_apart(p, p->channels[c].name, s->view, s->info->part_count > 1, &name) &&
+        struct channel_name name;
+        if (channel_name_read(p, p->channels[c].name, s->view, s->info->part_count > 1, &name) &&
             names_layer(s, part, &p->channels[c], &name, wanted))
             match_sets(s, kind == ROLE_DEPTH ? depth : vector, part, &name);
     }
@@ -403,8 +253,8 @@ static void make_label(const struct search *s, const struct hit *hit, char label
     const struct exr_part *part = &s->info->parts[hit->part];
     const char *channel = hit->channels[0]->name;
     bool multi = s->info->part_count > 1 && part->name && *part->name;
-    bool with_part = multi && needs_part_name(s, hit->part, channel);
     const char *dot = strrchr(channel, '.');
+    bool with_part = multi && (!dot || needs_part_name(s, hit->part, channel));
     int length = hit->channel_count == 1 ? (int)strlen(channel) : dot ? (int)(dot - channel) : 0;
     if (length == 0)
         snprintf(label, ROLE_LABEL_MAX, "%s", multi ? part->name : "(no layer)");
@@ -492,8 +342,8 @@ static bool fail_deep(const struct exr_info *info, size_t part, struct tool_erro
 
 /* --- One role --- */
 
-static bool resolve_named(struct search *s, enum role_kind kind, const char *name, struct role *role,
-                          struct tool_error *err)
+static bool resolve_named(struct search *s, enum role_kind kind, const char *name,
+                          struct role *role, struct tool_error *err)
 {
     search_named(s, kind, name);
     if (s->count == 0)
@@ -534,8 +384,8 @@ static bool resolve_found(struct search *s, enum role_kind kind, const struct ro
     return true;
 }
 
-bool roles_resolve(const struct exr_info *info, const struct role_request *request, struct roles *roles,
-                   struct tool_error *err)
+bool roles_resolve(const struct exr_info *info, const struct role_request *request,
+                   struct roles *roles, struct tool_error *err)
 {
     struct search s = {.info = info, .view = request->view ? request->view : ""};
     *roles = (struct roles){0};
@@ -544,8 +394,9 @@ bool roles_resolve(const struct exr_info *info, const struct role_request *reque
         const char *name = request->name[kind];
         if (kind == ROLE_NORMAL && request->no_normals)
             continue;
-        bool ok = name ? resolve_named(&s, (enum role_kind)kind, name, role, err)
-                       : resolve_found(&s, (enum role_kind)kind, &roles->kind[ROLE_DEPTH], role, err);
+        bool ok =
+            name ? resolve_named(&s, (enum role_kind)kind, name, role, err)
+                 : resolve_found(&s, (enum role_kind)kind, &roles->kind[ROLE_DEPTH], role, err);
         if (!ok)
             return false;
         if (kind == ROLE_DEPTH && !role->found) {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Which channels are depth, normals and colour: found by the names that renderers use. roles_table.c is that
- * knowledge; one row adds a renderer. */
+ * Which channels are depth, normals and colour: found by the names that renderers use.
+ * roles_table.c is that knowledge; one row adds a renderer. */
 #ifndef VKAO_TOOLS_ROLES_H_
 #define VKAO_TOOLS_ROLES_H_
 
@@ -37,13 +37,15 @@ enum role_place { ROLE_ANYWHERE, ROLE_SINGLE_PART, ROLE_MULTI_PART };
 /* One way to name a role. Rows of one kind are tried in order; the first that fits wins. */
 struct role_row {
     enum role_kind kind;
-    /* Last component of the layer, alternatives separated by '|', case ignored. NULL: no layer. "*": any layer.
-     * '~' in front: the layer contains the word. */
+    /* Last component of the layer, alternatives separated by '|', case ignored. NULL: no layer.
+     * "*": any layer.
+     * '~' in front: the layer contains the word. '=' in front: one name, and its case counts. */
     const char *layers;
     /* Spellings of the components, case ignored; all of one set must be there. */
     const char *sets[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS];
     enum role_place place;
-    /* Only in parts with this channel, or in files with an attribute that starts so; NULL = no condition. */
+    /* Only in parts with this channel, or in files with an attribute that starts so; NULL = no
+     * condition. */
     const char *companion, *attribute;
     bool in_vector; /* the component may be one of a vector's: depth of pbrt, P.Z */
     enum depth_type depth_type;
@@ -60,11 +62,12 @@ extern const size_t role_never_depth_count;
 struct role {
     bool found;
     size_t part;
-    const struct exr_channel *channels[ROLE_MAX_COMPONENTS + 1]; /* the last: alpha of colour, or NULL */
-    size_t channel_count;                                        /* without alpha */
-    enum depth_type depth_type;     /* as the name implies, or AUTO */
-    enum normal_space normal_space; /* likewise */
-    char label[ROLE_LABEL_MAX];     /* the name, in the form that --depth, --normal and --color take */
+    const struct exr_channel
+        *channels[ROLE_MAX_COMPONENTS + 1]; /* the last: alpha of colour, or NULL */
+    size_t channel_count;                   /* without alpha */
+    enum depth_type depth_type;             /* as the name implies, or AUTO */
+    enum normal_space normal_space;         /* likewise */
+    char label[ROLE_LABEL_MAX]; /* the name, in the form that --depth, --normal and --color take */
 };
 
 struct roles {
@@ -81,9 +84,9 @@ struct role_request {
 size_t roles_view_count(const struct exr_info *info);
 const char *roles_view_name(const struct exr_info *info, size_t index);
 
-/* Fails without depth or with several equally good hits; other roles may stay unfound, unless the request names them.
- * Errors: EXIT_CHANNELS; EXIT_INPUT if all there is is deep data. */
-bool roles_resolve(const struct exr_info *info, const struct role_request *request, struct roles *roles,
-                   struct tool_error *err);
+/* Fails without depth or with several equally good hits; other roles may stay unfound, unless the
+ * request names them. Errors: EXIT_CHANNELS; EXIT_INPUT if all there is is deep data. */
+bool roles_resolve(const struct exr_info *info, const struct role_request *request,
+                   struct roles *roles, struct tool_error *err);
 
 #endif

@@ -9,9 +9,10 @@
 #define COLOR_COMPONENTS {{"R", "G", "B"}, {"red", "green", "blue"}}
 
 const struct role_row role_table[] = {
-    /* Blender Depth.Z, Arnold and Redshift Z.Z or depth.Z, Karma depth.Z, V-Ray ZDepth.R, Nuke depth.Z, parts that are
-     * named so */
-    {.kind = ROLE_DEPTH, .layers = "depth|z|linearDepth|cameraDepth|camera_depth|ZDepth|VRayZDepth|CGeometry_ZDepth",
+    /* Blender Depth.Z, Arnold and Redshift Z.Z or depth.Z, Karma depth.Z, V-Ray ZDepth.R, Nuke
+     * depth.Z, parts that are named so */
+    {.kind = ROLE_DEPTH,
+     .layers = "depth|z|linearDepth|cameraDepth|camera_depth|ZDepth|VRayZDepth|CGeometry_ZDepth",
      .sets = DEPTH_COMPONENTS},
     /* RenderMan, Arnold, V-Ray, Redshift, OSPRay, old Blender; Karma; Mantra; V-Ray */
     {.kind = ROLE_DEPTH, .sets = {{"Z"}}},
@@ -27,7 +28,7 @@ const struct role_row role_table[] = {
     /* Blender, for its denoiser */
     {.kind = ROLE_DEPTH, .layers = "Denoising Depth", .sets = {{"Z"}}},
     {.kind = ROLE_DEPTH, .layers = "linearZ", .sets = {{"R"}, {"Z"}}, .depth_type = DEPTH_PLANAR},
-    /* pbrt writes positions, and nothing but it writes dzdx; in camera space unless told otherwise */
+    /* pbrt writes positions, in camera space unless told otherwise; nothing else writes dzdx */
     {.kind = ROLE_DEPTH, .layers = "P", .sets = {{"Z"}}, .companion = "dzdx", .in_vector = true,
      .depth_type = DEPTH_PLANAR},
 
@@ -37,21 +38,25 @@ const struct role_row role_table[] = {
     {.kind = ROLE_NORMAL, .layers = "N", .sets = VECTOR_COMPONENTS, .companion = "dzdx",
      .normal_space = NORMAL_SPACE_CAMERA},
     /* V-Ray */
-    {.kind = ROLE_NORMAL, .layers = "VRayNormals|bump_normals|VRayBumpNormals", .sets = VECTOR_COMPONENTS,
+    {.kind = ROLE_NORMAL, .layers = "VRayNormals|bump_normals|VRayBumpNormals",
+     .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_CAMERA},
+    {.kind = ROLE_NORMAL, .layers = "normals|normal", .sets = VECTOR_COMPONENTS,
+     .attribute = "vrayInfo", .normal_space = NORMAL_SPACE_CAMERA},
+    /* RenderMan; Mitsuba's manual calls world-space ones nn */
+    {.kind = ROLE_NORMAL, .layers = "=Nn", .sets = VECTOR_COMPONENTS,
      .normal_space = NORMAL_SPACE_CAMERA},
-    {.kind = ROLE_NORMAL, .layers = "normals|normal", .sets = VECTOR_COMPONENTS, .attribute = "vrayInfo",
-     .normal_space = NORMAL_SPACE_CAMERA},
-    /* RenderMan */
-    {.kind = ROLE_NORMAL, .layers = "Nn", .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_CAMERA},
     /* Blender Normal, Arnold, Redshift and Karma N, OSPRay normal, Mitsuba by its manual */
     {.kind = ROLE_NORMAL, .layers = "Ns|sh_normal|nn|sn", .sets = VECTOR_COMPONENTS},
     {.kind = ROLE_NORMAL, .layers = "N", .sets = VECTOR_COMPONENTS},
     {.kind = ROLE_NORMAL, .layers = "normal", .sets = VECTOR_COMPONENTS},
     {.kind = ROLE_NORMAL, .layers = "normals", .sets = VECTOR_COMPONENTS},
-    {.kind = ROLE_NORMAL, .layers = "__Nworld|Nworld|normal_world|normW|guideNormalW|SHADING_NORMAL|CGeometry_NormalsShading",
+    {.kind = ROLE_NORMAL,
+     .layers = "__Nworld|Nworld|normal_world|normW|guideNormalW|SHADING_NORMAL|"
+               "CGeometry_NormalsShading",
      .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_WORLD},
     /* Unreal */
-    {.kind = ROLE_NORMAL, .layers = "~worldnormal", .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_WORLD},
+    {.kind = ROLE_NORMAL, .layers = "~worldnormal", .sets = VECTOR_COMPONENTS,
+     .normal_space = NORMAL_SPACE_WORLD},
     /* Geometric ones show facets, and filtered ones are blurred: better than none */
     {.kind = ROLE_NORMAL, .layers = "gn|Ng|geo_normal|GEOMETRIC_NORMAL|CGeometry_NormalsGeometry",
      .sets = VECTOR_COMPONENTS},
@@ -59,15 +64,19 @@ const struct role_row role_table[] = {
      .sets = VECTOR_COMPONENTS},
 
     {.kind = ROLE_COLOR, .sets = COLOR_COMPONENTS, .place = ROLE_SINGLE_PART},
-    {.kind = ROLE_COLOR, .layers = "rgba|rgb|beauty|Combined|C|Ci|RGB_color|color|Composite", .sets = COLOR_COMPONENTS},
+    {.kind = ROLE_COLOR, .layers = "rgba|rgb|beauty|Combined|C|Ci|RGB_color|color|Composite",
+     .sets = COLOR_COMPONENTS},
     {.kind = ROLE_COLOR, .layers = "~_beauty", .sets = COLOR_COMPONENTS},
     {.kind = ROLE_COLOR, .layers = "~FinalImage", .sets = COLOR_COMPONENTS, .attribute = "unreal/"},
     {.kind = ROLE_COLOR, .sets = COLOR_COMPONENTS, .place = ROLE_MULTI_PART},
 
-    {.kind = ROLE_POSITION, .layers = "P|Pworld|__Pworld|position|pos|worldPosition|posW|VRayWorldPosition|CGeometry_WorldPosition",
+    {.kind = ROLE_POSITION,
+     .layers = "P|Pworld|__Pworld|position|pos|worldPosition|posW|VRayWorldPosition|"
+               "CGeometry_WorldPosition",
      .sets = VECTOR_COMPONENTS},
 
-    {.kind = ROLE_AO, .layers = "AO|ambient_occlusion|AmbientOcclusion|Ambient Occlusion|VRayExtraTex_AO",
+    {.kind = ROLE_AO,
+     .layers = "AO|ambient_occlusion|AmbientOcclusion|Ambient Occlusion|VRayExtraTex_AO",
      .sets = {{"R"}, {"Y"}, {"AO"}, {"Z"}}},
     {.kind = ROLE_AO, .sets = {{"AO"}}},
 };

@@ -10,8 +10,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* Zero-initialise; data is NULL or zero-terminated. Once memory runs out it stays as it is and says so, so that only
- * the end of a long text needs a check. */
+/* Zero-initialise; data is NULL or zero-terminated. Once memory runs out it stays as it is and says
+ * so, so that only the end of a long text needs a check. */
 struct text {
     char *data;
     size_t length, capacity;
@@ -26,11 +26,13 @@ bool text_equal_nocase(const char *a, const char *b);
 bool text_starts_with(const char *string, const char *prefix);
 bool text_ends_with(const char *string, const char *suffix);
 
-/* The whole of string, or false. Numbers may be inf, never nan. Both take what C takes in the C locale. */
+/* The whole of string, or false. Numbers may be inf, never nan. Both take what C takes in the C
+ * locale. */
 bool text_to_number(const char *string, double *number);
 bool text_to_integer(const char *string, int64_t *integer);
 
-/* Insertions, deletions, replacements and swaps of neighbours that turn a into b; words beyond 63 bytes are cut. */
+/* Insertions, deletions, replacements and swaps of neighbours that turn a into b; words beyond 63
+ * bytes are cut. */
 unsigned text_distance(const char *a, const char *b);
 
 /* False if the product does not fit. */

@@ -22,7 +22,8 @@ static const struct vec3 water = {0.10, 0.30, 0.33};
 
 static double noise_at(int x, int y, int z)
 {
-    uint32_t h = trace_hash((uint32_t)x * 73856093u ^ (uint32_t)y * 19349663u ^ (uint32_t)z * 83492791u);
+    uint32_t h =
+        trace_hash((uint32_t)x * 73856093u ^ (uint32_t)y * 19349663u ^ (uint32_t)z * 83492791u);
     return h * 0x1p-32;
 }
 
@@ -36,7 +37,8 @@ static double noise(struct vec3 p)
     double sum = 0;
     for (int i = 0; i < 8; i++) {
         int dx = i & 1, dy = i >> 1 & 1, dz = i >> 2;
-        sum += (dx ? u : 1 - u) * (dy ? v : 1 - v) * (dz ? w : 1 - w) * noise_at(x + dx, y + dy, z + dz);
+        sum += (dx ? u : 1 - u) * (dy ? v : 1 - v) * (dz ? w : 1 - w) *
+               noise_at(x + dx, y + dy, z + dz);
     }
     return sum;
 }
@@ -48,17 +50,19 @@ static struct vec3 surface_colour(const struct trace_scene *scene, const struct 
     double own = trace_hash((uint32_t)hit->primitive + 7u) * 0x1p-32;
     switch (p->pattern) {
     case PATTERN_LOCAL:
-        return vec3(0.40 + 0.33 * at.x / size.x, 0.40 + 0.33 * at.y / size.y, 0.40 + 0.33 * at.z / size.z);
+        return vec3(0.40 + 0.33 * at.x / size.x, 0.40 + 0.33 * at.y / size.y,
+                    0.40 + 0.33 * at.z / size.z);
     case PATTERN_STONE:
-        return scale(p->albedo, 0.80 + 0.24 * own + 0.14 * noise(add(scale(at, 4), vec3(own * 99, 0, 0))));
+        return scale(p->albedo,
+                     0.80 + 0.24 * own + 0.14 * noise(add(scale(at, 2), vec3(own * 99, 0, 0))));
     case PATTERN_PLASTER:
-        return scale(p->albedo, 0.86 + 0.10 * noise(scale(hit->position, 1.3)) +
-                                    0.05 * noise(scale(hit->position, 5)));
+        return scale(p->albedo, 0.86 + 0.12 * noise(scale(hit->position, 0.9)));
     case PATTERN_WOOD: {
         struct vec3 grain = size.x > size.y && size.x > size.z ? vec3(1.5, 28, 28)
                             : size.y > size.z                  ? vec3(28, 1.5, 28)
                                                                : vec3(28, 28, 1.5);
-        return scale(p->albedo, 0.78 + 0.22 * own + 0.22 * noise(add(mul(at, grain), vec3(own * 99, 0, 0))));
+        return scale(p->albedo,
+                     0.78 + 0.22 * own + 0.22 * noise(add(mul(at, grain), vec3(own * 99, 0, 0))));
     }
     default:
         return p->albedo;
@@ -67,7 +71,8 @@ static struct vec3 surface_colour(const struct trace_scene *scene, const struct 
 
 /* --- a small vocabulary --- */
 
-static void put(struct trace_scene *scene, struct trace_primitive p, struct vec3 colour, enum pattern pattern)
+static void put(struct trace_scene *scene, struct trace_primitive p, struct vec3 colour,
+                enum pattern pattern)
 {
     p.albedo = colour;
     p.pattern = (int)pattern;
@@ -81,21 +86,23 @@ static void block(struct trace_scene *scene, struct vec3 low, struct vec3 high, 
     put(scene, trace_box(scale(add(low, high), 0.5), scale(sub(high, low), 0.5)), colour, pattern);
 }
 
-static void turned_box(struct trace_scene *scene, struct vec3 center, struct vec3 half, struct mat3 axes,
-                       struct vec3 colour, enum pattern pattern)
+static void turned_box(struct trace_scene *scene, struct vec3 center, struct vec3 half,
+                       struct mat3 axes, struct vec3 colour, enum pattern pattern)
 {
     struct trace_primitive p = trace_box(center, half);
     p.axes = axes;
     put(scene, p, colour, pattern);
 }
 
-static void rod(struct trace_scene *scene, struct vec3 a, struct vec3 b, double radius, struct vec3 colour)
+static void rod(struct trace_scene *scene, struct vec3 a, struct vec3 b, double radius,
+                struct vec3 colour)
 {
     put(scene, trace_cylinder(a, b, radius), colour, PATTERN_PLAIN);
 }
 
 /* A wall from low to high with a round-headed opening of the given half width, whose head begins at y = spring. */
-static void arch(struct trace_scene *scene, struct vec3 low, struct vec3 high, double spring, double half_width)
+static void arch(struct trace_scene *scene, struct vec3 low, struct vec3 high, double spring,
+                 double half_width)
 {
     struct vec3 half = scale(sub(high, low), 0.5);
     half.y = (high.y - spring) / 2;
@@ -108,22 +115,23 @@ static void arch(struct trace_scene *scene, struct vec3 low, struct vec3 high, d
     double pier = half.x - half_width;
     if (spring > low.y && pier > 0) {
         block(scene, low, vec3(low.x + pier, spring, high.z), plaster, PATTERN_PLASTER);
-        block(scene, vec3(high.x - pier, low.y, low.z), vec3(high.x, spring, high.z), plaster, PATTERN_PLASTER);
+        block(scene, vec3(high.x - pier, low.y, low.z), vec3(high.x, spring, high.z), plaster,
+              PATTERN_PLASTER);
     }
 }
 
-static void tub(struct trace_scene *scene, struct vec3 foot, double radius, double height, double wall,
-                struct vec3 colour)
+static void tub(struct trace_scene *scene, struct vec3 foot, double radius, double height,
+                double wall, struct vec3 colour)
 {
-    struct trace_primitive p =
-        trace_cylinder(foot, vec3(foot.x, foot.y + height, foot.z), radius);
+    struct trace_primitive p = trace_cylinder(foot, vec3(foot.x, foot.y + height, foot.z), radius);
     p.kind = TRACE_BORED_CYLINDER;
     p.bore = radius - wall;
     put(scene, p, colour, PATTERN_STONE);
 }
 
 /* Leaves: small spheres spread evenly (Fibonacci) over a ball. */
-static void topiary(struct trace_scene *scene, struct vec3 center, double radius, int leaves, double leaf_radius)
+static void topiary(struct trace_scene *scene, struct vec3 center, double radius, int leaves,
+                    double leaf_radius)
 {
     put(scene, trace_sphere(center, radius * 0.9), scale(leaf, 0.7), PATTERN_PLAIN);
     for (int i = 0; i < leaves; i++) {
@@ -152,12 +160,14 @@ static void add_ground(struct trace_scene *scene)
 
 static void add_column(struct trace_scene *scene, double x, double z)
 {
-    block(scene, vec3(x - 0.30, 0, z - 0.30), vec3(x + 0.30, 0.16, z + 0.30), sandstone, PATTERN_STONE);
+    block(scene, vec3(x - 0.30, 0, z - 0.30), vec3(x + 0.30, 0.16, z + 0.30), sandstone,
+          PATTERN_STONE);
     put(scene, trace_cylinder(vec3(x, 0.16, z), vec3(x, 0.26, z), 0.27), sandstone, PATTERN_STONE);
     put(scene, trace_cylinder(vec3(x, 0.26, z), vec3(x, 2.12, z), 0.19), sandstone, PATTERN_STONE);
     put(scene, trace_cylinder(vec3(x, 2.04, z), vec3(x, 2.10, z), 0.23), sandstone, PATTERN_STONE);
     put(scene, trace_cylinder(vec3(x, 2.12, z), vec3(x, 2.20, z), 0.27), sandstone, PATTERN_STONE);
-    block(scene, vec3(x - 0.32, 2.20, z - 0.32), vec3(x + 0.32, 2.35, z + 0.32), sandstone, PATTERN_STONE);
+    block(scene, vec3(x - 0.32, 2.20, z - 0.32), vec3(x + 0.32, 2.35, z + 0.32), sandstone,
+          PATTERN_STONE);
 }
 
 static void add_arcade(struct trace_scene *scene)
@@ -166,7 +176,8 @@ static void add_arcade(struct trace_scene *scene)
         double x = -6.0 + 2.2 * i;
         add_column(scene, x, -3.4);
         arch(scene, vec3(x, 2.35, -3.7), vec3(x + 2.2, 3.85, -3.1), 2.35, 0.86);
-        block(scene, vec3(x + 0.99, 3.14, -3.72), vec3(x + 1.21, 3.58, -3.04), sandstone, PATTERN_STONE);
+        block(scene, vec3(x + 0.99, 3.14, -3.72), vec3(x + 1.21, 3.58, -3.04), sandstone,
+              PATTERN_STONE);
     }
     block(scene, vec3(-8.2, 3.85, -3.72), vec3(8.2, 3.97, -3.00), sandstone, PATTERN_STONE);
     block(scene, vec3(-8.2, 3.97, -3.70), vec3(8.2, 4.20, -3.10), plaster, PATTERN_PLASTER);
@@ -194,11 +205,12 @@ static void add_stairs(struct trace_scene *scene)
     const double rise = 0.17, tread = 0.31, z0 = -2.7, z1 = -0.9;
     for (int i = 0; i < 7; i++) {
         double x = -2.35 - tread * i;
-        block(scene, vec3(-6.6, rise * i, z0), vec3(x, rise * (i + 1) - 0.002, z1), plaster, PATTERN_PLASTER);
-        block(scene, vec3(-6.6, rise * (i + 1) - 0.045, z0), vec3(x + 0.035, rise * (i + 1), z1 + 0.04),
-              sandstone, PATTERN_STONE);
-        rod(scene, vec3(x - 0.15, rise * (i + 1), z1 - 0.08), vec3(x - 0.15, rise * (i + 1) + 0.92, z1 - 0.08),
-            0.014, iron);
+        block(scene, vec3(-6.6, rise * i, z0), vec3(x, rise * (i + 1) - 0.002, z1), plaster,
+              PATTERN_PLASTER);
+        block(scene, vec3(-6.6, rise * (i + 1) - 0.045, z0),
+              vec3(x + 0.035, rise * (i + 1), z1 + 0.04), sandstone, PATTERN_STONE);
+        rod(scene, vec3(x - 0.15, rise * (i + 1), z1 - 0.08),
+            vec3(x - 0.15, rise * (i + 1) + 0.92, z1 - 0.08), 0.014, iron);
     }
     block(scene, vec3(-6.6, 1.145, z0), vec3(-4.50, 1.19, z1 + 0.04), sandstone, PATTERN_STONE);
     rod(scene, vec3(-2.30, 0.0, z1 - 0.08), vec3(-2.30, 1.04, z1 - 0.08), 0.025, iron);
@@ -224,12 +236,17 @@ static void add_fountain(struct trace_scene *scene)
     tub(scene, vec3(c.x, 0.10, c.z), 1.02, 0.42, 0.13, sandstone);
     tub(scene, vec3(c.x, 0.52, c.z), 1.07, 0.07, 0.21, sandstone);
     put(scene, trace_disk(vec3(c.x, 0.40, c.z), vec3(0, 1, 0), 0.95), water, PATTERN_PLAIN);
-    put(scene, trace_cylinder(vec3(c.x, 0.1, c.z), vec3(c.x, 0.60, c.z), 0.24), sandstone, PATTERN_STONE);
-    put(scene, trace_cylinder(vec3(c.x, 0.60, c.z), vec3(c.x, 0.68, c.z), 0.32), sandstone, PATTERN_STONE);
-    put(scene, trace_cylinder(vec3(c.x, 0.68, c.z), vec3(c.x, 1.25, c.z), 0.10), sandstone, PATTERN_STONE);
-    put(scene, trace_cylinder(vec3(c.x, 1.25, c.z), vec3(c.x, 1.31, c.z), 0.20), sandstone, PATTERN_STONE);
+    put(scene, trace_cylinder(vec3(c.x, 0.1, c.z), vec3(c.x, 0.60, c.z), 0.24), sandstone,
+        PATTERN_STONE);
+    put(scene, trace_cylinder(vec3(c.x, 0.60, c.z), vec3(c.x, 0.68, c.z), 0.32), sandstone,
+        PATTERN_STONE);
+    put(scene, trace_cylinder(vec3(c.x, 0.68, c.z), vec3(c.x, 1.25, c.z), 0.10), sandstone,
+        PATTERN_STONE);
+    put(scene, trace_cylinder(vec3(c.x, 1.25, c.z), vec3(c.x, 1.31, c.z), 0.20), sandstone,
+        PATTERN_STONE);
     tub(scene, vec3(c.x, 1.31, c.z), 0.46, 0.13, 0.06, sandstone);
-    put(scene, trace_cylinder(vec3(c.x, 1.31, c.z), vec3(c.x, 1.37, c.z), 0.43), water, PATTERN_PLAIN);
+    put(scene, trace_cylinder(vec3(c.x, 1.31, c.z), vec3(c.x, 1.37, c.z), 0.43), water,
+        PATTERN_PLAIN);
     put(scene, trace_sphere(vec3(c.x, 1.55, c.z), 0.19), chalk, PATTERN_PLAIN);
 }
 
@@ -239,22 +256,24 @@ static void add_bench(struct trace_scene *scene, struct vec3 at, double yaw)
     struct mat3 back = mat3_turned(yaw, 0.22, 0);
     for (int i = 0; i < 5; i++) {
         struct vec3 slat = vec3(0, 0.45, -0.20 + 0.10 * i);
-        turned_box(scene, add(at, mul_transposed(axes, slat)), vec3(0.95, 0.018, 0.037), axes, oak, PATTERN_WOOD);
+        turned_box(scene, add(at, mul_transposed(axes, slat)), vec3(0.95, 0.018, 0.037), axes, oak,
+                   PATTERN_WOOD);
     }
     for (int i = 0; i < 4; i++) {
         struct vec3 slat = vec3(0, 0.56 + 0.125 * i, -0.28 - 0.028 * i);
-        turned_box(scene, add(at, mul_transposed(axes, slat)), vec3(0.95, 0.042, 0.016), back, oak, PATTERN_WOOD);
+        turned_box(scene, add(at, mul_transposed(axes, slat)), vec3(0.95, 0.042, 0.016), back, oak,
+                   PATTERN_WOOD);
     }
     for (int side = -1; side <= 1; side += 2) {
         double x = 0.78 * side;
-        turned_box(scene, add(at, mul_transposed(axes, vec3(x, 0.215, 0.18))), vec3(0.03, 0.215, 0.03), axes, iron,
-                   PATTERN_PLAIN);
-        turned_box(scene, add(at, mul_transposed(axes, vec3(x, 0.215, -0.22))), vec3(0.03, 0.215, 0.03), axes, iron,
-                   PATTERN_PLAIN);
-        turned_box(scene, add(at, mul_transposed(axes, vec3(x, 0.415, -0.01))), vec3(0.03, 0.017, 0.25), axes, iron,
-                   PATTERN_PLAIN);
-        turned_box(scene, add(at, mul_transposed(axes, vec3(x, 0.72, -0.345))), vec3(0.025, 0.30, 0.014), back, iron,
-                   PATTERN_PLAIN);
+        turned_box(scene, add(at, mul_transposed(axes, vec3(x, 0.215, 0.18))),
+                   vec3(0.03, 0.215, 0.03), axes, iron, PATTERN_PLAIN);
+        turned_box(scene, add(at, mul_transposed(axes, vec3(x, 0.215, -0.22))),
+                   vec3(0.03, 0.215, 0.03), axes, iron, PATTERN_PLAIN);
+        turned_box(scene, add(at, mul_transposed(axes, vec3(x, 0.415, -0.01))),
+                   vec3(0.03, 0.017, 0.25), axes, iron, PATTERN_PLAIN);
+        turned_box(scene, add(at, mul_transposed(axes, vec3(x, 0.72, -0.345))),
+                   vec3(0.025, 0.30, 0.014), back, iron, PATTERN_PLAIN);
     }
 }
 
@@ -277,8 +296,10 @@ static void add_cubes(struct trace_scene *scene)
     const struct vec3 half = {h, h, h};
     turned_box(scene, vec3(-2.10, h, 1.00), half, mat3_turned(0.35, 0, 0), chalk, PATTERN_LOCAL);
     turned_box(scene, vec3(-1.28, h, 0.57), half, mat3_turned(-0.30, 0, 0), chalk, PATTERN_LOCAL);
-    turned_box(scene, vec3(-1.74, 3 * h, 0.77), half, mat3_turned(0.80, 0, 0), chalk, PATTERN_LOCAL);
-    turned_box(scene, vec3(-0.88, 0.434, 1.27), half, mat3_turned(0.55, 0.35, 0), chalk, PATTERN_LOCAL);
+    turned_box(scene, vec3(-1.74, 3 * h, 0.77), half, mat3_turned(0.80, 0, 0), chalk,
+               PATTERN_LOCAL);
+    turned_box(scene, vec3(-0.88, 0.434, 1.27), half, mat3_turned(0.55, 0.35, 0), chalk,
+               PATTERN_LOCAL);
     put(scene, trace_sphere(vec3(-2.68, 0.26, 1.53), 0.26), chalk, PATTERN_PLAIN);
     put(scene, trace_sphere(vec3(-1.95, 0.15, 1.77), 0.15), chalk, PATTERN_PLAIN);
     put(scene, trace_sphere(vec3(-0.18, 0.19, 0.97), 0.19), terracotta, PATTERN_PLAIN);
@@ -287,15 +308,16 @@ static void add_cubes(struct trace_scene *scene)
 static void add_crate(struct trace_scene *scene, struct vec3 at, double half, double yaw)
 {
     struct mat3 axes = mat3_turned(yaw, 0, 0);
-    turned_box(scene, at, vec3(half * 0.93, half * 0.93, half * 0.93), axes, scale(oak, 0.8), PATTERN_WOOD);
+    turned_box(scene, at, vec3(half * 0.93, half * 0.93, half * 0.93), axes, scale(oak, 0.8),
+               PATTERN_WOOD);
     for (int i = 0; i < 4; i++) {
         double y = half * (-0.77 + 0.513 * i);
         for (int side = -1; side <= 1; side += 2) {
             double off = half * 0.96 * side;
-            turned_box(scene, add(at, mul_transposed(axes, vec3(0, y, off))), vec3(half, half * 0.21, half * 0.04),
-                       axes, bleached, PATTERN_WOOD);
-            turned_box(scene, add(at, mul_transposed(axes, vec3(off, y, 0))), vec3(half * 0.04, half * 0.21, half),
-                       axes, bleached, PATTERN_WOOD);
+            turned_box(scene, add(at, mul_transposed(axes, vec3(0, y, off))),
+                       vec3(half, half * 0.21, half * 0.04), axes, bleached, PATTERN_WOOD);
+            turned_box(scene, add(at, mul_transposed(axes, vec3(off, y, 0))),
+                       vec3(half * 0.04, half * 0.21, half), axes, bleached, PATTERN_WOOD);
         }
         turned_box(scene, add(at, mul_transposed(axes, vec3(0, half * 0.96, y))),
                    vec3(half, half * 0.04, half * 0.21), axes, bleached, PATTERN_WOOD);
@@ -324,7 +346,8 @@ static void add_clutter(struct trace_scene *scene)
         rod(scene, vec3(x, 0, -2.15), vec3(x, 3.45, -3.02), 0.03, bleached);
     }
     for (int i = 1; i < 11; i++)
-        rod(scene, vec3(2.08, 0.31 * i, -2.15 - 0.0782 * i), vec3(2.52, 0.31 * i, -2.15 - 0.0782 * i), 0.018, bleached);
+        rod(scene, vec3(2.08, 0.31 * i, -2.15 - 0.0782 * i),
+            vec3(2.52, 0.31 * i, -2.15 - 0.0782 * i), 0.018, bleached);
     /* Potted topiary on both sides of the steps, and one by the bench. */
     tub(scene, vec3(-1.72, 0, -2.30), 0.28, 0.40, 0.05, terracotta);
     topiary(scene, vec3(-1.72, 0.80, -2.30), 0.46, 210, 0.060);
@@ -356,6 +379,6 @@ void courtyard_add(struct trace_scene *scene)
 struct trace_camera courtyard_camera(void)
 {
     struct trace_camera camera = {.fov_x_deg = 56.0, .near = 0.1, .far = 100.0};
-    trace_camera_look_at(&camera, vec3(0.75, 2.75, 8.6), vec3(-0.05, 1.90, -1.2));
+    trace_camera_look_at(&camera, vec3(0.15, 2.75, 8.6), vec3(0.15, 1.90, -1.2));
     return camera;
 }

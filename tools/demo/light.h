@@ -14,7 +14,8 @@ enum light_mode {
 };
 
 /* The mean over `samples` points of the texel (column, row), box filter. Deterministic. */
-struct vec3 light_texel(const struct trace_scene *scene, const struct trace_camera *camera, enum light_mode mode,
-                        int column, int row, int width, int height, int samples);
+struct vec3 light_texel(const struct trace_scene *scene, const struct trace_camera *camera,
+                        enum light_mode mode, int column, int row, int width, int height,
+                        int samples);
 
 #endif

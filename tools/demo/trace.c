@@ -89,8 +89,8 @@ static bool nearest_end(struct span s, double t_min, double t_max, double *t, st
 }
 
 /* Solid less hole: what is left before the hole, then what is left behind it. */
-static bool nearest_end_bored(struct span solid, struct span hole, double t_min, double t_max, double *t,
-                              struct vec3 *n)
+static bool nearest_end_bored(struct span solid, struct span hole, double t_min, double t_max,
+                              double *t, struct vec3 *n)
 {
     if (!(hole.enter < hole.exit))
         return nearest_end(solid, t_min, t_max, t, n);
@@ -100,8 +100,8 @@ static bool nearest_end_bored(struct span solid, struct span hole, double t_min,
            nearest_end(intersection(solid, behind), t_min, t_max, t, n);
 }
 
-static bool hit_local(const struct trace_primitive *p, struct vec3 o, struct vec3 d, double t_min, double t_max,
-                      double *t, struct vec3 *n)
+static bool hit_local(const struct trace_primitive *p, struct vec3 o, struct vec3 d, double t_min,
+                      double t_max, double *t, struct vec3 *n)
 {
     switch (p->kind) {
     case TRACE_PLANE:
@@ -109,7 +109,8 @@ static bool hit_local(const struct trace_primitive *p, struct vec3 o, struct vec
         *t = -o.y / d.y;
         *n = vec3(0, 1, 0);
         double x = o.x + *t * d.x, z = o.z + *t * d.z;
-        return *t > t_min && *t < t_max && (p->kind == TRACE_PLANE || x * x + z * z <= p->size.x * p->size.x);
+        return *t > t_min && *t < t_max &&
+               (p->kind == TRACE_PLANE || x * x + z * z <= p->size.x * p->size.x);
     }
     case TRACE_SPHERE:
         return nearest_end(ball(o, d, p->size.x), t_min, t_max, t, n);
@@ -131,8 +132,8 @@ static bool hit_local(const struct trace_primitive *p, struct vec3 o, struct vec
 
 /* --- primitives --- */
 
-static struct trace_primitive primitive(enum trace_kind kind, struct vec3 position, struct mat3 axes,
-                                        struct vec3 size)
+static struct trace_primitive primitive(enum trace_kind kind, struct vec3 position,
+                                        struct mat3 axes, struct vec3 size)
 {
     return (struct trace_primitive){
         .kind = kind, .position = position, .axes = axes, .size = size, .albedo = {0.8, 0.8, 0.8}};
@@ -196,7 +197,8 @@ struct bounds {
 
 struct trace_node {
     struct bounds bounds;
-    uint32_t first, count; /* leaf: order[first..first+count). Inner, count 0: children are next and `first` */
+    uint32_t first,
+        count; /* leaf: order[first..first+count). Inner, count 0: children are next and `first` */
 };
 
 enum { LEAF_PRIMITIVES = 3, TREE_DEPTH = 48 };
@@ -317,7 +319,8 @@ static void test_primitive(const struct trace_scene *scene, uint32_t index, stru
  * in the plane of a face; the boxes have slack, so what they miss there is no primitive's. */
 static bool meets(const struct bounds *b, const struct query *q)
 {
-    struct vec3 a = mul(sub(b->low, q->origin), q->inverse), c = mul(sub(b->high, q->origin), q->inverse);
+    struct vec3 a = mul(sub(b->low, q->origin), q->inverse),
+                c = mul(sub(b->high, q->origin), q->inverse);
     double enter = q->t_min, exit = q->t_max;
     double near = a.x < c.x ? a.x : c.x, far = a.x < c.x ? c.x : a.x;
     enter = near > enter ? near : enter;
@@ -364,8 +367,8 @@ static struct query start(struct vec3 origin, struct vec3 direction, double t_mi
     };
 }
 
-bool trace_closest(const struct trace_scene *scene, struct vec3 origin, struct vec3 direction, double t_min,
-                   double t_max, struct trace_hit *hit)
+bool trace_closest(const struct trace_scene *scene, struct vec3 origin, struct vec3 direction,
+                   double t_min, double t_max, struct trace_hit *hit)
 {
     struct query q = start(origin, direction, t_min, t_max);
     search(scene, &q, false);
@@ -384,8 +387,8 @@ bool trace_closest(const struct trace_scene *scene, struct vec3 origin, struct v
     return true;
 }
 
-bool trace_any(const struct trace_scene *scene, struct vec3 origin, struct vec3 direction, double t_min,
-               double t_max)
+bool trace_any(const struct trace_scene *scene, struct vec3 origin, struct vec3 direction,
+               double t_min, double t_max)
 {
     struct query q = start(origin, direction, t_min, t_max);
     search(scene, &q, true);

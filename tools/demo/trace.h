@@ -23,12 +23,12 @@
 
 /* In its own coordinates a primitive sits at the origin. Boxes, spheres and cylinders are solid. */
 enum trace_kind {
-    TRACE_PLANE,    /* y = 0, endless */
-    TRACE_DISK,     /* y = 0, x^2 + z^2 <= size.x^2 */
-    TRACE_SPHERE,   /* radius size.x */
-    TRACE_BOX,      /* half extents size */
-    TRACE_CYLINDER, /* radius size.x about y, |y| <= size.y */
-    TRACE_BORED_BOX,      /* box less an endless cylinder along z, radius bore, through (0, bore_y) */
+    TRACE_PLANE,     /* y = 0, endless */
+    TRACE_DISK,      /* y = 0, x^2 + z^2 <= size.x^2 */
+    TRACE_SPHERE,    /* radius size.x */
+    TRACE_BOX,       /* half extents size */
+    TRACE_CYLINDER,  /* radius size.x about y, |y| <= size.y */
+    TRACE_BORED_BOX, /* box less an endless cylinder along z, radius bore, through (0, bore_y) */
     TRACE_BORED_CYLINDER, /* cylinder less an endless one about y, radius bore */
 };
 
@@ -45,8 +45,9 @@ struct trace_primitive {
 struct trace_hit {
     double t;             /* distance along the unit direction */
     struct vec3 position; /* world */
-    struct vec3 normal;   /* unit, world; out of the solid, or +y of planes and disks. See trace_facing() */
-    struct vec3 local;    /* position in the primitive's coordinates */
+    struct vec3
+        normal; /* unit, world; out of the solid, or +y of planes and disks. See trace_facing() */
+    struct vec3 local; /* position in the primitive's coordinates */
     struct vec3 local_normal;
     size_t primitive;
 };
@@ -78,18 +79,18 @@ bool trace_build(struct trace_scene *scene);
 void trace_scene_free(struct trace_scene *scene);
 
 /* The nearest surface with t_min < t < t_max; direction is unit. */
-bool trace_closest(const struct trace_scene *scene, struct vec3 origin, struct vec3 direction, double t_min,
-                   double t_max, struct trace_hit *hit);
+bool trace_closest(const struct trace_scene *scene, struct vec3 origin, struct vec3 direction,
+                   double t_min, double t_max, struct trace_hit *hit);
 /* Whether there is any. */
-bool trace_any(const struct trace_scene *scene, struct vec3 origin, struct vec3 direction, double t_min,
-               double t_max);
+bool trace_any(const struct trace_scene *scene, struct vec3 origin, struct vec3 direction,
+               double t_min, double t_max);
 /* The hit's normal, turned against the ray that came along `direction`. */
 struct vec3 trace_facing(const struct trace_hit *hit, struct vec3 direction);
 struct vec3 trace_albedo(const struct trace_scene *scene, const struct trace_hit *hit);
 
 /* What the camera sees at image position (x, y), between its near and far planes. */
-bool trace_primary(const struct trace_scene *scene, const struct trace_camera *camera, double x, double y, int width,
-                  int height, struct trace_hit *hit, struct trace_ray *ray);
+bool trace_primary(const struct trace_scene *scene, const struct trace_camera *camera, double x,
+                   double y, int width, int height, struct trace_hit *hit, struct trace_ray *ray);
 
 /* Arrays of width * height texels, row 0 at the top; any may be NULL. */
 struct trace_gbuffer {
@@ -99,8 +100,8 @@ struct trace_gbuffer {
 };
 
 /* Fills rows [row, row_end) from the texel centres. */
-void trace_gbuffer(const struct trace_scene *scene, const struct trace_camera *camera, int width, int height, int row,
-                   int row_end, const struct trace_gbuffer *out);
+void trace_gbuffer(const struct trace_scene *scene, const struct trace_camera *camera, int width,
+                   int height, int row, int row_end, const struct trace_gbuffer *out);
 
 /* Ambient visibility, 1 = open: threshold counts any hit nearer than the radius, falloff weighs it 1-(t/R)^2. */
 struct trace_ao {
@@ -109,12 +110,13 @@ struct trace_ao {
 
 /* At a surface point, cosine-weighted about a unit normal, by `rays` points of the R2 sequence (Roberts 2018)
  * shifted at random by seed. The error is about 0.5 / rays^0.75: 0.003 for 1024. */
-struct trace_ao trace_ao(const struct trace_scene *scene, struct vec3 position, struct vec3 normal, double radius,
-                         int rays, uint32_t seed);
+struct trace_ao trace_ao(const struct trace_scene *scene, struct vec3 position, struct vec3 normal,
+                         double radius, int rays, uint32_t seed);
 
 /* Fills rows [row, row_end) of two arrays of width * height; background is 1. */
-void trace_ao_image(const struct trace_scene *scene, const struct trace_camera *camera, int width, int height, int row,
-                    int row_end, double radius, int rays, float *threshold, float *falloff);
+void trace_ao_image(const struct trace_scene *scene, const struct trace_camera *camera, int width,
+                    int height, int row, int row_end, double radius, int rays, float *threshold,
+                    float *falloff);
 
 /* A well mixed 32-bit hash (Wellons' lowbias32), and the direction of a cosine lobe about n at (u, v). */
 uint32_t trace_hash(uint32_t x);

@@ -20,7 +20,8 @@ static double half_width(const struct trace_camera *camera)
     return camera->orthographic ? 0.5 * camera->ortho_width : tan(camera->fov_x_deg * (PI / 360.0));
 }
 
-struct trace_ray trace_camera_ray(const struct trace_camera *camera, double x, double y, int width, int height)
+struct trace_ray trace_camera_ray(const struct trace_camera *camera, double x, double y, int width,
+                                  int height)
 {
     double half = half_width(camera);
     double u = (2.0 * x / width - 1.0) * half;
@@ -53,14 +54,28 @@ static void multiply(const double a[16], const double b[16], float out[16])
     }
 }
 
-void trace_camera_exr_matrices(const struct trace_camera *camera, int width, int height, float world_to_camera[16],
-                         float world_to_ndc[16])
+void trace_camera_exr_matrices(const struct trace_camera *camera, int width, int height,
+                               float world_to_camera[16], float world_to_ndc[16])
 {
     const struct mat3 *m = &camera->rotation;
     /* OpenEXR's camera space looks along +z: the third column is mirrored. */
     const double view[16] = {
-        m->x.x, m->y.x, -m->z.x, 0, m->x.y, m->y.y, -m->z.y, 0, m->x.z, m->y.z, -m->z.z, 0,
-        camera->translation.x, camera->translation.y, -camera->translation.z, 1,
+        m->x.x,
+        m->y.x,
+        -m->z.x,
+        0,
+        m->x.y,
+        m->y.y,
+        -m->z.y,
+        0,
+        m->x.z,
+        m->y.z,
+        -m->z.z,
+        0,
+        camera->translation.x,
+        camera->translation.y,
+        -camera->translation.z,
+        1,
     };
     double sx = 0.5 / half_width(camera), sy = -sx * width / height;
     double n = camera->near, f = camera->far;

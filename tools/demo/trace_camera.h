@@ -28,11 +28,12 @@ void trace_camera_look_at(struct trace_camera *camera, struct vec3 eye, struct v
 struct vec3 trace_camera_eye(const struct trace_camera *camera);
 
 /* The ray through image position (x, y) in texels, row 0 at the top; texel centres are at +0.5. */
-struct trace_ray trace_camera_ray(const struct trace_camera *camera, double x, double y, int width, int height);
+struct trace_ray trace_camera_ray(const struct trace_camera *camera, double x, double y, int width,
+                                  int height);
 
 /* Row by row as OpenEXR stores them, for row vectors p * M. worldToCamera is left-handed and looks along +z;
  * worldToNDC has (0,0) in the upper left corner of the display window and (1,1) in the lower right. */
-void trace_camera_exr_matrices(const struct trace_camera *camera, int width, int height, float world_to_camera[16],
-                         float world_to_ndc[16]);
+void trace_camera_exr_matrices(const struct trace_camera *camera, int width, int height,
+                               float world_to_camera[16], float world_to_ndc[16]);
 
 #endif

@@ -26,8 +26,8 @@ static double lift(struct vec3 position)
     return 1e-9 * (1.0 + length(position));
 }
 
-struct trace_ao trace_ao(const struct trace_scene *scene, struct vec3 position, struct vec3 normal, double radius,
-                         int rays, uint32_t seed)
+struct trace_ao trace_ao(const struct trace_scene *scene, struct vec3 position, struct vec3 normal,
+                         double radius, int rays, uint32_t seed)
 {
     double u = trace_hash(seed * 2u) * 0x1p-32, v = trace_hash(seed * 2u + 1u) * 0x1p-32;
     double threshold = 0, falloff = 0;
@@ -47,8 +47,8 @@ struct trace_ao trace_ao(const struct trace_scene *scene, struct vec3 position, 
     return (struct trace_ao){1.0 - threshold / rays, 1.0 - falloff / rays};
 }
 
-bool trace_primary(const struct trace_scene *scene, const struct trace_camera *camera, double x, double y, int width,
-                  int height, struct trace_hit *hit, struct trace_ray *ray)
+bool trace_primary(const struct trace_scene *scene, const struct trace_camera *camera, double x,
+                   double y, int width, int height, struct trace_hit *hit, struct trace_ray *ray)
 {
     *ray = trace_camera_ray(camera, x, y, width, height);
     return trace_closest(scene, ray->origin, ray->direction, camera->near / ray->z_per_t,
@@ -64,8 +64,8 @@ static void store3(float *out, size_t texel, struct vec3 v)
     out[texel * 3 + 2] = (float)v.z;
 }
 
-void trace_gbuffer(const struct trace_scene *scene, const struct trace_camera *camera, int width, int height, int row,
-                   int row_end, const struct trace_gbuffer *out)
+void trace_gbuffer(const struct trace_scene *scene, const struct trace_camera *camera, int width,
+                   int height, int row, int row_end, const struct trace_gbuffer *out)
 {
     for (int y = row; y < row_end; y++) {
         for (int x = 0; x < width; x++) {
@@ -87,8 +87,9 @@ void trace_gbuffer(const struct trace_scene *scene, const struct trace_camera *c
     }
 }
 
-void trace_ao_image(const struct trace_scene *scene, const struct trace_camera *camera, int width, int height, int row,
-                    int row_end, double radius, int rays, float *threshold, float *falloff)
+void trace_ao_image(const struct trace_scene *scene, const struct trace_camera *camera, int width,
+                    int height, int row, int row_end, double radius, int rays, float *threshold,
+                    float *falloff)
 {
     for (int y = row; y < row_end; y++) {
         for (int x = 0; x < width; x++) {
@@ -98,7 +99,8 @@ void trace_ao_image(const struct trace_scene *scene, const struct trace_camera *
             struct trace_ray ray;
             if (trace_primary(scene, camera, x + 0.5, y + 0.5, width, height, &hit, &ray)) {
                 struct vec3 normal = trace_facing(&hit, ray.direction);
-                ao = trace_ao(scene, hit.position, normal, radius, rays, trace_hash((uint32_t)texel));
+                ao = trace_ao(scene, hit.position, normal, radius, rays,
+                              trace_hash((uint32_t)texel));
             }
             threshold[texel] = (float)ao.threshold;
             falloff[texel] = (float)ao.falloff;

@@ -19,8 +19,8 @@ static void print_text(const struct gpu_device_list *list)
         const VkPhysicalDeviceProperties *p = &list->properties[i];
         char api[32];
         version_text(p->apiVersion, api);
-        printf("%u  %s  (%s, Vulkan %s%s)\n", i, p->deviceName, gpu_device_type_name(p->deviceType), api,
-               p->apiVersion < VKAO_MIN_API_VERSION ? ", too old" : "");
+        printf("%u  %s  (%s, Vulkan %s%s)\n", i, p->deviceName, gpu_device_type_name(p->deviceType),
+               api, p->apiVersion < VKAO_MIN_API_VERSION ? ", too old" : "");
     }
 }
 

@@ -82,7 +82,8 @@ static void add_camera(cJSON *object, const struct camera *camera)
         cJSON_AddNumberToObject(entry, "far", camera->far_plane);
     cJSON_AddNumberToObject(entry, "shift_x", camera->shift_x);
     cJSON_AddNumberToObject(entry, "shift_y", camera->shift_y);
-    cJSON_AddStringToObject(entry, "rotation", camera->has_rotation ? camera->rotation_source : "unknown");
+    cJSON_AddStringToObject(entry, "rotation",
+                            camera->has_rotation ? camera->rotation_source : "unknown");
 }
 
 static void add_conventions(cJSON *object, const struct gbuffer *g)
@@ -97,7 +98,8 @@ static void add_conventions(cJSON *object, const struct gbuffer *g)
     cJSON_AddNumberToObject(entry, "background_share", g->background_share);
     cJSON_AddNumberToObject(entry, "invalid_share", g->invalid_share);
     bool normals = g->normal_space != NORMAL_SPACE_AUTO;
-    cJSON_AddStringToObject(entry, "normal_space", normals ? normal_space_name(g->normal_space) : "none");
+    cJSON_AddStringToObject(entry, "normal_space",
+                            normals ? normal_space_name(g->normal_space) : "none");
     if (normals)
         cJSON_AddStringToObject(entry, "normal_encoding", normal_encoding_name(g->normal_encoding));
 }
@@ -125,8 +127,8 @@ static cJSON *describe_view(const struct options *options, const struct frame_so
     return object;
 }
 
-/* A file whose roles are not found is inspected all the same: that is what the command is for. Damaged files are an
- * error. */
+/* A file whose roles are not found is inspected all the same: that is what the command is for.
+ * Damaged files are an error. */
 static cJSON *describe(const struct options *options, const struct plan_frame *frame,
                        struct report *report, struct tool_error *err)
 {
@@ -195,8 +197,7 @@ static void print_part(const cJSON *part)
         printf(", pixel aspect %g", number_of(part, "pixel_aspect"));
     printf("\n");
     const cJSON *channel;
-    cJSON_ArrayForEach(channel, cJSON_GetObjectItemCaseSensitive(part, "channels"))
-    {
+    cJSON_ArrayForEach (channel, cJSON_GetObjectItemCaseSensitive(part, "channels")) {
         printf("  %-5s %s", text_of(channel, "type"), text_of(channel, "name"));
         if (number_of(channel, "x_sampling") > 1 || number_of(channel, "y_sampling") > 1)
             printf(" (sub-sampled %gx%g)", number_of(channel, "x_sampling"),
@@ -228,12 +229,14 @@ static void print_conventions(const cJSON *c)
     printf("  depth is  %s", text_of(c, "depth_type"));
     if (has(c, "min_z"))
         printf(": z %.5g to %.5g, median %.5g; background %.3g %%", number_of(c, "min_z"),
-               number_of(c, "max_z"), number_of(c, "median_z"), number_of(c, "background_share") * 100);
+               number_of(c, "max_z"), number_of(c, "median_z"),
+               number_of(c, "background_share") * 100);
     if (number_of(c, "invalid_share") > 0)
         printf(", invalid %.3g %%", number_of(c, "invalid_share") * 100);
     printf("\n");
     if (has(c, "normal_encoding"))
-        printf("  normals   %s space, %s\n", text_of(c, "normal_space"), text_of(c, "normal_encoding"));
+        printf("  normals   %s space, %s\n", text_of(c, "normal_space"),
+               text_of(c, "normal_encoding"));
     else if (has(c, "normal_space"))
         printf("  normals   from depth\n");
 }
@@ -271,8 +274,10 @@ static void print_text(const cJSON *root)
 {
     const cJSON *item;
     printf("%s\n", text_of(root, "file"));
-    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "parts")) print_part(item);
-    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "views")) print_view(item);
+    cJSON_ArrayForEach (item, cJSON_GetObjectItemCaseSensitive(root, "parts"))
+        print_part(item);
+    cJSON_ArrayForEach (item, cJSON_GetObjectItemCaseSensitive(root, "views"))
+        print_view(item);
     print_problem(root);
 }
 

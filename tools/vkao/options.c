@@ -48,8 +48,8 @@ static void add_option(struct text *text, const struct option_row *row)
     char letter[8] = "    ";
     if (row->letter)
         snprintf(letter, sizeof letter, "-%c, ", row->letter);
-    int used = snprintf(left, sizeof left, "  %s--%s%s%s", letter, row->name, row->argument ? " " : "",
-                        row->argument ? row->argument : "");
+    int used = snprintf(left, sizeof left, "  %s--%s%s%s", letter, row->name,
+                        row->argument ? " " : "", row->argument ? row->argument : "");
     bool tell = row->fallback && strcmp(row->fallback, "auto") != 0 && row->apply != apply_text;
     snprintf(help, sizeof help, "%s%s%s%s", row->help, tell ? " (default: " : "",
              tell ? row->fallback : "", tell ? ")" : "");

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The command line. Every option is one row of the table in options_table.c: parsing, ranges, defaults, --help and
- * the suggestion for a misspelt one come from there. */
+ * The command line. Every option is one row of the table in options_table.c: parsing, ranges,
+ * defaults, --help and the suggestion for a misspelt one come from there. */
 #ifndef VKAO_TOOLS_OPTIONS_H_
 #define VKAO_TOOLS_OPTIONS_H_
 
@@ -49,8 +49,8 @@ struct options {
 };
 
 struct option_row;
-typedef bool option_apply(struct options *options, const struct option_row *row, const char *argument,
-                          struct tool_error *err);
+typedef bool option_apply(struct options *options, const struct option_row *row,
+                          const char *argument, struct tool_error *err);
 
 /* A number's range. high = INFINITY: no upper end. */
 struct option_range {
@@ -64,9 +64,9 @@ struct option_word {
 };
 
 struct option_row {
-    const char *heading; /* printed above it in --help, or NULL */
-    const char *name;    /* without dashes */
-    char letter;         /* 0 = no short form */
+    const char *heading;  /* printed above it in --help, or NULL */
+    const char *name;     /* without dashes */
+    char letter;          /* 0 = no short form */
     const char *argument; /* as --help shows it; NULL = takes none */
     const char *fallback; /* default, applied before argv is read; NULL = leave zero */
     const char *help;
@@ -86,7 +86,8 @@ bool options_parse(int argc, char **argv, struct options *options, struct tool_e
 void options_help(struct text *text);
 
 /* Values of apply. */
-option_apply apply_flag, apply_text, apply_word, apply_float, apply_double, apply_uint, apply_radius,
-    apply_bias, apply_blur, apply_fov, apply_normal, apply_compression, apply_verbose, apply_quiet;
+option_apply apply_flag, apply_text, apply_word, apply_float, apply_double, apply_uint,
+    apply_radius, apply_bias, apply_blur, apply_fov, apply_normal, apply_compression, apply_verbose,
+    apply_quiet;
 
 #endif

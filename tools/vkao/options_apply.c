@@ -44,7 +44,8 @@ bool apply_word(struct options *options, const struct option_row *row, const cha
         }
         text_add(&wanted, "%s%s", w == row->words ? "" : w[1].word ? ", " : " or ", w->word);
     }
-    fail(err, EXIT_USAGE, "--%s is '%s', want %s", row->name, argument, wanted.data ? wanted.data : "");
+    fail(err, EXIT_USAGE, "--%s is '%s', want %s", row->name, argument,
+         wanted.data ? wanted.data : "");
     text_free(&wanted);
     return false;
 }
@@ -58,15 +59,16 @@ static bool fail_range(const struct option_row *row, const char *argument, bool 
     if (isinf(r->high))
         snprintf(wanted, sizeof wanted, "%s %g", r->low_is_excluded ? ">" : ">=", r->low);
     else
-        snprintf(wanted, sizeof wanted, "%s %.10g and <= %.10g", r->low_is_excluded ? ">" : ">=",
-                 r->low, r->high);
+        snprintf(wanted, sizeof wanted, "%s %.10g and <= %.10g",
+                 r->low_is_excluded ? ">" : ">=", r->low, r->high);
     return fail(err, EXIT_USAGE, "--%s is %s, want a %s %s", row->name, argument, noun, wanted);
 }
 
 static bool in_range(const struct option_range *range, double value)
 {
     bool low = range->low_is_excluded ? value > range->low : value >= range->low;
-    bool high = isinf(range->high) ? range->infinity_is_allowed || isfinite(value) : value <= range->high;
+    bool high =
+        isinf(range->high) ? range->infinity_is_allowed || isfinite(value) : value <= range->high;
     return low && high;
 }
 
@@ -140,8 +142,8 @@ bool apply_fov(struct options *options, const struct option_row *row, const char
     bool axis = !colon || strcmp(colon, ":h") == 0 || strcmp(colon, ":v") == 0;
     if (!axis || !text_to_number(number, &value) || !(value > 0 && value < 180))
         return fail(err, EXIT_USAGE,
-                    "--%s is %s, want degrees > 0 and < 180, followed by :h or :v or nothing", row->name,
-                    argument);
+                    "--%s is %s, want degrees > 0 and < 180, followed by :h or :v or nothing",
+                    row->name, argument);
     options->gbuffer.camera.fov_deg = value;
     options->gbuffer.camera.fov_is_vertical = colon && colon[1] == 'v';
     return true;

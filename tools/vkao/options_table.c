@@ -7,8 +7,14 @@
 #define RENDER COMMAND_RENDER
 #define INSPECT COMMAND_INSPECT
 #define DEVICES COMMAND_DEVICES
-#define ABOVE_ZERO {.low = 0, .high = INFINITY, .low_is_excluded = true}
-#define FROM_TO(from, to) {.low = (from), .high = (to)}
+#define ABOVE_ZERO                                          \
+    {                                                       \
+        .low = 0, .high = INFINITY, .low_is_excluded = true \
+    }
+#define FROM_TO(from, to)           \
+    {                               \
+        .low = (from), .high = (to) \
+    }
 
 static const struct option_word modes[] = {
     {"ao", OUTPUT_AO}, {"append", OUTPUT_APPEND}, {"comp", OUTPUT_COMP}, {0}};
@@ -74,7 +80,8 @@ const struct option_row option_table[] = {
      .commands = RENDER, .apply = apply_flag, .offset = AT(continue_on_error)},
     {.heading = "Channels", .name = "depth", .argument = "NAME",
      .help = "channel, layer or part/channel. Default: found by the names that renderers use",
-     .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(gbuffer.roles.name[ROLE_DEPTH])},
+     .commands = RENDER | INSPECT, .apply = apply_text,
+     .offset = AT(gbuffer.roles.name[ROLE_DEPTH])},
     {.name = "depth-type", .argument = "TYPE", .fallback = "auto",
      .help = "planar: along the view axis; radial: from the eye; radial-near: along the ray from"
              " the near plane (Mitsuba); inverse: 1/planar (Nuke); device: a depth buffer. auto:"
@@ -83,7 +90,8 @@ const struct option_row option_table[] = {
      .words = depth_types},
     {.name = "normal", .argument = "NAME",
      .help = "layer of the normals, or none: derive them from depth",
-     .commands = RENDER | INSPECT, .apply = apply_normal, .offset = AT(gbuffer.roles.name[ROLE_NORMAL])},
+     .commands = RENDER | INSPECT, .apply = apply_normal,
+     .offset = AT(gbuffer.roles.name[ROLE_NORMAL])},
     {.name = "normal-space", .argument = "SPACE", .fallback = "auto",
      .help = "world or camera. auto: by name, camera and looks",
      .commands = RENDER | INSPECT, .apply = apply_word, .offset = AT(gbuffer.normal_space),
@@ -94,7 +102,8 @@ const struct option_row option_table[] = {
      .words = encodings},
     {.name = "color", .argument = "NAME",
      .help = "layer of the colour, for --mode comp",
-     .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(gbuffer.roles.name[ROLE_COLOR])},
+     .commands = RENDER | INSPECT, .apply = apply_text,
+     .offset = AT(gbuffer.roles.name[ROLE_COLOR])},
     {.name = "view", .argument = "NAME",
      .help = "one view of a stereo file, or all. Default: all if the camera file has views",
      .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(view)},
@@ -116,7 +125,8 @@ const struct option_row option_table[] = {
      .help = "far plane, for depth type device; may be inf. near > far: reversed",
      .commands = RENDER | INSPECT, .apply = apply_double, .offset = AT(gbuffer.camera.far_plane),
      .range = {.low = 0, .high = INFINITY, .low_is_excluded = true, .infinity_is_allowed = true}},
-    {.heading = "Ambient occlusion", .name = "method", .letter = 'm', .argument = "NAME", .fallback = "hemisphere",
+    {.heading = "Ambient occlusion",
+     .name = "method", .letter = 'm', .argument = "NAME", .fallback = "hemisphere",
      .help = "hemisphere or sphere",
      .commands = RENDER, .apply = apply_word, .offset = AT(ssao.method), .words = methods},
     {.name = "sphere-form", .argument = "FORM", .fallback = "rescaled",
@@ -133,7 +143,7 @@ const struct option_row option_table[] = {
      .help = "points per texel, 1 to 64",
      .commands = RENDER, .apply = apply_uint, .offset = AT(ssao.sample_count),
      .range = FROM_TO(1, 64)},
-    {.name = "bias", .argument = "B", .fallback = "0.02",
+    {.name = "bias", .argument = "B", .fallback = "0.01",
      .help = "share of the radius, 0 to 1, by which an occluder must stand in front; raised for "
              "half depth if not given",
      .commands = RENDER, .apply = apply_bias, .offset = AT(ssao.bias), .range = FROM_TO(0, 1)},

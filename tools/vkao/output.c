@@ -28,11 +28,13 @@ static void ao_part_name(const struct options *o, const char *view, char name[NA
 }
 
 static void color_part_name(const struct options *o, const struct exr_info *info,
-                            const struct rendered_view *view, size_t view_count, char name[NAME_BYTES])
+                            const struct rendered_view *view, size_t view_count,
+                            char name[NAME_BYTES])
 {
     const struct exr_part *part = &info->parts[view->gbuffer.roles.kind[ROLE_COLOR].part];
     const char *base = o->part_name ? o->part_name : part->name ? part->name : "";
-    bool shared = view_count > 1 && (o->part_name || info->part_count == 1 || !part->view || !*part->view);
+    bool shared =
+        view_count > 1 && (o->part_name || info->part_count == 1 || !part->view || !*part->view);
     if (shared)
         snprintf(name, NAME_BYTES, "%s.%s", *base ? base : "rgba", view->name);
     else
@@ -64,7 +66,8 @@ static const char *file_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-/* The alpha of colour goes out as it came in; the library passes it on, but through its own image format. */
+/* The alpha of colour goes out as it came in; the library passes it on, but through its own image
+ * format. */
 static void restore_alpha(const struct rendered_view *view)
 {
     size_t texels = (size_t)view->gbuffer.width * view->gbuffer.height;
@@ -89,7 +92,8 @@ static size_t fill_channels(const struct options *o, const struct rendered_view 
 
 static bool fill_part(const struct options *o, const struct frame_source *source,
                       const struct rendered_view *view, const char *device,
-                      struct part_storage *storage, struct exr_new_part *part, struct tool_error *err)
+                      struct part_storage *storage, struct exr_new_part *part,
+                      struct tool_error *err)
 {
     const struct gbuffer *g = &view->gbuffer;
     static char version[16];
@@ -174,8 +178,8 @@ static void preview_path(const char *path, const char *view, size_t view_count, 
         text_add(out, "%s", path);
 }
 
-static bool write_preview(const struct options *o, const char *path, const struct rendered_view *view,
-                          struct tool_error *err)
+static bool write_preview(const struct options *o, const char *path,
+                          const struct rendered_view *view, struct tool_error *err)
 {
     bool grey = o->mode != OUTPUT_COMP;
     size_t texels = (size_t)view->gbuffer.width * view->gbuffer.height, bytes;

@@ -27,7 +27,8 @@ bool output_write(const struct options *options, const struct plan_frame *frame,
                   const struct frame_source *source, const struct rendered_view *views,
                   const char *device, struct tool_error *err);
 
-/* The record that goes into the attribute vkao/params: JSON on one line, malloc'ed; NULL if memory runs out. */
+/* The record that goes into the attribute vkao/params: JSON on one line, malloc'ed; NULL if memory
+ * runs out. */
 char *output_params_json(const struct options *options, const struct rendered_view *view,
                          const char *device);
 

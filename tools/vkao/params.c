@@ -29,14 +29,16 @@ static void add_camera(cJSON *root, const struct camera *camera)
     cJSON_AddStringToObject(object, "source", camera->source[0] ? camera->source : "assumed");
 }
 
-char *output_params_json(const struct options *o, const struct rendered_view *view, const char *device)
+char *output_params_json(const struct options *o, const struct rendered_view *view,
+                         const char *device)
 {
     const struct gbuffer *g = &view->gbuffer;
     cJSON *root = cJSON_CreateObject();
     cJSON_AddStringToObject(root, "method", method_name(o));
     if (o->ssao.method == VKAO_SSAO_SPHERE)
         cJSON_AddStringToObject(root, "sphere_form",
-                                o->ssao.sphere_form == VKAO_SPHERE_LITERAL ? "literal" : "rescaled");
+                                o->ssao.sphere_form == VKAO_SPHERE_LITERAL ? "literal"
+                                                                           : "rescaled");
     add_number(root, "radius", view->ssao.radius);
     cJSON_AddStringToObject(root, "falloff",
                             o->ssao.falloff == VKAO_FALLOFF_SMOOTH ? "smooth" : "threshold");

@@ -37,7 +37,8 @@ static bool parse_pattern(const char *path, bool is_read, struct frame_pattern *
     return pattern->prefix || fail(err, EXIT_MEMORY, "%s: out of memory", path);
 }
 
-static bool parse_patterns(const struct options *o, struct patterns *patterns, struct tool_error *err)
+static bool parse_patterns(const struct options *o, struct patterns *patterns,
+                           struct tool_error *err)
 {
     const char *paths[PATH_KINDS] = {o->input, o->output, o->camera_file, o->preview};
     *patterns = (struct patterns){0};
@@ -88,11 +89,12 @@ static const char *found_path(const struct frame_list *found, int64_t number)
         else
             high = middle;
     }
-    return low < found->count && found->frames[low].number == number ? found->frames[low].path : NULL;
+    return low < found->count && found->frames[low].number == number ? found->frames[low].path
+                                                                     : NULL;
 }
 
-static bool add_frame(const struct patterns *patterns, const struct frame_list *found, int64_t number,
-                      struct plan *plan, struct tool_error *err)
+static bool add_frame(const struct patterns *patterns, const struct frame_list *found,
+                      int64_t number, struct plan *plan, struct tool_error *err)
 {
     struct plan_frame *frame = &plan->frames[plan->count++];
     frame->number = number;
@@ -100,8 +102,8 @@ static bool add_frame(const struct patterns *patterns, const struct frame_list *
         if (!patterns->given[k])
             continue;
         const char *path = k == PATH_INPUT ? found_path(found, number) : NULL;
-        char *copy = path ? text_copy(path, strlen(path))
-                          : frame_pattern_path(&patterns->of[k], number);
+        char *copy =
+            path ? text_copy(path, strlen(path)) : frame_pattern_path(&patterns->of[k], number);
         if (!copy)
             return fail(err, EXIT_MEMORY, "out of memory for a list of frames");
         *path_of(frame, (enum path_kind)k) = copy;
@@ -136,7 +138,8 @@ static bool list_frames(const struct options *o, const struct patterns *patterns
         ok = frame_list_parse(o->frames, o->frame_syntax, &wanted, err);
     if (ok && plan->is_sequence) {
         /* Named frames may lie in a directory that cannot be listed. */
-        ok = frame_pattern_scan(&patterns->of[PATH_INPUT], &found, o->frames ? &unseen : err) || o->frames;
+        ok = frame_pattern_scan(&patterns->of[PATH_INPUT], &found, o->frames ? &unseen : err) ||
+             o->frames;
         if (ok && !o->frames && found.count == 0)
             ok = fail(err, EXIT_INPUT, "%s: no file matches", o->input);
     }
@@ -174,12 +177,33 @@ static bool check_distinct(struct plan_frame *frame, struct tool_error *err)
     return true;
 }
 
+/* Where there is no directory, no AO needs to be computed. */
+static bool check_directory(const char *path, struct tool_error *err)
+{
+    const char *slash = strrchr(path, '/');
+    struct stat s;
+    if (!slash || slash == path)
+        return true;
+    char *directory = text_copy(path, (size_t)(slash - path));
+    if (!directory)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    bool ok = stat(directory, &s) == 0 && S_ISDIR(s.st_mode);
+    if (!ok) {
+        fail_hint(err, "make it first: mkdir -p '%s'", directory);
+        fail(err, EXIT_OUTPUT, "%s: cannot create: there is no directory %s", path, directory);
+    }
+    free(directory);
+    return ok;
+}
+
 bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,
                         struct tool_error *err)
 {
     const char *paths[] = {frame->output, frame->preview};
-    for (size_t i = 0; !options->overwrite && i < 2; i++) {
-        if (!paths[i] || !exists(paths[i]))
+    for (size_t i = 0; i < 2; i++) {
+        if (paths[i] && !check_directory(paths[i], err))
+            return false;
+        if (options->overwrite || !paths[i] || !exists(paths[i]))
             continue;
         fail_hint(err, "add --overwrite always");
         return fail(err, EXIT_OUTPUT, "%s: exists, not overwritten", paths[i]);

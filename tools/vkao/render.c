@@ -4,6 +4,7 @@
 #include "ao.h"
 #include "gpu.h"
 #include "output.h"
+#include "placement.h"
 #include "plan.h"
 #include "views.h"
 
@@ -107,12 +108,14 @@ static void summarise(struct session *s, const struct rendered_view *view)
 {
     const struct gbuffer *g = &view->gbuffer;
     const struct role *depth = &g->roles.kind[ROLE_DEPTH], *normal = &g->roles.kind[ROLE_NORMAL];
-    char normals[ROLE_LABEL_MAX + 32] = "from depth", camera[160], device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
+    char normals[ROLE_LABEL_MAX + 32] = "from depth", camera[160],
+                                  device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
     if (s->summarised)
         return;
     s->summarised = true;
     if (g->normal_space != NORMAL_SPACE_AUTO)
-        snprintf(normals, sizeof normals, "%s (%s%s)", normal->label, normal_space_name(g->normal_space),
+        snprintf(normals, sizeof normals, "%s (%s%s)", normal->label,
+                 normal_space_name(g->normal_space),
                  g->normal_encoding == NORMAL_ENCODING_UNSIGNED ? ", 0..1" : "");
     const char *source = g->camera.source[0] ? g->camera.source : "assumed";
     if (g->camera.type == CAMERA_ORTHOGRAPHIC)
@@ -120,9 +123,10 @@ static void summarise(struct session *s, const struct rendered_view *view)
     else
         snprintf(camera, sizeof camera, "fov=%.3gh (%s)", camera_fov_x_deg(&g->camera), source);
     device_name(s, device, sizeof device);
-    report_note(s->report, "using: depth=%s (%s, %s) normal=%s %s radius=%g%s device=%s", depth->label,
-                depth_type_name(g->depth_type), pixel_type_name(depth->channels[0]->type), normals,
-                camera, (double)view->ssao.radius, s->options->radius_is_auto ? " (auto)" : "", device);
+    report_note(s->report, "using: depth=%s (%s, %s) normal=%s %s radius=%g%s device=%s",
+                depth->label, depth_type_name(g->depth_type),
+                pixel_type_name(depth->channels[0]->type), normals, camera,
+                (double)view->ssao.radius, s->options->radius_is_auto ? " (auto)" : "", device);
 }
 
 static void tell_details(const struct session *s, const struct frame_source *source,
@@ -141,8 +145,32 @@ static void tell_details(const struct session *s, const struct frame_source *sou
 
 /* --- One frame --- */
 
-static bool render_view(struct session *s, const struct frame_source *source, const struct view *view,
-                        struct rendered_view *out, struct times *times, struct tool_error *err)
+static bool compute(struct session *s, struct rendered_view *view, struct tool_error *err)
+{
+    struct gbuffer *g = &view->gbuffer;
+    struct placement placement;
+    if (!placement_expand(g, &placement, err))
+        return false;
+    const struct ao_job job = {
+        .width = g->width + placement.left,
+        .height = g->height + placement.top,
+        .depth = g->depth,
+        .normals = g->normals,
+        .color = g->color,
+        .view = g->view,
+        .ssao = view->ssao,
+        .blur = s->options->blur,
+        .composite = vkao_composite_params_default(),
+    };
+    if (!ao_run(s->ao, &job, &view->result, err))
+        return false;
+    placement_crop(&placement, g, &view->result);
+    return true;
+}
+
+static bool render_view(struct session *s, const struct frame_source *source,
+                        const struct view *view, struct rendered_view *out, struct times *times,
+                        struct tool_error *err)
 {
     const struct gbuffer_options options = view_options(s->options, view);
     double start = now_ms();
@@ -159,18 +187,7 @@ static bool render_view(struct session *s, const struct frame_source *source, co
     summarise(s, out);
     tell_details(s, source, out);
     start = now_ms();
-    const struct ao_job job = {
-        .width = g->width,
-        .height = g->height,
-        .depth = g->depth,
-        .normals = g->normals,
-        .color = g->color,
-        .view = g->view,
-        .ssao = out->ssao,
-        .blur = s->options->blur,
-        .composite = vkao_composite_params_default(),
-    };
-    bool ok = ao_run(s->ao, &job, &out->result, err);
+    bool ok = compute(s, out, err);
     times->compute += now_ms() - start;
     free(g->depth);
     free(g->normals);
@@ -229,8 +246,8 @@ static int render_plan(struct session *s, const struct plan *plan)
         const struct plan_frame *frame = &plan->frames[i];
         struct tool_error err = {0};
         if (plan->is_sequence)
-            report_note(s->report, "frame %zu/%zu (%" PRId64 "): %s", i + 1, plan->count, frame->number,
-                        frame->output);
+            report_note(s->report, "frame %zu/%zu (%" PRId64 "): %s", i + 1, plan->count,
+                        frame->number, frame->output);
         if (render_frame(s, frame, &err))
             continue;
         hint_at_frames(plan, frame, s->options, &err);

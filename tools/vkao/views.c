@@ -39,8 +39,8 @@ static bool add_view(struct frame_source *source, const char *name, const char *
     for (size_t i = 0; i < source->cameras.count; i++)
         text_add(&list, "%s%s", i ? ", " : "", source->cameras.views[i].name);
     if (*camera_name)
-        fail(err, EXIT_CHANNELS, "%s: no camera for view '%s', only for %s", camera_path, camera_name,
-             list.data ? list.data : "none");
+        fail(err, EXIT_CHANNELS, "%s: no camera for view '%s', only for %s", camera_path,
+             camera_name, list.data ? list.data : "none");
     else
         fail(err, EXIT_CHANNELS, "%s: cameras for the views %s, but %s has no views", camera_path,
              list.data ? list.data : "none", source->info.path);

@@ -30,7 +30,8 @@ struct frame_source {
 bool frame_source_open(const struct options *options, const char *path, const char *camera_path,
                        struct frame_source *source, struct tool_error *err);
 /* As above, up to the header alone. */
-bool frame_source_read_header(const char *path, struct frame_source *source, struct tool_error *err);
+bool frame_source_read_header(const char *path, struct frame_source *source,
+                              struct tool_error *err);
 bool frame_source_choose_views(const struct options *options, const char *camera_path,
                                struct frame_source *source, struct tool_error *err);
 void frame_source_close(struct frame_source *source);

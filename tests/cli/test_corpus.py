@@ -1,0 +1,284 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Files of real renderers against ray-traced ground truth, and awkward files against what is
+expected of them. The corpus lies outside the repository: without it all cases are skipped."""
+import csv
+import os
+
+import numpy as np
+
+from cli import (CHANNELS, INPUT, OK, case, cases, check, check_ao, check_close, corpus, equal,
+                 find_corpus, main, matches, read_ao, read_parts, skip)
+from exr_raw import read_raw
+
+# Root mean square differences to the ground truth, as measured, with the radius of the ground
+# truth and the default options: sphere smooth, hemisphere smooth, sphere threshold, hemisphere
+# threshold. None: left out, for the sake of time. Anything above 1.1 times these is a regression;
+# lower them when methods improve.
+MEASURED = {
+    'b5_furniture_ao256': (0.1417, 0.1163, 0.1600, 0.1325),
+    'b5_suzannes_a': (0.1257, 0.1113, None, None),
+    'b5_suzannes_interleaved': (0.0293, 0.0243, 0.0373, 0.0296),
+    'b5_suzannes_ortho': (0.1449, 0.1242, 0.1763, 0.1373),
+    'b5_suzannes_stereo': (0.1191, 0.1122, 0.1432, 0.1222),
+    'b5_suzannes_tiled': (0.1194, 0.1100, 0.1546, 0.1335),
+    'm3_city_a': (0.1444, 0.1207, None, None),
+    'm3_cornell_a': (0.1246, 0.1297, None, None),
+    'm3_cornell_half': (0.1221, 0.1275, 0.1528, 0.1575),
+    'm3_cornell_native': (0.1220, 0.1275, 0.1527, 0.1574),
+    'm3_cornell_tiny': (0.1220, 0.1275, 0.1527, 0.1574),
+    'm3_sponza_a': (0.1562, 0.1470, None, None),
+    'm3_statues_a': (0.1083, 0.0879, None, None),
+    'm3_statues_aa64': (0.1083, 0.0898, 0.1360, 0.1132),
+    'm3_statues_ortho': (0.1096, 0.0768, 0.1428, 0.1030),
+    'm3_statues_tiny': (0.1098, 0.0895, 0.1374, 0.1125),
+}
+# The worst of the eight frames.
+MEASURED_SEQUENCE = (0.1262, 0.1147, 0.1567, 0.1308)
+RUNS = (('sphere', 'smooth'), ('hemisphere', 'smooth'),
+        ('sphere', 'threshold'), ('hemisphere', 'threshold'))
+MARGIN = 1.1
+PLAIN = ('--pixel-type', 'float', '--compression', 'none', '--overwrite', 'always')
+
+
+def truth(name):
+    part = read_parts(corpus(f'{name}.gt.exr'))[0]
+    return part, f'{part.attributes["aoRadius"]:.6g}'
+
+
+def depth_of(path, view=''):
+    """The depth channel as stored, of the part or the view asked for."""
+    for part in read_parts(path):
+        if view and part.attributes.get('view') != view:
+            continue
+        for name, plane in part.channels.items():
+            if name.endswith('Depth.Z') or name == 'dd.y.T':
+                return plane.astype(np.float32)
+    return check(False, f'{path}: no depth')
+
+
+def check_truth(ao, depth, wanted, measured, what):
+    equal(ao.shape, wanted.shape, f'{what}: size')
+    check_ao(ao, what)
+    background = (depth == 0) | (depth == np.float32(1e10))
+    check((ao[background] == 1).all(), f'{what}: background is not 1')
+    error = float(np.sqrt(np.mean((ao.astype(np.float64) - wanted) ** 2)))
+    print(f'  {what}: RMSE {error:.4f}')
+    check(error <= measured * MARGIN,
+          f'{what}: RMSE {error:.4f}, want <= {measured} * {MARGIN}')
+
+
+def compare(scratch, name, run, measured):
+    views = ('left', 'right') if 'stereo' in name else ('',)
+    truths = [truth(f'{name}.{v}' if v else name) for v in views]
+    source = corpus(f'{name}.exr')
+    scratch.render(source, '-o', 'ao.exr', *PLAIN, '--camera', corpus(f'{name}.camera.json'),
+                   '--radius', truths[0][1], '--method', run[0], '--falloff', run[1])
+    parts = read_parts(scratch.path('ao.exr'))
+    equal(len(parts), len(views), 'number of parts')
+    channel = 'AO_falloff' if run[1] == 'smooth' else 'AO_threshold'
+    for part, view, (wanted, _) in zip(parts, views, truths):
+        check_truth(part['AO'], depth_of(source, view), wanted[channel], measured,
+                    ' '.join((name, view, *run)))
+
+
+@cases(MEASURED)
+def ground_truth(scratch, name):
+    for run, measured in zip(RUNS, MEASURED[name]):
+        if measured is not None:
+            compare(scratch, name, run, measured)
+
+
+@cases([(' '.join(run), run, measured) for run, measured in zip(RUNS, MEASURED_SEQUENCE)])
+def ground_truth_of_a_sequence(scratch, _, run, measured):
+    pattern = os.path.join(os.path.dirname(corpus('b5_suzannes_seq.0001.exr')),
+                           'b5_suzannes_seq.####')
+    _, radius = truth('b5_suzannes_seq.0001')
+    result = scratch.render(f'{pattern}.exr', '-o', 'ao.####.exr', *PLAIN, '--camera',
+                            f'{pattern}.camera.json', '--radius', radius, '--method', run[0],
+                            '--falloff', run[1])
+    matches(r'frame 8/8 \(8\)', result.stderr, 'progress: ground truth files are no frames')
+    channel = 'AO_falloff' if run[1] == 'smooth' else 'AO_threshold'
+    for n in range(1, 9):
+        name = f'b5_suzannes_seq.{n:04d}'
+        check_truth(read_ao(scratch.path(f'ao.{n:04d}.exr')), depth_of(corpus(f'{name}.exr')),
+                    truth(name)[0][channel], measured, ' '.join((name, *run)))
+
+
+@case
+def no_file_of_the_corpus_is_left_out(scratch):
+    directory = os.path.dirname(corpus('m3_statues_tiny.exr'))
+    names = {f[:-4] for f in os.listdir(directory) if f.endswith('.exr') and '.gt.' not in f}
+    names = {n for n in names if not n.startswith('b5_suzannes_seq.')}
+    equal(names - set(MEASURED), set(), 'files without a ceiling')
+
+
+# --- Awkward files ---
+
+TINY = 'm3_statues_tiny'
+RADIUS = 0.5
+# Of 240 texels: how far 0.5 units reach at 3 units, the nearest depth, with 52 degrees; and blur.
+REACH = 45
+
+
+def awkward(scratch, name, *options):
+    scratch.render(corpus('awkward', name), '-o', 'out.exr', *PLAIN, '--radius', RADIUS, *options)
+    ao = read_ao(scratch.path('out.exr'))
+    check_ao(ao, name)
+    return ao
+
+
+def with_camera():
+    return '--camera', corpus(f'{TINY}.camera.json')
+
+
+def tiny(scratch, *options):
+    scratch.render(corpus(f'{TINY}.exr'), '-o', 'tiny.exr', *PLAIN, *with_camera(), '--radius',
+                   RADIUS, *options)
+    return read_ao(scratch.path('tiny.exr'))
+
+
+def process_same(scratch, name, *options):
+    check_close(awkward(scratch, name, *with_camera()), tiny(scratch, *options), 0, 0, name)
+
+
+def process_texel(scratch, name):
+    equal(awkward(scratch, name, *with_camera()).tolist(), [[1.0]], 'AO')
+
+
+def process_crop(scratch, name):
+    # 0.2 units at the nearest distance, 3, are 17 texels; the blur adds 4 and its normals 1.
+    options = '--radius', 0.2
+    ao = awkward(scratch, name, *with_camera(), *options)
+    part = read_parts(scratch.path('out.exr'))[0]
+    equal((part.data_window, part.display_window), ((40, 30, 189, 109), (0, 0, 239, 134)),
+          'windows')
+    whole, inner = tiny(scratch, *options)[30:110, 40:190], (slice(24, -24), slice(24, -24))
+    # The noise pattern begins at the corner of the data window: another one, of the same strength.
+    check_close(ao[inner], whole[inner], 0.1, 0.005, 'away from the cut')
+    wrong = tiny(scratch, *options, '--fov', 40)[30:110, 40:190]
+    check(np.abs(ao[inner] - wrong[inner]).mean() > 0.005, 'the display window does not matter')
+
+
+def process_half(scratch, name):
+    result = scratch.run(corpus('awkward', name), '-o', 'x.exr', *with_camera())
+    matches('warning: .*depth is HALF', result.stderr, 'stderr')
+    # Contours would be a tint of whole planes: the mean tells.
+    check_close(awkward(scratch, name, *with_camera()), tiny(scratch), 0.5, 0.01, name)
+
+
+def process_nan(scratch, name):
+    ao, source = awkward(scratch, name, *with_camera()), corpus('awkward', name)
+    part = read_parts(source)[0]
+    depth = part['dd.y.T']
+    broken = ~np.isfinite(depth) | (depth < 0) | (depth >= np.float32(1e30))
+    check(broken.any() and (ao[broken] == 1).all(), 'damaged depth is not background')
+    changed = broken | ~np.isfinite(part['nn.X'])
+    near = np.zeros_like(changed)
+    for y, x in zip(*np.nonzero(changed)):
+        near[max(0, y - REACH):y + REACH + 1, max(0, x - REACH):x + REACH + 1] = True
+    check((~near).sum() > 500, f'{(~near).sum()} texels to compare')
+    check_close(ao[~near], tiny(scratch)[~near], 0, 0, 'away from the damage')
+
+
+def process_unsigned(scratch, name):
+    result = scratch.run(corpus('awkward', name), '-o', 'x.exr', *with_camera())
+    matches('warning: .*0..1 encoded', result.stderr, 'stderr')
+    for encoding in ('auto', 'unsigned'):
+        ao = awkward(scratch, name, *with_camera(), '--normal-encoding', encoding)
+        check_close(ao, tiny(scratch), 0.3, 0.003, encoding)
+
+
+def process_depth_alone(scratch, name):
+    check_close(awkward(scratch, name, *with_camera()), tiny(scratch, '--normal', 'none'), 0, 0,
+                name)
+
+
+def process_header(scratch, name):
+    check_close(awkward(scratch, name), tiny(scratch), 0.15, 0.001, name)
+
+
+def process_beachball(scratch, name):
+    source = corpus('awkward', name)
+    scratch.fails(CHANNELS, 'several views: right, left', source, '-o', 'x.exr', hint='--view')
+    scratch.render(source, '-o', 'out.exr', '--view', 'all', '--fov', 40)
+    parts, before = read_parts(scratch.path('out.exr')), read_parts(source)
+    windows = {p.name: (p.data_window, p.display_window) for p in before}
+    equal([p.name for p in parts], ['ao.right', 'ao.left'], 'parts')
+    for part in parts:
+        check_ao(part['AO'].astype(np.float32), part.name)
+        equal((part.data_window, part.display_window), windows[part.name.replace('ao.', 'depth_')],
+              f'windows of {part.name}')
+
+
+PROCESS = {
+    'Beachball__multipart.0001.exr': process_beachball,
+    'gen_1x1.exr': process_texel,
+    'gen_datawindow_crop.exr': process_crop,
+    'gen_decreasing_y.exr': process_same,
+    'gen_half_depth.exr': process_half,
+    'gen_nan_inf_negative.exr': process_nan,
+    'gen_normal_encoded01.exr': process_unsigned,
+    'gen_piz.exr': process_same,
+    'gen_tiled_64x32.exr': process_same,
+    'gen_uncompressed.exr': process_depth_alone,
+    'gen_worldToCamera_worldToNDC.exr': process_header,
+}
+# Rejected as they are, but not with a --depth.
+WITH_DEPTH = {
+    'DisplayWindow__t02.exr': 'G',
+    'DisplayWindow__t08.exr': 'G',
+    'DisplayWindow__t15.exr': 'G',
+    'LuminanceChroma__Garden.exr': 'Y',
+    'TestImages__AllHalfValues.exr': 'R',
+}
+
+
+def expectations():
+    directory = find_corpus()
+    path = os.path.join(directory, 'awkward', 'EXPECT.tsv') if directory else ''
+    if not os.path.exists(path):
+        return [('all', '')]
+    with open(path, encoding='utf-8', newline='') as file:
+        return [(row['file'], row['expected']) for row in
+                csv.DictReader(file, delimiter='\t', quoting=csv.QUOTE_NONE)]
+
+
+def check_rejected(scratch, name, expected):
+    source = corpus('awkward', name)
+    no_depth, deep = 'no depth channel found' in expected, 'deep data' in expected
+    message = 'no depth channel found; channels: .' if no_depth else \
+        'deep data is not supported' if deep else r'.'
+    # A sound header may come before the damage, and have no depth.
+    code = scratch.run(source, '-o', 'x.exr', timeout=10).code
+    check(code == CHANNELS if no_depth else code in (INPUT, CHANNELS), f'{name}: exit code {code}')
+    result = scratch.fails(code, message, source, '-o', 'x.exr', timeout=10)
+    check(name in result.stderr, f'the message does not name the file: {result}')
+    inspected = scratch.run('inspect', source, '--json', timeout=10)
+    check(inspected.code in (OK, INPUT), f'inspect: exit code {inspected.code}')
+
+
+@cases(expectations())
+def awkward_file(scratch, name, expected):
+    corpus('awkward', 'EXPECT.tsv')
+    if expected.startswith('PROCESS'):
+        check(name in PROCESS, f'nothing is known about {name}: {expected}')
+        PROCESS[name](scratch, name)
+        return
+    check(expected.startswith('REJECT'), f'{name}: expected is {expected!r}')
+    check_rejected(scratch, name, expected)
+    if 'with --depth' in expected:
+        check(name in WITH_DEPTH, f'nothing is known about {name}: {expected}')
+
+
+@cases(WITH_DEPTH.items())
+def awkward_file_with_depth(scratch, name, channel):
+    awkward(scratch, name, '--depth', channel)
+    before = read_raw(open(corpus('awkward', name), 'rb').read())[0]
+    after = read_raw(scratch.bytes('out.exr'))[0]
+    for attribute in ('dataWindow', 'displayWindow', 'pixelAspectRatio'):
+        equal(after.attributes[attribute], before.attributes[attribute], attribute)
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,390 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""What fails says why in one line, with the documented exit code, and leaves nothing behind."""
+import json
+import os
+import re
+
+import numpy as np
+
+from cli import (CHANNELS, DEVICE, INPUT, OK, OUTPUT, USAGE, case, cases, check, corpus, equal,
+                 limit_file_size, main, matches, skip, write_exr)
+from exr_raw import patched
+from scene import FOV, Scene, camera, write_camera
+
+SCENE = Scene(64, 36)
+RUN = ('in.exr', '-o', 'out.exr', '--fov', FOV)
+
+
+def gbuffer(scratch, name='in.exr', **layout):
+    return write_exr(scratch.path(name), {'Z': SCENE.depth(), **SCENE.normals()}, **layout)
+
+
+# --- Input ---
+
+PNG = b'\x89PNG\r\n\x1a\n' + bytes(64)
+CONTENTS = [
+    ('png', PNG, r'in\.exr: not an OpenEXR file \(first bytes 89 50 4E 47 = PNG\)'),
+    ('text', b'#include <stdio.h>', r'in\.exr: not an OpenEXR file \(first bytes 23 69 6E 63'),
+    ('empty', b'', r'in\.exr: (empty|truncated|not an OpenEXR)'),
+    ('one byte', b'v', r'in\.exr: '),
+    ('magic alone', b'v/1\x01', r'in\.exr: truncated'),
+    ('zeros', bytes(1000), r'in\.exr: not an OpenEXR file'),
+]
+
+
+@cases(CONTENTS)
+def other_files_are_refused(scratch, _, content, message):
+    scratch.write('in.exr', content)
+    scratch.fails(INPUT, message, *RUN)
+    equal(scratch.run('inspect', 'in.exr').code, INPUT, 'exit code of inspect')
+
+
+@case
+def missing_input(scratch):
+    scratch.fails(INPUT, r'in\.exr: cannot open: No such file', *RUN)
+    scratch.fails(INPUT, r'a/b/in\.exr: cannot open: No such file', 'a/b/in.exr', '-o', 'x.exr')
+
+
+@case
+def directory_as_input(scratch):
+    os.mkdir(scratch.path('in.exr'))
+    scratch.fails(INPUT, r'in\.exr: cannot open: Is a directory', *RUN)
+
+
+@case
+def pipe_as_input_does_not_hang(scratch):
+    os.mkfifo(scratch.path('in.exr'))
+    scratch.fails(INPUT, r'in\.exr: cannot open: not a regular file', *RUN, timeout=20)
+
+
+@case
+def unreadable_input(scratch):
+    gbuffer(scratch)
+    os.chmod(scratch.path('in.exr'), 0)
+    if os.access(scratch.path('in.exr'), os.R_OK):
+        skip('this user may read everything')
+    scratch.fails(INPUT, r'in\.exr: cannot open: Permission denied', *RUN)
+
+
+@cases([('header', 0.02), ('table', 0.06), ('middle', 0.5), ('end', 0.99), ('last byte', None)])
+def truncated_files_are_refused(scratch, _, share):
+    gbuffer(scratch, compression='none')
+    whole = scratch.bytes('in.exr')
+    scratch.write('in.exr', whole[:-1] if share is None else whole[:int(len(whole) * share)])
+    scratch.fails(INPUT, r'in\.exr: .*(truncated|damaged|ends early)', *RUN)
+
+
+@case
+def every_prefix_is_refused(scratch):
+    write_exr(scratch.path('in.exr'), {'Z': np.full((4, 4), 3, np.float32)})
+    whole = scratch.bytes('in.exr')
+    for length in range(0, len(whole), 23):
+        scratch.write('in.exr', whole[:length])
+        scratch.fails(INPUT, r'in\.exr: ', *RUN)
+
+
+@cases([('htj2k256', 10), ('htj2k32', 11), (r'\(99\)', 99)])
+def unknown_compression_is_named(scratch, name, number):
+    gbuffer(scratch)
+    scratch.write('in.exr', patched(scratch.bytes('in.exr'), 'compression', bytes([number])))
+    scratch.fails(INPUT, rf'in\.exr: compression .*{name}.*needs a newer OpenEXR', *RUN,
+                  hint='oiiotool')
+
+
+@case
+def absurd_windows_are_refused(scratch):
+    gbuffer(scratch)
+    box = np.array([0, 0, 2 ** 31 - 2, 2 ** 31 - 2], '<i4').tobytes()
+    scratch.write('in.exr', patched(scratch.bytes('in.exr'), 'dataWindow', box))
+    scratch.fails(INPUT, r'in\.exr: .*(limit|damaged)', *RUN)
+
+
+@case
+def deep_files_are_refused(scratch):
+    with open(corpus('awkward', 'v2__LowResLeftView__Trunks.exr'), 'rb') as file:
+        scratch.write('in.exr', file.read())
+    scratch.fails(INPUT, r'in\.exr: deep data is not supported', *RUN, hint='oiiotool .*--flatten')
+
+
+# --- Channels ---
+
+@case
+def missing_depth_lists_the_channels(scratch):
+    write_exr(scratch.path('in.exr'), {**SCENE.color(), **SCENE.normals()})
+    scratch.fails(CHANNELS, r'in\.exr: no depth channel found; channels: .*\bR\b.*', *RUN,
+                  hint='--depth NAME')
+    run = scratch.run(*RUN)
+    for name in ('R', 'G', 'B', 'A', 'N.X', 'N.Y', 'N.Z'):
+        matches(rf'channels:.* {re.escape(name)}\b', run.stderr, 'the message')
+
+
+@case
+def two_depths_list_the_arguments(scratch):
+    write_exr(scratch.path('in.exr'), {'a.Depth.Z': SCENE.depth(), 'b.Depth.Z': SCENE.depth()})
+    scratch.fails(CHANNELS, r"in\.exr: 2 depth candidates: 'a\.Depth\.Z', 'b\.Depth\.Z'", *RUN,
+                  hint=r"--depth 'a\.Depth\.Z' or --depth 'b\.Depth\.Z'")
+    for name in ('a.Depth.Z', 'b.Depth.Z'):
+        scratch.render(*RUN, '--overwrite', 'always', '--depth', name)
+
+
+@case
+def two_depths_in_parts_list_the_arguments(scratch):
+    write_exr(scratch.path('in.exr'), ({'Z': SCENE.depth()}, {'name': 'one'}),
+              ({'Z': SCENE.depth()}, {'name': 'two'}))
+    result = scratch.fails(CHANNELS, r'in\.exr: 2 depth candidates', *RUN, hint='--depth')
+    names = re.findall(r"--depth '([^']+)'", result.stderr)
+    equal(len(names), 2, f'arguments in {result.stderr}')
+    for name in names:
+        scratch.render(*RUN, '--overwrite', 'always', '--depth', name)
+
+
+@cases([('depth', '--depth', 'nothing'), ('normal', '--normal', 'nothing'),
+        ('color', '--color', 'nothing')])
+def named_channels_must_exist(scratch, kind, option, name):
+    gbuffer(scratch)
+    scratch.fails(CHANNELS, rf"in\.exr: no channel or layer '{name}'; channels: .*Z", *RUN, option,
+                  name, '--mode', 'comp', hint=f'--{kind} takes')
+
+
+@case
+def radial_near_needs_near(scratch):
+    write_exr(scratch.path('in.exr'), {'dd.T': SCENE.depth('radial-near')})
+    scratch.fails(CHANNELS, r"in\.exr: depth 'dd\.T' is measured from the near plane", *RUN,
+                  hint='--near DISTANCE')
+    scratch.render(*RUN, '--near', 0.5)
+
+
+@cases([('neither', ()), ('near', ('--near', 1)), ('far', ('--far', 10))])
+def device_depth_needs_both_planes(scratch, _, planes):
+    gbuffer(scratch)
+    scratch.fails(CHANNELS, r'in\.exr: device depth needs both planes', *RUN, '--depth-type',
+                  'device', *planes, hint='--near and --far')
+
+
+@case
+def equal_planes_are_no_projection(scratch):
+    gbuffer(scratch)
+    scratch.fails(CHANNELS, r'planes at 2 and 2 give no projection', *RUN, '--depth-type',
+                  'device', '--near', 2, '--far', 2)
+
+
+@case
+def normals_of_no_encoding_are_refused(scratch):
+    normals = {k: np.abs(v) * np.float32(40) + 3 for k, v in SCENE.normals().items()}
+    write_exr(scratch.path('in.exr'), {'Z': SCENE.depth(), **normals})
+    scratch.fails(CHANNELS, r"in\.exr: normals 'N' are neither signed nor 0\.\.1", *RUN,
+                  hint='--normal-encoding')
+
+
+@case
+def world_normals_need_a_rotation(scratch):
+    gbuffer(scratch)
+    scratch.fails(CHANNELS, r'in\.exr: world-space normals need the rotation', *RUN,
+                  '--normal-space', 'world', hint='world_to_view')
+
+
+# --- Camera files ---
+
+TURN = camera()['world_to_view']
+CAMERAS = [
+    ('not JSON', '{"type": \n oops', r'camera\.json: not JSON \(line 2\)'),
+    ('empty', '', r'camera\.json: not JSON'),
+    ('list', '[1, 2]', r'camera\.json: a camera must be an object'),
+    ('no fov', {'type': 'perspective'}, "'fov_x_deg' must be given"),
+    ('no width', {'type': 'orthographic'}, "'ortho_width' must be given"),
+    ('fov text', {'fov_x_deg': 'wide'}, "'fov_x_deg' must be a number"),
+    ('fov 180', {'fov_x_deg': 180}, "'fov_x_deg' must be a number between"),
+    ('type', {'type': 'fisheye', 'fov_x_deg': 50}, "'type' must be \"perspective\""),
+    ('near', {'fov_x_deg': 50, 'near': -1}, "'near' must be a number > 0"),
+    ('shift', {'fov_x_deg': 50, 'shift_x': 99}, "'shift_x' must be"),
+    ('three rows', {'fov_x_deg': 50, 'world_to_view': TURN[:3]}, '4 rows of 4 numbers'),
+    ('short row', {'fov_x_deg': 50, 'world_to_view': [[1, 2, 3]] * 4}, '4 rows of 4 numbers'),
+    ('transposed', {'fov_x_deg': 50, 'world_to_view': [list(r) for r in zip(*TURN)]},
+     'column vectors'),
+    ('zero', {'fov_x_deg': 50, 'world_to_view': [[0] * 4] * 3 + [[0, 0, 0, 1]]}, 'a rotation'),
+    ('shear', {'fov_x_deg': 50, 'world_to_view': [[1, 1, 0, 0], *np.eye(4).tolist()[1:]]},
+     'without shear'),
+    ('views', {'views': 3}, "'views' must be"),
+    ('view', {'views': {'left': {}}}, "left: 'fov_x_deg' must be given"),
+]
+
+
+@cases(CAMERAS)
+def camera_files_are_checked(scratch, _, content, message):
+    gbuffer(scratch)
+    text = content if isinstance(content, str) else json.dumps(content)
+    scratch.write('camera.json', text)
+    scratch.fails(INPUT, message, 'in.exr', '-o', 'out.exr', '--camera', 'camera.json')
+
+
+@case
+def missing_camera_file(scratch):
+    gbuffer(scratch)
+    scratch.fails(INPUT, r'none\.json: cannot open: No such file', 'in.exr', '-o', 'out.exr',
+                  '--camera', 'none.json')
+    os.mkdir(scratch.path('dir.json'))
+    scratch.fails(INPUT, r'dir\.json: cannot (open|read)', 'in.exr', '-o', 'out.exr', '--camera',
+                  'dir.json')
+
+
+@case
+def cameras_of_views_need_views(scratch):
+    gbuffer(scratch)
+    write_camera(scratch.path('camera.json'), {'views': {'left': camera()}})
+    scratch.fails(CHANNELS, 'cameras for the views left, but in.exr has no views', 'in.exr', '-o',
+                  'out.exr', '--camera', 'camera.json', hint='--view NAME')
+
+
+# --- Output ---
+
+@case
+def existing_outputs_are_kept(scratch):
+    gbuffer(scratch)
+    scratch.write('out.exr', 'mine')
+    scratch.fails(OUTPUT, r'out\.exr: exists', *RUN, hint='--overwrite always')
+    scratch.fails(OUTPUT, r'out\.exr: exists', 'in.exr', '-o', 'new.exr', '--preview', 'out.exr',
+                  hint='--overwrite always')
+    scratch.render(*RUN, '--overwrite', 'always')
+
+
+@case
+def dangling_link_as_output_is_kept(scratch):
+    gbuffer(scratch)
+    os.symlink('nowhere.exr', scratch.path('out.exr'))
+    scratch.fails(OUTPUT, r'out\.exr: exists', *RUN)
+
+
+@case
+def output_must_not_be_the_input(scratch):
+    gbuffer(scratch)
+    os.symlink('in.exr', scratch.path('link.exr'))
+    os.link(scratch.path('in.exr'), scratch.path('hard.exr'))
+    os.mkdir(scratch.path('d'))
+    for name in ('in.exr', './in.exr', 'd/../in.exr', 'link.exr', 'hard.exr',
+                 scratch.path('in.exr')):
+        for options in (('-o', name), ('-o', 'new.exr', '--preview', name)):
+            scratch.fails(USAGE, 'are the same file', 'in.exr', *options, '--fov', FOV,
+                          '--overwrite', 'always')
+    scratch.fails(USAGE, 'are the same file', 'link.exr', '-o', 'hard.exr', '--overwrite',
+                  'always')
+
+
+@case
+def output_must_not_be_the_camera(scratch):
+    gbuffer(scratch)
+    write_camera(scratch.path('camera.json'))
+    scratch.fails(USAGE, 'are the same file', 'in.exr', '-o', 'camera.json', '--camera',
+                  'camera.json', '--overwrite', 'always')
+
+
+@case
+def output_must_not_be_the_preview(scratch):
+    gbuffer(scratch)
+    for name in ('out.exr', './out.exr', scratch.path('out.exr')):
+        scratch.fails(USAGE, 'are the same file', *RUN, '--preview', name)
+
+
+@case
+def output_directory_must_exist(scratch):
+    gbuffer(scratch)
+    scratch.fails(OUTPUT, r'no/out\.exr: cannot create: No such file', 'in.exr', '-o',
+                  'no/out.exr', hint='make the directory no/')
+
+
+@case
+def failing_preview_leaves_no_output(scratch):
+    gbuffer(scratch)
+    scratch.fails(OUTPUT, r'no/out\.png: cannot create', *RUN, '--preview', 'no/out.png')
+
+
+@case
+def directory_as_output(scratch):
+    gbuffer(scratch)
+    os.mkdir(scratch.path('out.exr'))
+    scratch.fails(OUTPUT, r'out\.exr: cannot create: Is a directory', *RUN, '--overwrite',
+                  'always')
+
+
+@case
+def unwritable_directory(scratch):
+    gbuffer(scratch)
+    os.mkdir(scratch.path('locked'), 0o500)
+    if os.access(scratch.path('locked'), os.W_OK):
+        skip('this user may write everywhere')
+    scratch.fails(OUTPUT, r'locked/out\.exr: cannot create: Permission denied', 'in.exr', '-o',
+                  'locked/out.exr')
+
+
+@cases([('ao', ()), ('append', ('--mode', 'append')),
+        ('float', ('--pixel-type', 'float', '--compression', 'none'))])
+def full_disk_leaves_nothing(scratch, _, options):
+    rng = np.random.default_rng(1)
+    depth = (5 + rng.random((200, 200))).astype(np.float32)
+    write_exr(scratch.path('in.exr'), {'Z': depth})
+    scratch.fails(OUTPUT, r'out\.exr: cannot write: File too large', *RUN, *options,
+                  preexec_fn=lambda: limit_file_size(20000))
+
+
+@case
+def full_disk_keeps_the_old_file(scratch):
+    write_exr(scratch.path('in.exr'), {'Z': np.full((200, 200), 5, np.float32)})
+    scratch.write('out.exr', 'old')
+    scratch.fails(OUTPUT, r'out\.exr: cannot write', *RUN, '--compression', 'none', '--overwrite',
+                  'always', preexec_fn=lambda: limit_file_size(20000))
+    equal(scratch.bytes('out.exr'), b'old', 'the old file')
+
+
+@case
+def standard_output_may_be_full(scratch):
+    if not os.path.exists('/dev/full'):
+        skip('no /dev/full')
+    gbuffer(scratch)
+    with open('/dev/full', 'w', encoding='utf-8') as full:
+        import subprocess
+        from cli import _settings
+        for arguments in (('inspect', 'in.exr'), ('--help',), ('devices',)):
+            code = subprocess.run([_settings.vkao, *arguments], cwd=scratch.directory, stdout=full,
+                                  stderr=subprocess.DEVNULL, timeout=60, check=False).returncode
+            equal(code, OUTPUT, f'exit code of {arguments} > /dev/full')
+
+
+# --- Device ---
+
+NO_DRIVER = r'no Vulkan (device|driver)'
+
+
+@case
+def no_device_is_an_error_of_its_own(scratch):
+    gbuffer(scratch)
+    scratch.write('empty.json', '')
+    for path in ('none.json', 'empty.json'):
+        env = {'VK_ICD_FILENAMES': scratch.path(path), 'VK_DRIVER_FILES': scratch.path(path)}
+        scratch.fails(DEVICE, NO_DRIVER, *RUN, env=env, hint='mesa-vulkan-drivers')
+        run = scratch.run('devices', env=env)
+        equal(run.code, DEVICE, 'exit code of devices')
+        matches(NO_DRIVER, run.stderr, 'stderr of devices')
+
+
+@case
+def input_is_checked_before_the_device(scratch):
+    env = {'VK_ICD_FILENAMES': 'none.json', 'VK_DRIVER_FILES': 'none.json'}
+    scratch.fails(INPUT, 'cannot open', *RUN, env=env)
+
+
+@case
+def unknown_device_lists_those_there_are(scratch):
+    gbuffer(scratch)
+    for name in ('Voodoo2', '77'):
+        scratch.fails(DEVICE, rf'fits --device {name}', *RUN, '--device', name, hint='.')
+
+
+@case
+def success_is_zero(scratch):
+    gbuffer(scratch)
+    equal(scratch.run(*RUN).code, OK, 'exit code')
+    check(os.path.getsize(scratch.path('out.exr')) > 300, 'no output')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,250 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Many frames and several views."""
+import numpy as np
+
+from cli import (CHANNELS, INPUT, OUTPUT, SOME_FRAMES, USAGE, case, cases, check, check_close,
+                 equal, main, matches, oiio, read_ao, read_parts, write_exr)
+from exr_raw import read_raw
+from scene import FOV, RADIUS, Scene, camera, write_camera
+
+VIEW = ('--fov', FOV, '--radius', RADIUS)
+SIZE = (64, 36)
+
+
+def frame(number):
+    """The eye moves, so that every frame has another result."""
+    scene = Scene(*SIZE, eye=0.2 * number)
+    return {'Z': scene.depth(), **scene.normals()}
+
+
+def sequence(scratch, numbers=(1, 2, 3), pattern='in.{:04d}.exr'):
+    for n in numbers:
+        write_exr(scratch.path(pattern.format(n)), frame(n))
+
+
+def outputs(scratch, prefix='ao.'):
+    return [f for f in scratch.files() if f.startswith(prefix)]
+
+
+# --- Frames ---
+
+@cases([('####', 'in.{:04d}.exr'), ('%04d', 'in.{:04d}.exr'), ('#', 'in.{:04d}.exr'),
+        ('$F4', 'in.{:04d}.exr'), ('@@@@', 'in.{:04d}.exr'), ('##', 'in.{:02d}.exr'),
+        ('%d', 'in.{:d}.exr')])
+def every_token_finds_all_frames(scratch, token, name):
+    sequence(scratch, pattern=name)
+    scratch.render(f'in.{token}.exr', '-o', f'ao.{token}.exr', *VIEW)
+    equal(outputs(scratch), [name.replace('in', 'ao').format(n) for n in (1, 2, 3)], 'outputs')
+
+
+@case
+def frames_equal_single_runs(scratch):
+    sequence(scratch)
+    scratch.render('in.####.exr', '-o', 'ao.####.exr', '--preview', 'ao.####.png', *VIEW)
+    seen = []
+    for n in (1, 2, 3):
+        scratch.render(f'in.000{n}.exr', '-o', 'one.exr', '--preview', 'one.png', '--overwrite',
+                       'always', *VIEW)
+        equal(scratch.bytes(f'ao.000{n}.exr'), scratch.bytes('one.exr'), f'frame {n}')
+        equal(scratch.bytes(f'ao.000{n}.png'), scratch.bytes('one.png'), f'preview {n}')
+        seen.append(scratch.bytes('one.exr'))
+    check(len(set(seen)) == 3, 'frames do not differ')
+
+
+@cases([('1-3', [1, 2, 3]), ('2', [2]), ('1-5x2', [1, 3, 5]), ('5,1-2', [1, 2, 5]),
+        ('3-1', [1, 2, 3]), ('1-2,2-3', [1, 2, 3])])
+def frames_are_chosen(scratch, spec, wanted):
+    sequence(scratch, range(1, 6))
+    scratch.render('in.####.exr', '-o', 'ao.####.exr', '--frames', spec, *VIEW)
+    equal(outputs(scratch), [f'ao.{n:04d}.exr' for n in wanted], 'outputs')
+
+
+@case
+def openjd_steps_with_a_colon(scratch):
+    sequence(scratch, range(1, 6))
+    scratch.render('in.####.exr', '-o', 'ao.####.exr', '--frames', '1-5:2', '--frames-syntax',
+                   'openjd', *VIEW)
+    equal(outputs(scratch), ['ao.0001.exr', 'ao.0003.exr', 'ao.0005.exr'], 'outputs')
+
+
+@case
+def camera_file_may_be_a_sequence(scratch):
+    sequence(scratch)
+    for n in (1, 2, 3):
+        write_camera(scratch.path(f'camera.{n:04d}.json'), camera(fov=50 + 5 * n))
+    options = ('--normal-space', 'camera', '--radius', RADIUS)
+    scratch.render('in.####.exr', '-o', 'ao.####.exr', '--camera', 'camera.####.json', *options)
+    for n in (1, 2, 3):
+        scratch.render(f'in.000{n}.exr', '-o', 'one.exr', '--overwrite', 'always', '--camera',
+                       f'camera.000{n}.json', *options)
+        equal(scratch.bytes(f'ao.000{n}.exr'), scratch.bytes('one.exr'), f'frame {n}')
+    scratch.fails(INPUT, r'camera\.0004\.json: cannot open', 'in.0001.exr', '-o', 'x.exr',
+                  '--camera', 'camera.0004.json')
+
+
+@case
+def progress_names_every_frame(scratch):
+    sequence(scratch)
+    text = scratch.render('in.####.exr', '-o', 'ao.####.exr', *VIEW).stderr
+    for n in (1, 2, 3):
+        matches(rf'(?m)^vkao: frame {n}/3 \({n}\): ao\.000{n}\.exr$', text, 'progress')
+    equal(text.count('using:'), 1, 'number of summaries')
+
+
+@case
+def auto_radius_is_that_of_the_first_frame(scratch):
+    for n, distance in ((1, 2.0), (2, 4.0)):
+        write_exr(scratch.path(f'in.{n}.exr'), {'Z': np.full((8, 8), distance, np.float32)})
+    scratch.render('in.%d.exr', '-o', 'ao.%d.exr')
+    for n in (1, 2):
+        raw = read_raw(scratch.bytes(f'ao.{n}.exr'))[0]
+        matches(r'"radius":0\.1,', raw.text('vkao/params'), 'parameters')
+
+
+@case
+def missing_frame_tells_those_found(scratch):
+    sequence(scratch, (1, 2, 3, 7))
+    run = scratch.run('in.####.exr', '-o', 'ao.####.exr', '--frames', '2-5', *VIEW)
+    equal(run.code, INPUT, 'exit code')
+    matches(r'vkao: in\.0004\.exr: cannot open: No such file', run.stderr, 'stderr')
+    matches(r'(?m)^ +frames found: 1-3, 7 \(pattern in\.####\.exr\)', run.stderr, 'the hint')
+    equal(outputs(scratch), ['ao.0002.exr', 'ao.0003.exr'], 'outputs')
+
+
+@case
+def continue_on_error_does_the_rest(scratch):
+    sequence(scratch, (1, 2, 4))
+    run = scratch.run('in.####.exr', '-o', 'ao.####.exr', '--frames', '1-4',
+                      '--continue-on-error', *VIEW)
+    equal(run.code, SOME_FRAMES, 'exit code')
+    matches('1 of 4 frames failed', run.stderr, 'stderr')
+    equal(outputs(scratch), ['ao.0001.exr', 'ao.0002.exr', 'ao.0004.exr'], 'outputs')
+
+
+@case
+def existing_output_stops_before_any_work(scratch):
+    sequence(scratch)
+    scratch.write('ao.0003.exr', 'mine')
+    scratch.fails(OUTPUT, r'ao\.0003\.exr: exists', 'in.####.exr', '-o', 'ao.####.exr', *VIEW,
+                  hint='--overwrite always')
+
+
+@cases([
+    ('colon', ('in.####.exr', '-o', 'ao.####.exr', '-f', '1-3:2'), "':' means step", 'openjd'),
+    ('one name', ('in.####.exr', '-o', 'ao.exr'), "--output 'ao.exr' has no frame token", '####'),
+    ('one preview', ('in.####.exr', '-o', 'ao.####.exr', '--preview', 'a.png'),
+     '--preview .* no frame token', '####'),
+    ('one input', ('in.0001.exr', '-o', 'ao.exr', '-f', '1-3'), 'INPUT .* no frame token', '####'),
+    ('output alone', ('in.0001.exr', '-o', 'ao.####.exr'), 'has a frame token, but INPUT', None),
+    ('two tokens', ('in.####.%d.exr', '-o', 'ao.####.exr'), 'more than one frame token', None),
+    ('mixed', ('in.##@@.exr', '-o', 'ao.####.exr'), 'mixes # and @', '####'),
+    ('not a number', ('in.####.exr', '-o', 'ao.####.exr', '-f', 'a'), 'frames .a.: expected', None),
+    ('no end', ('in.####.exr', '-o', 'ao.####.exr', '-f', '1-'), 'frames .1-.: expected', None),
+    ('step 0', ('in.####.exr', '-o', 'ao.####.exr', '-f', '1-3x0'), 'step must be', None),
+    ('too many', ('in.####.exr', '-o', 'ao.####.exr', '-f', '1-99999999'), 'more than', None),
+])
+def frame_options_are_checked(scratch, _, arguments, message, hint):
+    sequence(scratch)
+    scratch.fails(USAGE, message, *arguments, hint=hint)
+
+
+@case
+def no_frames_is_an_error(scratch):
+    scratch.fails(INPUT, r'in\.####\.exr: no file matches', 'in.####.exr', '-o', 'ao.####.exr')
+
+
+# --- Views ---
+
+EYES = {'left': 0.0, 'right': 0.3}
+
+
+def eye(view):
+    scene = Scene(*SIZE, eye=EYES[view])
+    return {'Z': scene.depth(), **scene.normals()}
+
+
+def write_multi_part(scratch):
+    parts = [({k: v for k, v in eye(view).items() if k.startswith(letter)},
+              {'name': f'{name}.{view}', 'view': view})
+             for view in EYES for name, letter in (('depth', 'Z'), ('normal', 'N'))]
+    write_exr(scratch.path('in.exr'), *parts)
+
+
+def write_single_part(scratch):
+    """The default view's channels have no view in their names."""
+    left, right = eye('left'), eye('right')
+    channels = dict(left)
+    for name, plane in right.items():
+        channels['.'.join(name.split('.')[:-1] + ['right'] + name.split('.')[-1:])] = plane
+    names = ('multiView', oiio.TypeDesc('string[2]'), ('left', 'right'))
+    write_exr(scratch.path('in.exr'), channels, attributes=[names])
+
+
+WRITERS = [('parts', write_multi_part), ('channels', write_single_part)]
+
+
+def mono(scratch, view):
+    write_exr(scratch.path('mono.exr'), eye(view))
+    scratch.render('mono.exr', '-o', 'mono.ao.exr', '--overwrite', 'always', *VIEW)
+    return read_ao(scratch.path('mono.ao.exr'))
+
+
+@cases(WRITERS)
+def all_views_are_written_as_parts(scratch, _, write):
+    write(scratch)
+    scratch.render('in.exr', '-o', 'ao.exr', '--view', 'all', *VIEW)
+    parts = read_parts(scratch.path('ao.exr'))
+    equal([(p.name, p.attributes.get('view')) for p in parts],
+          [('ao.left', 'left'), ('ao.right', 'right')], 'parts')
+    for part, view in zip(parts, EYES):
+        check_close(part['AO'].astype(np.float32), mono(scratch, view), 0, 0, view)
+    check(not np.array_equal(parts[0]['AO'], parts[1]['AO']), 'both views are the same')
+
+
+@cases(WRITERS)
+def one_view_is_chosen(scratch, _, write):
+    write(scratch)
+    for view in EYES:
+        scratch.render('in.exr', '-o', f'{view}.exr', '--view', view, *VIEW)
+        parts = read_parts(scratch.path(f'{view}.exr'))
+        equal(len(parts), 1, 'number of parts')
+        check_close(parts[0]['AO'].astype(np.float32), mono(scratch, view), 0, 0, view)
+
+
+@cases(WRITERS)
+def views_must_be_chosen(scratch, _, write):
+    write(scratch)
+    scratch.fails(CHANNELS, r'in\.exr: several views: left, right', 'in.exr', '-o', 'x.exr', *VIEW,
+                  hint='--view NAME')
+    scratch.fails(CHANNELS, r"no view 'middle'; views: left, right", 'in.exr', '-o', 'x.exr',
+                  '--view', 'middle', *VIEW)
+
+
+@cases(WRITERS)
+def camera_file_with_views_means_all(scratch, _, write):
+    write(scratch)
+    views = {'left': camera(), 'right': camera(fov=50)}
+    write_camera(scratch.path('camera.json'), {'views': views})
+    options = ('--camera', 'camera.json', '--normal-space', 'camera', '--radius', RADIUS)
+    scratch.render('in.exr', '-o', 'ao.exr', *options)
+    parts = read_parts(scratch.path('ao.exr'))
+    check_close(parts[0]['AO'].astype(np.float32), mono(scratch, 'left'), 0.02, 1e-4, 'left')
+    check(np.abs(parts[1]['AO'] - mono(scratch, 'right')).mean() > 0.002,
+          'the camera of the right view is not used')
+    write_camera(scratch.path('camera.json'), {'views': {'left': camera()}})
+    scratch.fails(CHANNELS, "no camera for view 'right', only for left", 'in.exr', '-o', 'x.exr',
+                  '--view', 'all', *options)
+
+
+@case
+def previews_of_views_have_their_names(scratch):
+    write_multi_part(scratch)
+    scratch.render('in.exr', '-o', 'ao.exr', '--view', 'all', '--preview', 'ao.png', *VIEW)
+    pngs = [f for f in scratch.files() if f.endswith('.png')]
+    equal(len(pngs), 2, f'number of previews ({pngs})')
+    check(all(any(view in png for png in pngs) for view in EYES), f'names of previews: {pngs}')
+
+
+if __name__ == '__main__':
+    main()

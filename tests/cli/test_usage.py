@@ -1,0 +1,167 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""The command line itself: help, version, and every wrong use of an option."""
+import re
+
+from cli import OK, USAGE, case, cases, check, equal, main, matches, write_exr
+from scene import Scene
+
+EXAMPLE = 'example: vkao '
+
+WRONG_VALUES = [
+    ('--samples', ('0', '65', '-1', '1.5', 'many', '1e9', '99999999999999999999'), 'whole number'),
+    ('--radius', ('0', '-1', 'nan', 'inf', '1e-50', '1e39', 'far', '1m'), 'finite number > 0'),
+    ('--bias', ('-0.1', '1.1', 'nan', 'x'), '>= 0 and <= 1'),
+    ('--blocking-scale', ('0', '-3', 'inf'), '> 0'),
+    ('--noise-index', ('-1', '4294967296', '0.5'), 'whole number >= 0 and <= 4294967295'),
+    ('--intensity', ('-1', '8.1', 'nan'), '>= 0 and <= 8'),
+    ('--power', ('0', '-1', '8.5'), '> 0 and <= 8'),
+    ('--blur', ('17', '-1', '2.5', 'on'), 'whole number >= 0 and <= 16'),
+    ('--blur-sharpness', ('-1', '10001', 'nan'), '>= 0 and <= 10000'),
+    ('--blur-normal-power', ('-1', '129'), '>= 0 and <= 128'),
+    ('--threads', ('-1', '257', '1.5'), 'whole number >= 0 and <= 256'),
+    ('--ortho', ('0', '-1', 'inf', 'nan'), '> 0'),
+    ('--near', ('0', '-1', 'nan', 'x'), '> 0'),
+    ('--far', ('0', '-1', 'nan', 'x'), '> 0'),
+    ('--fov', ('0', '180', '-5', 'nan', '40:x', '40:', 'wide'), 'want degrees > 0 and < 180'),
+    ('--mode', ('AO', 'both'), 'want ao, append or comp'),
+    ('--pixel-type', ('uint', 'HALF'), 'want half or float'),
+    ('--compression', ('lzma', 'ZIP', 'htj2k32'), 'none, rle, zips, zip, piz'),
+    ('--overwrite', ('yes', 'skip'), 'want never or always'),
+    ('--frames-syntax', ('nuke',), 'want vfx or openjd'),
+    ('--depth-type', ('linear', 'z'), 'want auto, planar, radial, radial-near, inverse or device'),
+    ('--normal-space', ('view', 'tangent'), 'want auto, world or camera'),
+    ('--normal-encoding', ('octahedral',), 'want auto, signed or unsigned'),
+    ('--method', ('hbao', 'spheres'), 'want sphere or hemisphere'),
+    ('--sphere-form', ('crytek',), 'want rescaled or literal'),
+    ('--falloff', ('linear',), 'want smooth or threshold'),
+]
+TEXTS = ('--output', '--preview', '--part-name', '--depth', '--normal', '--color', '--view',
+         '--camera', '--frames', '--device')
+FLAGS = ('--continue-on-error', '--validation', '--verbose', '--quiet')
+
+
+def fails(scratch, message, *arguments, hint=None):
+    return scratch.fails(USAGE, message, *arguments, hint=hint)
+
+
+@cases(WRONG_VALUES)
+def values_are_checked(scratch, option, values, wanted):
+    for value in values:
+        result = fails(scratch, rf"{option} is '?{re.escape(value)}'?, want",
+                       'in.exr', '-o', 'out.exr', option, value)
+        check(wanted in result.stderr, f'{option} {value}: "{wanted}" is not in: {result.stderr}')
+
+
+@cases([(o, 'x') for o in TEXTS])
+def texts_are_not_empty(scratch, option, _):
+    fails(scratch, rf'{option} is empty', 'in.exr', '-o', 'out.exr', option, '')
+
+
+@cases([(o, 'x') for o in [w[0] for w in WRONG_VALUES] + list(TEXTS)])
+def arguments_are_needed(scratch, option, _):
+    fails(scratch, rf"option '{option}' needs an argument", 'in.exr', option, hint=EXAMPLE)
+
+
+@cases(FLAGS)
+def flags_take_no_argument(scratch, flag):
+    fails(scratch, f"option '{flag}=1' takes no argument", 'in.exr', f'{flag}=1')
+
+
+@cases([('--raduis', '--radius'), ('--radious', '--radius'), ('--normals', '--normal'),
+        ('--smaples', '--samples'), ('--colour', '--color'), ('--overwrit', None),
+        ('--framse', '--frames'), ('--intesity', '--intensity')])
+def misspelt_options_are_suggested(scratch, wrong, right):
+    if right is None:  # an unambiguous beginning is the option
+        fails(scratch, "--overwrite is 'maybe'", 'in.exr', '-o', 'out.exr', wrong, 'maybe')
+        return
+    fails(scratch, rf"unknown option '{wrong}' \(did you mean {right}\?\)", 'in.exr', '-o',
+          'out.exr', wrong, '0.5', hint=EXAMPLE)
+
+
+@case
+def unknown_options_without_likeness(scratch):
+    fails(scratch, "unknown option '--gobbledygook'$", 'in.exr', '--gobbledygook', hint='--help')
+    fails(scratch, "unknown option '-z'$", 'in.exr', '-z', hint='--help')
+
+
+@cases([
+    ('nothing', (), 'no INPUT given'),
+    ('no output', ('in.exr',), 'no output given: -o FILE'),
+    ('no input', ('-o', 'out.exr'), 'no INPUT given'),
+    ('two inputs', ('a.exr', 'b.exr', '-o', 'out.exr'), "one INPUT at a time, got 'a.exr' and"),
+    ('command', ('inspct', 'in.exr'), r"unknown command 'inspct' \(did you mean inspect\?\)"),
+    ('devices', ('devices', 'in.exr'), "takes no INPUT, got 'in.exr'"),
+    ('inspect -o', ('inspect', 'in.exr', '-o', 'x.exr'), "'--output' has no meaning for"),
+    ('render --json', ('render', 'in.exr', '--json'), "'--json' has no meaning for 'vkao render'"),
+    ('cameras', ('in.exr', '-o', 'x.exr', '--fov', '40', '--ortho', '2'), 'exclude each other'),
+])
+def command_lines_are_checked(scratch, _, arguments, message):
+    fails(scratch, message, *arguments)
+
+
+@case
+def help_explains_every_option(scratch):
+    for arguments in (('--help',), ('-h',), ('render', '--help'), ('inspect', '--help'),
+                      ('in.exr', '--help')):
+        run = scratch.run(*arguments)
+        equal((run.code, run.stderr), (OK, ''), f'{arguments}: exit code and stderr')
+        matches('^Usage: vkao ', run.stdout, 'stdout')
+        for option in [w[0] for w in WRONG_VALUES] + list(TEXTS) + list(FLAGS):
+            matches(rf'(?m)^  (-., |    ){option}\b', run.stdout, f'help of {option}')
+        longest = max(len(line) for line in run.stdout.splitlines())
+        check(longest <= 80, f'a line of {longest} columns')
+
+
+@case
+def help_tells_the_defaults_that_hold(scratch):
+    text = scratch.run('--help').stdout
+    for option, value in (('samples', '16'), ('bias', '0.02'), ('blur', '4'), ('power', '1')):
+        matches(rf'(?s)--{option} .*?\(default: {value}\)', text, f'default of --{option}')
+    scene = Scene(64, 36)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **scene.normals()})
+    explicit = ('--samples', 16, '--bias', 0.02, '--blur', 4, '--blur-sharpness', 200,
+                '--blur-normal-power', 8, '--intensity', 1, '--power', 1, '--method', 'hemisphere',
+                '--falloff', 'smooth', '--noise-index', 0, '--mode', 'ao', '--pixel-type', 'half',
+                '--compression', 'zip', '--device', 'auto', '--threads', 0, '--radius', 'auto')
+    scratch.render('in.exr', '-o', 'a.exr')
+    scratch.render('in.exr', '-o', 'b.exr', *explicit)
+    equal(scratch.bytes('a.exr'), scratch.bytes('b.exr'), 'the output with defaults written out')
+
+
+@case
+def version_names_the_libraries(scratch):
+    for option in ('--version', '-V'):
+        run = scratch.run(option)
+        equal((run.code, run.stderr), (OK, ''), 'exit code and stderr')
+        matches(r'^vkao \d+\.\d+\.\d+\n', run.stdout, 'stdout')
+        matches(r'OpenEXR \d+\.\d+\.\d+, reads and writes none .*dwab', run.stdout, 'stdout')
+        matches(r'Vulkan loader 1\.\d+\.\d+', run.stdout, 'stdout')
+
+
+@case
+def render_may_be_left_out_and_options_stand_anywhere(scratch):
+    scene = Scene(32, 18)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth()})
+    lines = (('in.exr', '-o', '1.exr'), ('render', 'in.exr', '--output', '2.exr'),
+             ('-o', '3.exr', 'in.exr'), ('in.exr', '--output=4.exr'), ('in.exr', '-o5.exr'),
+             ('-o', '6.exr', '--', 'in.exr'))
+    for line in lines:
+        scratch.render(*line)
+    first = scratch.bytes('1.exr')
+    for i in range(2, 7):
+        equal(scratch.bytes(f'{i}.exr'), first, f'output {i}')
+
+
+@case
+def last_of_an_option_wins(scratch):
+    scene = Scene(32, 18)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **scene.normals()})
+    scratch.render('in.exr', '-o', 'a.exr', '--radius', 9, '--normal', 'N', '--radius', 0.5,
+                   '--normal', 'none')
+    scratch.render('in.exr', '-o', 'b.exr', '--radius', 0.5, '--normal', 'none')
+    equal(scratch.bytes('a.exr'), scratch.bytes('b.exr'), 'output')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,217 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The blur alone: noisy AO in, AO out. */
+#include "fixture.h"
+#include "ref_blur.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+/* A picture that the blur reads noise from, or one value if it is not negative. Single-precision images. */
+static void make(struct picture *p, const struct scene *scene, double value)
+{
+    uint32_t seed = 12345;
+    picture_make(p, VKAO_STAGE_BLUR, scene);
+    picture_set(p, SLOT_NOISY, VK_FORMAT_R32_SFLOAT, NULL);
+    for (size_t i = 0; i < picture_texels(p); ++i) {
+        seed = seed * 1664525u + 1013904223u;
+        p->values[SLOT_NOISY][i] = value < 0.0 ? (double)(seed >> 16) / 65535.0 : value;
+    }
+    /* As its R32F image will hold it. */
+    for (size_t i = 0; i < picture_texels(p); ++i)
+        p->values[SLOT_NOISY][i] = (double)(float)p->values[SLOT_NOISY][i];
+}
+
+/* What lies between the two directions has 11 bits: a step of the upper half of [0,1] is 4.9e-4, and some drivers cut
+ * rather than round. Intensity and power amplify it. */
+static void agrees_with_reference_for_every_parameter(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t radius;
+        float sharpness, normal_power, intensity, power;
+        vkao_normal_encoding normals;
+        bool orthographic;
+    } rows[] = {
+        {4, 200.0f, 8.0f, 1.0f, 1.0f, VKAO_NORMALS_XYZ_SNORM, false},
+        {4, 200.0f, 8.0f, 1.0f, 1.0f, VKAO_NORMALS_FROM_DEPTH, false},
+        {1, 50.0f, 0.0f, 1.0f, 1.0f, VKAO_NORMALS_XYZ_SNORM, false},
+        {16, 10.0f, 128.0f, 1.0f, 1.0f, VKAO_NORMALS_XYZ_SNORM, false},
+        {6, 0.0f, 0.0f, 1.0f, 1.0f, VKAO_NORMALS_XYZ_SNORM, false},
+        {3, 10000.0f, 1.0f, 0.5f, 2.5f, VKAO_NORMALS_XYZ_SNORM, false},
+        {4, 200.0f, 8.0f, 1.5f, 0.5f, VKAO_NORMALS_XYZ_SNORM, true},
+        {8, 30.0f, 0.0f, 1.0f, 1.0f, VKAO_NORMALS_FROM_DEPTH, true},
+    };
+    const struct scene scenes[] = {scene_corner(), scene_steps(), scene_open_sky()};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        for (size_t s = 0; s < sizeof scenes / sizeof scenes[0]; ++s) {
+            struct picture p;
+            struct ref_scene reference;
+            char what[80];
+            make(&p, &scenes[s], -1.0);
+            double *expected = test_alloc(picture_texels(&p), sizeof *expected);
+            if (rows[i].orthographic) {
+                struct lens lens = lens_orthographic(1.6, 1.2);
+                picture_render_scene(&p, &scenes[s], &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+            }
+            p.view.normal_encoding = rows[i].normals;
+            p.blur.radius = rows[i].radius;
+            p.blur.sharpness = rows[i].sharpness;
+            p.blur.normal_power = rows[i].normal_power;
+            p.blur.intensity = rows[i].intensity;
+            p.blur.power = rows[i].power;
+            picture_run(&p);
+            picture_reference_scene(&p, &reference);
+            ref_blur(&reference, &p.blur, p.view.normal_encoding, p.values[SLOT_NORMALS], p.values[SLOT_NOISY],
+                     expected);
+            snprintf(what, sizeof what, "row %zu, scene %zu", i, s);
+            check_close(what, p.values[SLOT_AO], expected, picture_texels(&p), 3e-4, 2e-3);
+            ref_scene_free(&reference);
+            free(expected);
+            picture_free(&p);
+        }
+    }
+}
+
+/* A wall at z = 3 beside one at z = 4, each with its own AO. The walls face the eye, or are tilted so that the slope
+ * is not 0. */
+static void depth_edges_do_not_leak(void **state)
+{
+    (void)state;
+    static const double tilts[] = {0.0, 0.02};
+    static const uint32_t radii[] = {1, 4, 16};
+    for (size_t i = 0; i < 2 * 3 * 2; ++i) {
+        struct picture p;
+        const struct scene wall = scene_tilted_plane(0.0, 0.0);
+        bool vertical = i >= 6;
+        make(&p, &wall, 0.0);
+        p.view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
+        p.blur.radius = radii[i % 3];
+        for (size_t texel = 0; texel < picture_texels(&p); ++texel) {
+            double along = vertical ? (double)(texel / p.width) - 30.0 : (double)(texel % p.width) - 40.0;
+            p.values[SLOT_DEPTH][texel] = (along < 0.0 ? 3.0 : 4.0) + tilts[i / 3 % 2] * along;
+            p.values[SLOT_NOISY][texel] = along < 0.0 ? 0.0 : 1.0;
+        }
+        picture_run(&p);
+        for (size_t texel = 0; texel < picture_texels(&p); ++texel) {
+            double want = p.values[SLOT_NOISY][texel], got = p.values[SLOT_AO][texel];
+            if (!(got == want))
+                fail_msg("case %zu: texel %zu is %g, want %g", i, texel, got, want);
+        }
+        picture_free(&p);
+    }
+}
+
+/* The same between surfaces at the same depth whose normals stand at right angles. */
+static void normal_edges_do_not_leak(void **state)
+{
+    (void)state;
+    struct picture p;
+    const struct scene wall = scene_tilted_plane(0.0, 0.0);
+    make(&p, &wall, 0.0);
+    p.blur.normal_power = 8.0f;
+    for (size_t i = 0; i < picture_texels(&p); ++i) {
+        double *normal = &p.values[SLOT_NORMALS][i * 4];
+        normal[0] = i % p.width < 40 ? sqrt(0.5) : -sqrt(0.5);
+        normal[1] = 0.0;
+        normal[2] = sqrt(0.5);
+        p.values[SLOT_NOISY][i] = i % p.width < 40 ? 0.0 : 1.0;
+    }
+    picture_run(&p);
+    for (size_t i = 0; i < picture_texels(&p); ++i)
+        assert_true(fabs(p.values[SLOT_AO][i] - p.values[SLOT_NOISY][i]) < 1e-6);
+    picture_free(&p);
+}
+
+static void tilted_walls_are_blurred_in_one_piece(void **state)
+{
+    (void)state;
+    struct picture p;
+    const struct scene wall = scene_tilted_plane(60.0, 30.0);
+    make(&p, &wall, -1.0);
+    p.view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
+    picture_run(&p);
+    double before = 0.0, after = 0.0;
+    for (size_t i = 0; i < picture_texels(&p); ++i) {
+        before += pow(p.values[SLOT_NOISY][i] - 0.5, 2.0) / (double)picture_texels(&p);
+        after += pow(p.values[SLOT_AO][i] - 0.5, 2.0) / (double)picture_texels(&p);
+    }
+    print_message("    variance of noise %.4f, blurred %.5f\n", before, after);
+    assert_true(after < before / 5.0);
+    picture_free(&p);
+}
+
+/* Halfway between its two directions the blur stores 11 bits, and drivers may round them either way: a step of the
+ * upper half of [0,1] is 1/2048. Open and fully hidden stay so exactly. */
+static void constants_are_kept(void **state)
+{
+    (void)state;
+    static const double values[] = {0.0, 0.25, 0.5, 0.75, 1.0};
+    const struct scene scene = scene_open_sky();
+    for (size_t v = 0; v < sizeof values / sizeof values[0]; ++v) {
+        struct picture p;
+        make(&p, &scene, values[v]);
+        picture_run(&p);
+        for (size_t i = 0; i < picture_texels(&p); ++i) {
+            double want = isfinite(p.values[SLOT_DEPTH][i]) ? values[v] : 1.0;
+            double tolerance = want == 0.0 || want == 1.0 ? 0.0 : 1.0 / 1024.0;
+            if (!(fabs(p.values[SLOT_AO][i] - want) <= tolerance))
+                fail_msg("texel %zu is %.9g, want %.9g", i, p.values[SLOT_AO][i], want);
+        }
+        picture_free(&p);
+    }
+}
+
+static void radius_0_copies(void **state)
+{
+    (void)state;
+    struct picture p;
+    const struct scene wall = scene_tilted_plane(0.0, 0.0);
+    make(&p, &wall, -1.0);
+    p.blur.radius = 0;
+    for (size_t i = 0; i < picture_texels(&p); ++i) /* multiples of 1/1024 survive half precision */
+        p.values[SLOT_NOISY][i] = floor(p.values[SLOT_NOISY][i] * 1024.0) / 1024.0;
+    picture_run(&p);
+    check_equal("copied ao", p.values[SLOT_AO], p.values[SLOT_NOISY], picture_texels(&p));
+    picture_free(&p);
+}
+
+static void intensity_and_power_follow_the_formula(void **state)
+{
+    (void)state;
+    static const float intensities[] = {0.0f, 0.5f, 1.0f, 3.0f, 8.0f}, powers[] = {0.25f, 1.0f, 2.0f, 8.0f};
+    const struct scene wall = scene_tilted_plane(0.0, 0.0);
+    for (size_t i = 0; i < sizeof intensities / sizeof intensities[0] * 4; ++i) {
+        struct picture p;
+        make(&p, &wall, -1.0);
+        p.blur.radius = 0;
+        p.blur.intensity = intensities[i / 4];
+        p.blur.power = powers[i % 4];
+        for (size_t texel = 0; texel < picture_texels(&p); ++texel)
+            p.values[SLOT_NOISY][texel] = floor(p.values[SLOT_NOISY][texel] * 1024.0) / 1024.0;
+        picture_run(&p);
+        for (size_t texel = 0; texel < picture_texels(&p); ++texel) {
+            double scaled = 1.0 - (double)p.blur.intensity * (1.0 - p.values[SLOT_NOISY][texel]);
+            double want = pow(fmin(1.0, fmax(0.0, scaled)), (double)p.blur.power);
+            if (!(fabs(p.values[SLOT_AO][texel] - want) < 1e-5))
+                fail_msg("intensity %g, power %g: %g becomes %g, want %g", (double)p.blur.intensity,
+                         (double)p.blur.power, p.values[SLOT_NOISY][texel], p.values[SLOT_AO][texel], want);
+        }
+        picture_free(&p);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        gpu_test(agrees_with_reference_for_every_parameter),
+        gpu_test(depth_edges_do_not_leak),
+        gpu_test(normal_edges_do_not_leak),
+        gpu_test(tilted_walls_are_blurred_in_one_piece),
+        gpu_test(constants_are_kept),
+        gpu_test(radius_0_copies),
+        gpu_test(intensity_and_power_follow_the_formula),
+    };
+    return fixture_run(tests);
+}

@@ -1,0 +1,190 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Depth of any format and encoding to view z, and background. Prepare writes scratch, which tests do not read: the
+ * literal sphere form shows it, whose result is a smooth function of view z differences. */
+#include "fixture.h"
+#include "ref_sphere.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+static void probe(struct picture *p, const struct scene *scene, const struct lens *lens, VkFormat format,
+                  vkao_depth_encoding encoding)
+{
+    picture_make(p, VKAO_STAGE_SSAO, scene);
+    p->view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
+    p->view.depth_encoding = encoding;
+    p->ssao.method = VKAO_SSAO_SPHERE;
+    p->ssao.sphere_form = VKAO_SPHERE_LITERAL;
+    p->ssao.blocking_scale = 3.0f;
+    picture_render_scene(p, scene, lens, format, VK_FORMAT_UNDEFINED);
+}
+
+/* 16-bit fixed point with the near plane at 0.1 is too coarse to be worth a test: 1.5 is what one would choose. */
+static struct lens test_lens(bool orthographic, bool reversed, double far)
+{
+    struct lens lens = orthographic ? lens_orthographic(1.6, 1.2) : lens_perspective(0.6, 0.45);
+    lens.near = 1.5;
+    lens.far = far;
+    lens.reversed = reversed;
+    return lens;
+}
+
+/* The reference decodes the same rounded depths, so the tolerance is that of single precision: the rounding of the
+ * matrix and of z/w near 1 moves z by 1e-5, and a few points over a texel's edge. */
+static void view_z_agrees_with_reference_for_every_format_encoding_and_far_plane(void **state)
+{
+    (void)state;
+    static const VkFormat formats[] = {VK_FORMAT_R32_SFLOAT, VK_FORMAT_R16_SFLOAT, VK_FORMAT_R16_UNORM,
+                                       VK_FORMAT_D32_SFLOAT, VK_FORMAT_D16_UNORM};
+    static const struct {
+        const char *name;
+        bool orthographic, reversed;
+        double far;
+    } lenses[] = {
+        {"standard", false, false, 10.0},  {"reversed", false, true, 10.0},
+        {"infinite", false, false, (double)INFINITY}, {"reversed infinite", false, true, (double)INFINITY},
+        {"orthographic", true, false, 10.0}, {"orthographic reversed", true, true, 10.0},
+    };
+    const struct scene scene = scene_corner();
+    for (size_t l = 0; l < sizeof lenses / sizeof lenses[0]; ++l) {
+        struct lens lens = test_lens(lenses[l].orthographic, lenses[l].reversed, lenses[l].far);
+        for (size_t f = 0; f < sizeof formats / sizeof formats[0] * 4; ++f) {
+            vkao_depth_encoding encoding = (vkao_depth_encoding)(f % 4);
+            struct picture p;
+            struct ref_scene reference;
+            char what[80];
+            VkFormat format = formats[f / 4];
+            /* Fixed point holds [0,1]: device depth, or 1/z. */
+            bool fits = format == VK_FORMAT_R32_SFLOAT || format == VK_FORMAT_R16_SFLOAT ||
+                        encoding == VKAO_DEPTH_PROJECTED || encoding == VKAO_DEPTH_INVERSE_Z;
+            if (!fits)
+                continue;
+            probe(&p, &scene, &lens, format, encoding);
+            double *expected = test_alloc(picture_texels(&p), sizeof *expected);
+            picture_run(&p);
+            picture_reference_scene(&p, &reference);
+            ref_sphere(&reference, &p.ssao, expected);
+            snprintf(what, sizeof what, "%s, format %d, encoding %d", lenses[l].name, (int)format, (int)encoding);
+            check_close(what, p.values[SLOT_AO], expected, picture_texels(&p), 2e-4, 2e-3);
+            assert_true(mean_of(expected, picture_texels(&p)) < 0.9);
+            free(expected);
+            ref_scene_free(&reference);
+            picture_free(&p);
+        }
+    }
+}
+
+/* Wall at z = 4 from a standard camera, then one value everywhere but in a 12x12 block in the middle: the block's AO
+ * must be 1 in the rescaled forms, as the rest occludes nothing, and the rest's own must be 1. */
+static void check_background(struct picture *p, const char *what, double background)
+{
+    for (size_t i = 0; i < picture_texels(p); ++i) {
+        size_t x = i % p->width, y = i / p->width;
+        if (x < 34 || x >= 46 || y < 24 || y >= 36)
+            p->values[SLOT_DEPTH][i] = background;
+    }
+    for (int method = 0; method < 2; ++method) {
+        p->ssao.method = (vkao_ssao_method)method;
+        picture_run(p);
+        for (size_t i = 0; i < picture_texels(p); ++i) {
+            if (!(p->values[SLOT_AO][i] == 1.0))
+                fail_msg("%s, method %d: texel %zu is %.9g, want 1", what, method, i, p->values[SLOT_AO][i]);
+        }
+    }
+}
+
+static void background_is_exactly_one_and_occludes_nothing(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        vkao_depth_encoding encoding;
+        VkFormat format;
+        double value;
+        bool reversed, infinite, orthographic;
+    } rows[] = {
+        {"far plane, D32", VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT, 1.0, false, false, false},
+        {"far plane, D16", VKAO_DEPTH_PROJECTED, VK_FORMAT_D16_UNORM, 1.0, false, false, false},
+        {"infinite far plane", VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT, 1.0, false, true, false},
+        {"reversed far plane", VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT, 0.0, true, false, false},
+        {"reversed infinite far plane", VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT, 0.0, true, true, false},
+        {"orthographic far plane", VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT, 1.0, false, false, true},
+        {"orthographic reversed far plane", VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT, 0.0, true, false, true},
+        {"beyond 1", VKAO_DEPTH_PROJECTED, VK_FORMAT_R32_SFLOAT, 1.5, false, false, false},
+        {"below 0, reversed", VKAO_DEPTH_PROJECTED, VK_FORMAT_R32_SFLOAT, -0.5, true, false, false},
+        {"projected NaN", VKAO_DEPTH_PROJECTED, VK_FORMAT_R32_SFLOAT, (double)NAN, false, false, false},
+        {"projected NaN, orthographic", VKAO_DEPTH_PROJECTED, VK_FORMAT_R32_SFLOAT, (double)NAN, false, false, true},
+        {"projected infinity", VKAO_DEPTH_PROJECTED, VK_FORMAT_R32_SFLOAT, (double)INFINITY, false, false, false},
+        {"view z 0", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, 0.0, false, false, false},
+        {"view z negative", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, -4.0, false, false, false},
+        {"view z NaN", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, (double)NAN, false, false, false},
+        {"view z infinity", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, (double)INFINITY, false, true, false},
+        {"view z half infinity", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R16_SFLOAT, (double)INFINITY, false, true, false},
+        {"view z -infinity", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, -(double)INFINITY, false, false, false},
+        {"view z at the far plane", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, 100.0, false, false, false},
+        {"view z 1e10 beyond it", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, 1e10, false, false, false},
+        {"distance infinity", VKAO_DEPTH_DISTANCE, VK_FORMAT_R32_SFLOAT, (double)INFINITY, false, true, false},
+        {"distance NaN", VKAO_DEPTH_DISTANCE, VK_FORMAT_R32_SFLOAT, (double)NAN, false, false, false},
+        {"distance 0", VKAO_DEPTH_DISTANCE, VK_FORMAT_R32_SFLOAT, 0.0, false, false, false},
+        {"1/z 0", VKAO_DEPTH_INVERSE_Z, VK_FORMAT_R32_SFLOAT, 0.0, false, true, false},
+        {"1/z -0", VKAO_DEPTH_INVERSE_Z, VK_FORMAT_R32_SFLOAT, -0.0, false, true, false},
+        {"1/z negative", VKAO_DEPTH_INVERSE_Z, VK_FORMAT_R32_SFLOAT, -0.25, false, false, false},
+        {"1/z NaN", VKAO_DEPTH_INVERSE_Z, VK_FORMAT_R32_SFLOAT, (double)NAN, false, false, false},
+        {"1/z infinity", VKAO_DEPTH_INVERSE_Z, VK_FORMAT_R32_SFLOAT, (double)INFINITY, false, false, false},
+    };
+    const struct scene wall = scene_tilted_plane(0.0, 0.0);
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        struct picture p;
+        struct lens lens = rows[i].orthographic ? lens_orthographic(2.4, 1.8) : lens_perspective(0.6, 0.45);
+        lens.reversed = rows[i].reversed;
+        if (rows[i].infinite)
+            lens.far = INFINITY;
+        picture_make(&p, VKAO_STAGE_SSAO, &wall);
+        p.view.depth_encoding = rows[i].encoding;
+        picture_render_scene(&p, &wall, &lens, rows[i].format, VK_FORMAT_R32G32B32A32_SFLOAT);
+        check_background(&p, rows[i].name, rows[i].value);
+        p.view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
+        check_background(&p, rows[i].name, rows[i].value);
+        picture_free(&p);
+    }
+}
+
+/* Behind the blur, the intensity and the power too. */
+static void background_is_exactly_one_in_every_ao_format(void **state)
+{
+    (void)state;
+    static const VkFormat formats[] = {VK_FORMAT_R8_UNORM, VK_FORMAT_R16_UNORM, VK_FORMAT_R16_SFLOAT,
+                                       VK_FORMAT_R32_SFLOAT};
+    const struct scene scene = scene_open_sky();
+    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; ++i) {
+        struct picture p;
+        size_t background = 0, darkened = 0;
+        picture_make(&p, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, &scene);
+        picture_set(&p, SLOT_AO, formats[i], NULL);
+        picture_set(&p, SLOT_NOISY, formats[i], NULL);
+        p.blur.intensity = 3.0f;
+        p.blur.power = 2.0f;
+        picture_run(&p);
+        for (size_t texel = 0; texel < picture_texels(&p); ++texel) {
+            bool is_background = !isfinite(p.values[SLOT_DEPTH][texel]);
+            background += is_background;
+            darkened += p.values[SLOT_AO][texel] < 1.0;
+            if (is_background)
+                assert_true(p.values[SLOT_AO][texel] == 1.0 && p.values[SLOT_NOISY][texel] == 1.0);
+        }
+        assert_true(background > 100 && darkened > 100);
+        picture_free(&p);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        gpu_test(view_z_agrees_with_reference_for_every_format_encoding_and_far_plane),
+        gpu_test(background_is_exactly_one_and_occludes_nothing),
+        gpu_test(background_is_exactly_one_in_every_ao_format),
+    };
+    return fixture_run(tests);
+}

@@ -1,0 +1,278 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One scene, one AO, whatever the camera's conventions; walls are open at every tilt. */
+#include "fixture.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct method {
+    const char *name;
+    vkao_ssao_method method;
+    vkao_sphere_form form;
+};
+
+static const struct method methods[] = {
+    {"hemisphere", VKAO_SSAO_HEMISPHERE, VKAO_SPHERE_RESCALED},
+    {"sphere", VKAO_SSAO_SPHERE, VKAO_SPHERE_RESCALED},
+    {"literal", VKAO_SSAO_SPHERE, VKAO_SPHERE_LITERAL},
+};
+
+static void set_method(struct picture *p, const struct method *method)
+{
+    p->ssao.method = method->method;
+    p->ssao.sphere_form = method->form;
+    p->ssao.blocking_scale = 10.0f;
+}
+
+static void check_open(struct picture *p, const char *what)
+{
+    double worst = 1.0;
+    picture_run(p);
+    for (size_t i = 0; i < picture_texels(p); ++i)
+        worst = p->values[SLOT_AO][i] >= worst ? worst : p->values[SLOT_AO][i];
+    if (!(worst >= 0.995))
+        fail_msg("%s: the darkest texel is %g, want at least 0.995", what, worst);
+}
+
+static void check_tilted_planes(bool orthographic, bool given_normals, float bias)
+{
+    static const VkFormat formats[] = {VK_FORMAT_D32_SFLOAT, VK_FORMAT_R32_SFLOAT};
+    for (int i = 0; i < 5 * 4 * 2 * 2; ++i) {
+        struct picture p;
+        char what[120];
+        const struct method *method = &methods[i % 2];
+        double tilt = 20.0 * (i / 4 % 5), azimuth = 25.0 + 90.0 * (i / 20);
+        struct lens lens = orthographic ? lens_orthographic(1.6, 1.2) : lens_perspective(0.6, 0.45);
+        const struct scene wall = scene_tilted_plane(tilt, azimuth);
+        picture_init(&p, 64, 48, VKAO_STAGE_SSAO);
+        p.view.normal_encoding = given_normals ? VKAO_NORMALS_XYZ_SNORM : VKAO_NORMALS_FROM_DEPTH;
+        picture_render_scene(&p, &wall, &lens, formats[i / 2 % 2],
+                             given_normals ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_UNDEFINED);
+        picture_set(&p, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
+        set_method(&p, method);
+        p.ssao.bias = bias;
+        snprintf(what, sizeof what, "%s, %s, %s normals, format %d, %g degrees towards %g", method->name,
+                 orthographic ? "orthographic" : "perspective", given_normals ? "given" : "no", (int)formats[i / 2 % 2],
+                 tilt, azimuth);
+        check_open(&p, what);
+        picture_free(&p);
+    }
+}
+
+static void tilted_planes_are_open_with_given_normals(void **state)
+{
+    (void)state;
+    check_tilted_planes(false, true, vkao_ssao_params_default().bias);
+}
+
+static void tilted_planes_are_open_with_normals_from_depth(void **state)
+{
+    (void)state;
+    check_tilted_planes(false, false, vkao_ssao_params_default().bias);
+}
+
+static void orthographic_tilted_planes_are_open(void **state)
+{
+    (void)state;
+    check_tilted_planes(true, true, vkao_ssao_params_default().bias);
+    check_tilted_planes(true, false, vkao_ssao_params_default().bias);
+}
+
+struct convention {
+    const char *name;
+    bool reversed;
+    double far, forward;
+    vkao_depth_encoding encoding;
+    VkFormat format;
+};
+
+/* All hold the same depths, to the precision of the encoding: what differs is a point here and there at the edge of
+ * blocking, worth 1/32. D32 with standard Z is exact to 2e-5 of z here, the others to 1e-7. */
+static const struct convention conventions[] = {
+    {"standard D32", false, 100.0, -1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT},
+    {"standard R32F", false, 100.0, -1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_R32_SFLOAT},
+    {"standard, left-handed", false, 100.0, 1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT},
+    {"reversed", true, 100.0, -1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT},
+    {"reversed, left-handed", true, 100.0, 1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT},
+    {"infinite", false, (double)INFINITY, -1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT},
+    {"reversed infinite", true, (double)INFINITY, -1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT},
+    {"reversed infinite, left-handed", true, (double)INFINITY, 1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT},
+    {"view z", false, 100.0, -1.0, VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT},
+    {"view z, left-handed, infinite", false, (double)INFINITY, 1.0, VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT},
+    {"distance", false, 100.0, -1.0, VKAO_DEPTH_DISTANCE, VK_FORMAT_R32_SFLOAT},
+    {"distance, reversed infinite", true, (double)INFINITY, -1.0, VKAO_DEPTH_DISTANCE, VK_FORMAT_R32_SFLOAT},
+    {"1/z", false, 100.0, -1.0, VKAO_DEPTH_INVERSE_Z, VK_FORMAT_R32_SFLOAT},
+};
+
+static void render(struct picture *p, const struct lens *base, const struct convention *c, const struct method *m,
+                   bool given_normals)
+{
+    struct lens lens = *base;
+    const struct scene scene = scene_corner();
+    lens.reversed = c->reversed;
+    lens.forward = c->forward;
+    lens.far = base->orthographic ? 100.0 : c->far;
+    picture_init(p, 80, 60, VKAO_STAGE_SSAO);
+    p->view.depth_encoding = c->encoding;
+    p->view.normal_encoding = given_normals ? VKAO_NORMALS_XYZ_SNORM : VKAO_NORMALS_FROM_DEPTH;
+    picture_render_scene(p, &scene, &lens, c->format,
+                         given_normals ? VK_FORMAT_R32G32B32A32_SFLOAT : VK_FORMAT_UNDEFINED);
+    picture_set(p, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
+    set_method(p, m);
+    p->ssao.sample_count = 32;
+    picture_run(p);
+}
+
+static void check_conventions(const struct lens *lens)
+{
+    const size_t count = sizeof conventions / sizeof conventions[0];
+    for (size_t i = 0; i < 3 * 2; ++i) {
+        struct picture first, p;
+        char what[120];
+        bool given_normals = i / 3;
+        render(&first, lens, &conventions[8], &methods[i % 3], given_normals);
+        assert_true(mean_of(first.values[SLOT_AO], picture_texels(&first)) < 0.98);
+        for (size_t c = 0; c < count; ++c) {
+            render(&p, lens, &conventions[c], &methods[i % 3], given_normals);
+            snprintf(what, sizeof what, "%s %s, %s", methods[i % 3].name, given_normals ? "normals" : "depth only",
+                     conventions[c].name);
+            check_close(what, p.values[SLOT_AO], first.values[SLOT_AO], picture_texels(&p), 1e-4, 1e-4);
+            picture_free(&p);
+        }
+        picture_free(&first);
+    }
+}
+
+static void every_perspective_convention_gives_the_same_ao(void **state)
+{
+    (void)state;
+    struct lens lens = lens_perspective(0.6, 0.45);
+    check_conventions(&lens);
+}
+
+static void every_orthographic_convention_gives_the_same_ao(void **state)
+{
+    (void)state;
+    struct lens lens = lens_orthographic(1.6, 1.2);
+    check_conventions(&lens);
+}
+
+/* A camera with y up shows the same scene upside down. The noise stays where it is in the image, so that only the
+ * means of blocks agree: 5x5 texels times 64 points. */
+static void y_flip_mirrors_the_picture(void **state)
+{
+    (void)state;
+    for (size_t m = 0; m < 3; ++m) {
+        struct picture up, down;
+        struct lens lens = lens_perspective(0.6, 0.45);
+        double blocks[2][16 * 12] = {{0.0}};
+        const struct scene scene = scene_corner();
+        picture_make(&down, VKAO_STAGE_SSAO, &scene);
+        picture_make(&up, VKAO_STAGE_SSAO, &scene);
+        lens.y0 = 0.45;
+        lens.y1 = -0.45;
+        picture_render_scene(&up, &scene, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+        set_method(&up, &methods[m]);
+        set_method(&down, &methods[m]);
+        up.ssao.sample_count = down.ssao.sample_count = 64;
+        picture_run(&up);
+        picture_run(&down);
+        for (size_t y = 0; y < 60; ++y) {
+            for (size_t x = 0; x < 80; ++x) {
+                blocks[0][y / 5 * 16 + x / 5] += down.values[SLOT_AO][y * 80 + x] / 25.0;
+                blocks[1][y / 5 * 16 + x / 5] += up.values[SLOT_AO][(59 - y) * 80 + x] / 25.0;
+            }
+        }
+        check_close(methods[m].name, blocks[0], blocks[1], 16 * 12, 0.004, 0.03);
+        assert_true(difference_of(down.values[SLOT_AO], up.values[SLOT_AO], 4800).mean > 0.02);
+        picture_free(&up);
+        picture_free(&down);
+    }
+}
+
+/* A shift of the window by whole texels moves the picture; by half a texel it changes next to nothing. Overscan: a
+ * larger image whose viewport is the smaller one's shows the same there, if the noise is laid on alike. Here the
+ * viewport begins at the origin, so it is. */
+static void viewport_with_overscan_agrees_where_both_see_the_neighbourhood(void **state)
+{
+    (void)state;
+    for (size_t m = 0; m < 3; ++m) {
+        struct picture small, large;
+        const struct scene scene = scene_corner();
+        struct lens lens = lens_perspective(0.6, 0.45);
+        size_t agreeing = 0;
+        picture_make(&small, VKAO_STAGE_SSAO, &scene);
+        picture_init(&large, 96, 76, VKAO_STAGE_SSAO);
+        large.view = small.view;
+        large.view.viewport = (VkRect2D){{0, 0}, {80, 60}};
+        picture_render_scene(&large, &scene, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+        picture_set(&large, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
+        set_method(&small, &methods[m]);
+        set_method(&large, &methods[m]);
+        small.ssao.radius = large.ssao.radius = 0.25f;
+        picture_run(&small);
+        picture_run(&large);
+        /* 0.25 at z = 1.6 is 10 texels, at the wall 4: texels further than that from the small image's far edges */
+        for (size_t y = 0; y < 44; ++y) {
+            for (size_t x = 0; x < 64; ++x) {
+                double a = small.values[SLOT_AO][y * 80 + x], b = large.values[SLOT_AO][y * 96 + x];
+                if (!(fabs(a - b) < 1e-6))
+                    fail_msg("%s: texel %zu,%zu is %g, in the larger image %g", methods[m].name, x, y, a, b);
+                agreeing += a < 0.999;
+            }
+        }
+        assert_true(agreeing > 200);
+        picture_free(&small);
+        picture_free(&large);
+    }
+}
+
+/* A viewport that begins outside the image, and one inside: against the reference in test_sphere and
+ * test_hemisphere's terms, by making the camera of the cropped window off-centre instead. */
+static void viewport_equals_the_off_centre_projection_of_the_same_window(void **state)
+{
+    (void)state;
+    const VkRect2D viewports[] = {{{-16, -9}, {112, 78}}, {{16, 12}, {40, 30}}, {{-40, 5}, {80, 60}}};
+    for (size_t i = 0; i < 3 * 3; ++i) {
+        struct picture by_viewport, off_centre;
+        VkRect2D viewport = viewports[i / 3];
+        const struct scene scene = scene_corner();
+        struct lens lens = lens_perspective(0.6, 0.45), window = lens;
+        double dx = 1.2 / viewport.extent.width, dy = 0.9 / viewport.extent.height;
+        window.x0 = -0.6 - viewport.offset.x * dx;
+        window.x1 = window.x0 + 80.0 * dx;
+        window.y0 = -0.45 - viewport.offset.y * dy;
+        window.y1 = window.y0 + 60.0 * dy;
+        picture_make(&by_viewport, VKAO_STAGE_SSAO, &scene);
+        picture_make(&off_centre, VKAO_STAGE_SSAO, &scene);
+        by_viewport.view.viewport = viewport;
+        picture_render_scene(&by_viewport, &scene, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+        picture_render_scene(&off_centre, &scene, &window, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+        set_method(&by_viewport, &methods[i % 3]);
+        set_method(&off_centre, &methods[i % 3]);
+        picture_run(&by_viewport);
+        picture_run(&off_centre);
+        check_close("viewport and off-centre window", by_viewport.values[SLOT_AO], off_centre.values[SLOT_AO],
+                    picture_texels(&off_centre), 1e-4, 1e-3);
+        picture_free(&by_viewport);
+        picture_free(&off_centre);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        gpu_test(tilted_planes_are_open_with_given_normals),
+        gpu_test(tilted_planes_are_open_with_normals_from_depth),
+        gpu_test(orthographic_tilted_planes_are_open),
+        gpu_test(every_perspective_convention_gives_the_same_ao),
+        gpu_test(every_orthographic_convention_gives_the_same_ao),
+        gpu_test(y_flip_mirrors_the_picture),
+        gpu_test(viewport_with_overscan_agrees_where_both_see_the_neighbourhood),
+        gpu_test(viewport_equals_the_off_centre_projection_of_the_same_window),
+    };
+    return fixture_run(tests);
+}

@@ -1,0 +1,97 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""vkao.h compiles alone, as C11 and C++11, by every compiler here; and its comments are true.
+
+usage: test_header.py INCLUDE_DIR [SYSTEM_INCLUDE_DIR...]
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+from cases import Skip, run, without_comments
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+INCLUDE, SYSTEM = sys.argv[1], sys.argv[2:]
+HEADER = open(os.path.join(INCLUDE, "vkao.h"), encoding="utf-8").read()
+FLAGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wpadded", "-Wconversion", "-Wshadow",
+         "-Wundef", "-Werror"]
+COMPILERS = [
+    ("gcc", "c11", "header_c11.c"),
+    ("gcc", "c17", "header_c11.c"),
+    ("clang", "c11", "header_c11.c"),
+    ("g++", "c++11", "header_cpp11.cpp"),
+    ("g++", "c++20", "header_cpp11.cpp"),
+    ("clang++", "c++11", "header_cpp11.cpp"),
+]
+
+
+def compiles(compiler, standard, source):
+    def case():
+        if not shutil.which(compiler):
+            raise Skip(f"no {compiler}")
+        command = [compiler, f"-std={standard}", "-fsyntax-only", *FLAGS, f"-I{INCLUDE}"]
+        for directory in filter(None, SYSTEM):
+            command += ["-isystem", directory]
+        command.append(os.path.join(HERE, source))
+        done = subprocess.run(command, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+    return f"{compiler}_{standard}_compiles_the_header_without_warning".replace("+", "p"), case
+
+
+def default_functions():
+    """(type, body) of every *_default()."""
+    return re.findall(r"static inline (vkao_\w+) \1_default\(void\)\s*\{(.*?)\n\}", HEADER, re.S)
+
+
+def every_default_function_is_compiled_here():
+    assert len(default_functions()) >= 5
+    for source in ("header_c11.c", "header_cpp11.cpp"):
+        text = open(os.path.join(HERE, source), encoding="utf-8").read()
+        for name, _ in default_functions():
+            assert f"{name}_default()" in text, f"{source} does not call {name}_default"
+
+
+def defaults_are_those_the_comments_state():
+    """'Default N' in a field's comment is what *_default() gives it, and every number has one."""
+    checked = 0
+    for name, body in default_functions():
+        struct = re.search(rf"typedef struct {name} \{{(.*?)\n\}} {name};", HEADER, re.S).group(1)
+        stated = {}
+        # A field is documented behind it on its line, or in the comment before it.
+        comment = r"(/\*(?:(?!\*/).)*\*/)?"
+        declaration = comment + r"\s*\w+ (\w+)(?:\[\d+\])?;[ \t]*" + comment
+        for field in re.finditer(declaration, struct, re.S):
+            text = " ".join((field.group(3) or field.group(1) or "").split())
+            value = re.search(r"Default (\d+(?:\.\d+)?)", text)
+            if value:
+                stated[field.group(2)] = float(value.group(1))
+        given = {f: float(v) for f, v in re.findall(r"(\w+) = ([\d.]+)f?;", body) if "[" not in f}
+        given = {f: v for f, v in given.items() if re.search(rf"\b\w+\.{f} = ", body)}
+        for field in set(stated) | set(given):
+            assert stated.get(field) == given.get(field, 0.0 if field in stated else None), \
+                f"{name}.{field}: stated {stated.get(field)}, given {given.get(field)}"
+            checked += 1
+    assert checked >= 9, f"only {checked} defaults found"
+
+
+def no_line_is_longer_than_120():
+    for number, line in enumerate(HEADER.split("\n"), 1):
+        assert len(line) <= 120, f"vkao.h:{number} has {len(line)} columns"
+
+
+def every_enum_can_grow():
+    """A MAX_ENUM member keeps each enum 32 bits wide in every compiler."""
+    enums = re.findall(r"typedef enum (vkao_\w+) \{(.*?)\}", without_comments(HEADER), re.S)
+    assert len(enums) >= 8
+    for name, body in enums:
+        assert "_MAX_ENUM = 0x7fffffff" in body, f"{name} has no MAX_ENUM"
+
+
+if __name__ == "__main__":
+    run([compiles(*row) for row in COMPILERS] +
+        [(f.__name__, f) for f in (every_default_function_is_compiled_here,
+                                   defaults_are_those_the_comments_state,
+                                   no_line_is_longer_than_120, every_enum_can_grow)])

@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT */
+#include "ref_blur.h"
+
+#include "ref_normal.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+struct blur {
+    const struct ref_scene *scene;
+    const vkao_blur_params *params;
+    vkao_normal_encoding encoding;
+    const double *stored;
+    double ndc_width; /* scene units across the viewport, what sharpness is relative to without perspective */
+};
+
+static size_t texel_index(const struct blur *blur, int x, int y)
+{
+    return (size_t)y * blur->scene->width + (size_t)x;
+}
+
+/* The smaller of the two differences to the neighbours along the axis, 0 without any. */
+static double slope(const struct blur *blur, int x, int y, int dx, int dy)
+{
+    double z = ref_scene_z(blur->scene, x, y);
+    double a = z - ref_scene_z(blur->scene, x - dx, y - dy), b = ref_scene_z(blur->scene, x + dx, y + dy) - z;
+    if (isnan(a) && isnan(b))
+        return 0.0;
+    if (isnan(a) || isnan(b))
+        return isnan(a) ? b : a;
+    return fabs(a) < fabs(b) ? a : b;
+}
+
+static double normal_weight(const struct blur *blur, size_t center, size_t tap)
+{
+    double a[3], b[3];
+    if (blur->params->normal_power == 0.0f || !blur->stored ||
+        !ref_normal_decode(blur->encoding, &blur->stored[center * 4], a) ||
+        !ref_normal_decode(blur->encoding, &blur->stored[tap * 4], b))
+        return 1.0;
+    return pow(fmax(0.0, ref_dot(a, b)), (double)blur->params->normal_power);
+}
+
+/* exp(-2 k^2 / r^2) * max(0, 1 - sharpness |z_k - z - slope k| / z) * max(0, n.n_k)^normal_power */
+static double blurred(const struct blur *blur, const double *ao, int x, int y, int dx, int dy)
+{
+    double z = ref_scene_z(blur->scene, x, y), sum = 0.0, weights = 0.0;
+    int radius = (int)blur->params->radius;
+    if (isnan(z))
+        return 1.0;
+    double s = slope(blur, x, y, dx, dy);
+    double scale = (double)blur->params->sharpness / (blur->scene->view.orthographic ? blur->ndc_width : z);
+    for (int k = -radius; k <= radius; ++k) {
+        double tap_z = ref_scene_z(blur->scene, x + k * dx, y + k * dy);
+        if (isnan(tap_z))
+            continue;
+        size_t tap = texel_index(blur, x + k * dx, y + k * dy);
+        double w = radius ? exp(-2.0 * k * k / ((double)radius * radius)) : 1.0;
+        w *= fmax(0.0, 1.0 - scale * fabs(tap_z - z - s * k));
+        if (k != 0)
+            w *= normal_weight(blur, texel_index(blur, x, y), tap);
+        sum += w * ao[tap];
+        weights += w;
+    }
+    return sum / weights;
+}
+
+void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params, vkao_normal_encoding encoding,
+              const double *stored, const double *noisy, double *ao)
+{
+    double left[3], right[3];
+    const double *viewport = scene->view.viewport;
+    ref_view_position(&scene->view, viewport[0] - 0.5, 0.0, 1.0, left);
+    ref_view_position(&scene->view, viewport[0] + viewport[2] - 0.5, 0.0, 1.0, right);
+    struct blur blur = {scene, params, encoding, stored, fabs(right[0] - left[0])};
+    const VkRect2D *rect = &scene->view.rect, *valid = &scene->view.valid;
+    double *halfway = malloc((size_t)scene->width * scene->height * sizeof *halfway);
+    if (!halfway)
+        abort();
+    for (int y = valid->offset.y; y < valid->offset.y + (int)valid->extent.height; ++y) {
+        for (int x = rect->offset.x; x < rect->offset.x + (int)rect->extent.width; ++x)
+            halfway[texel_index(&blur, x, y)] = blurred(&blur, noisy, x, y, 1, 0);
+    }
+    for (int y = rect->offset.y; y < rect->offset.y + (int)rect->extent.height; ++y) {
+        for (int x = rect->offset.x; x < rect->offset.x + (int)rect->extent.width; ++x) {
+            double v = blurred(&blur, halfway, x, y, 0, 1);
+            v = fmin(1.0, fmax(0.0, 1.0 - (double)params->intensity * (1.0 - v)));
+            ao[texel_index(&blur, x, y)] = pow(v, (double)params->power);
+        }
+    }
+    free(halfway);
+}

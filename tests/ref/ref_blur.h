@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The cross-bilateral blur, with intensity and power. */
+#ifndef VKAO_TESTS_REF_BLUR_H_
+#define VKAO_TESTS_REF_BLUR_H_
+
+#include "ref_view.h"
+
+/* stored: components of the normals image, 4 a texel, or NULL; encoding says how. Writes the view's rect of ao. */
+void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params, vkao_normal_encoding encoding,
+              const double *stored, const double *noisy, double *ao);
+
+#endif

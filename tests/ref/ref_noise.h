@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The noise of shaders/noise.glsl: integers bit for bit, what follows them in double precision. */
+#ifndef VKAO_TESTS_REF_NOISE_H_
+#define VKAO_TESTS_REF_NOISE_H_
+
+#include <stdint.h>
+
+/* Fixed-point constants as the definition has them: round(c * 2^32). */
+uint32_t ref_fixed_point(double c);
+
+uint32_t ref_gradient_phase(uint32_t x, uint32_t y, uint32_t index);
+uint32_t ref_r2_phase(uint32_t x, uint32_t y, uint32_t index);
+uint32_t ref_golden_phase(uint32_t i);
+
+/* The upper 24 bits as a fraction. */
+double ref_unit(uint32_t phase);
+double ref_fract(double v);
+double ref_gradient_noise(uint32_t x, uint32_t y, uint32_t index);
+double ref_r2_noise(uint32_t x, uint32_t y, uint32_t index);
+double ref_golden(uint32_t i);
+
+#endif

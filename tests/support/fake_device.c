@@ -1,0 +1,408 @@
+/* SPDX-License-Identifier: MIT */
+#include "fake_internal.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+static uint64_t number(const void *handle)
+{
+    return (uint64_t)(uintptr_t)handle;
+}
+
+/* Whether this call, which returns VkResult, is the one that shall fail. */
+static bool fails(struct fake_vulkan *fake, const char *name)
+{
+    if (++fake->result_calls != fake->fail_at)
+        return false;
+    fake->failed = name;
+    return true;
+}
+
+static struct fake_object *find(struct fake_vulkan *fake, uint64_t handle)
+{
+    for (size_t i = 0; i < fake->object_count; ++i) {
+        if (fake->objects[i].handle == handle)
+            return &fake->objects[i];
+    }
+    return NULL;
+}
+
+static struct fake_object *use(struct fake_vulkan *fake, const char *call, VkObjectType type,
+                               uint64_t handle)
+{
+    struct fake_object *object = find(fake, handle);
+    if (!object || object->type != type)
+        fake_misuse(fake, "%s: 0x%" PRIx64 " is no handle of type %d", call, handle, (int)type);
+    else if (!object->alive)
+        fake_misuse(fake, "%s: 0x%" PRIx64 " was destroyed before", call, handle);
+    else
+        return object;
+    return NULL;
+}
+
+static bool same_callbacks(const VkAllocationCallbacks *a, const VkAllocationCallbacks *b)
+{
+    if (!a || !b)
+        return a == b;
+    return a->pUserData == b->pUserData && a->pfnAllocation == b->pfnAllocation &&
+           a->pfnReallocation == b->pfnReallocation && a->pfnFree == b->pfnFree;
+}
+
+/* What every vkCreate* does. An error leaves an output parameter undefined, so here it leaves
+ * garbage. */
+static VkResult create(VkDevice device, const char *name, VkObjectType type,
+                       const VkAllocationCallbacks *allocator, uint64_t *out,
+                       struct fake_object **made)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    struct fake_call *call = fake_note(fake, name);
+    *out = UINT64_C(0xdeadbeefdead);
+    *made = NULL;
+    if (!same_callbacks(allocator, fake->expected_allocator))
+        fake_misuse(fake, "%s: not the caller's allocation callbacks", name);
+    if (fails(fake, name))
+        return fake->fail_result;
+    void *host = NULL;
+    if (allocator) {
+        host = allocator->pfnAllocation(allocator->pUserData, 32, 16,
+                                        VK_SYSTEM_ALLOCATION_SCOPE_OBJECT);
+        if (!host) {
+            fake->failed = name;
+            return VK_ERROR_OUT_OF_HOST_MEMORY;
+        }
+    }
+    *made = fake_add(fake, type);
+    (*made)->allocator = fake->expected_allocator;
+    (*made)->host = host;
+    *out = call->handle = (*made)->handle;
+    return VK_SUCCESS;
+}
+
+static void destroy(VkDevice device, const char *name, VkObjectType type, uint64_t handle,
+                    const VkAllocationCallbacks *allocator)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    fake_note(fake, name)->handle = handle;
+    if (!handle)
+        return;
+    struct fake_object *object = use(fake, name, type, handle);
+    if (!object)
+        return;
+    if (object->of_caller)
+        fake_misuse(fake, "%s: the object is the caller's", name);
+    if (!same_callbacks(allocator, object->allocator))
+        fake_misuse(fake, "%s: other allocation callbacks than at creation", name);
+    if (object->host && allocator)
+        allocator->pfnFree(allocator->pUserData, object->host);
+    object->alive = false;
+    for (size_t i = 0; i < fake->object_count; ++i) {
+        if (fake->objects[i].parent == handle &&
+            fake->objects[i].type == VK_OBJECT_TYPE_DESCRIPTOR_SET)
+            fake->objects[i].alive = false;
+    }
+}
+
+/* A create and destroy pair. The body sees fake, call and object, after success. */
+#define FAKE_CREATE(Name, TYPE, BODY)                                                              \
+    static VKAPI_ATTR VkResult VKAPI_CALL fake_Create##Name(                                       \
+        VkDevice device, const Vk##Name##CreateInfo *info, const VkAllocationCallbacks *allocator, \
+        Vk##Name *out)                                                                             \
+    {                                                                                              \
+        struct fake_object *object;                                                                \
+        uint64_t handle;                                                                           \
+        VkResult result =                                                                          \
+            create(device, "vkCreate" #Name, VK_OBJECT_TYPE_##TYPE, allocator, &handle, &object);  \
+        *out = (Vk##Name)(uintptr_t)handle;                                                        \
+        if (object) {                                                                              \
+            struct fake_vulkan *fake = fake_of(device);                                            \
+            struct fake_call *call = &fake->calls[fake->call_count - 1];                           \
+            (void)call;                                                                            \
+            (void)info;                                                                            \
+            BODY                                                                                   \
+        }                                                                                          \
+        return result;                                                                             \
+    }
+#define FAKE_DESTROY(Name, TYPE)                                                                   \
+    static VKAPI_ATTR void VKAPI_CALL fake_Destroy##Name(VkDevice device, Vk##Name handle,         \
+                                                         const VkAllocationCallbacks *allocator)   \
+    {                                                                                              \
+        destroy(device, "vkDestroy" #Name, VK_OBJECT_TYPE_##TYPE, number(handle), allocator);      \
+    }
+
+FAKE_CREATE(ShaderModule, SHADER_MODULE, {
+    if (!info->codeSize || info->codeSize % 4 || info->pCode[0] != 0x07230203u)
+        fake_misuse(fake, "vkCreateShaderModule: no SPIR-V");
+})
+FAKE_DESTROY(ShaderModule, SHADER_MODULE)
+FAKE_CREATE(DescriptorSetLayout, DESCRIPTOR_SET_LAYOUT, {})
+FAKE_DESTROY(DescriptorSetLayout, DESCRIPTOR_SET_LAYOUT)
+FAKE_CREATE(PipelineLayout, PIPELINE_LAYOUT, {
+    use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, number(info->pSetLayouts[0]));
+})
+FAKE_DESTROY(PipelineLayout, PIPELINE_LAYOUT)
+FAKE_CREATE(DescriptorPool, DESCRIPTOR_POOL, {})
+FAKE_DESTROY(DescriptorPool, DESCRIPTOR_POOL)
+FAKE_CREATE(Image, IMAGE, { call->image = object->image = *info; })
+FAKE_DESTROY(Image, IMAGE)
+FAKE_CREATE(ImageView, IMAGE_VIEW, {
+    const struct fake_object *image =
+        use(fake, call->name, VK_OBJECT_TYPE_IMAGE, number(info->image));
+    object->parent = number(info->image);
+    if (image && !image->memory)
+        fake_misuse(fake, "vkCreateImageView: the image has no memory");
+    if (image && image->image.format != info->format)
+        fake_misuse(fake, "vkCreateImageView: not the image's format");
+})
+FAKE_DESTROY(ImageView, IMAGE_VIEW)
+FAKE_DESTROY(Pipeline, PIPELINE)
+
+static VKAPI_ATTR VkResult VKAPI_CALL fake_CreateComputePipelines(
+    VkDevice device, VkPipelineCache cache, uint32_t count, const VkComputePipelineCreateInfo *info,
+    const VkAllocationCallbacks *allocator, VkPipeline *out)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    struct fake_object *object;
+    uint64_t handle;
+    VkResult result = create(device, "vkCreateComputePipelines", VK_OBJECT_TYPE_PIPELINE, allocator,
+                             &handle, &object);
+    fake->calls[fake->call_count - 1].cache = cache;
+    if (count != 1)
+        fake_misuse(fake, "the fake builds one pipeline a call");
+    use(fake, "vkCreateComputePipelines", VK_OBJECT_TYPE_SHADER_MODULE, number(info->stage.module));
+    use(fake, "vkCreateComputePipelines", VK_OBJECT_TYPE_PIPELINE_LAYOUT, number(info->layout));
+    *out = (VkPipeline)(uintptr_t)handle;
+    return result;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL fake_AllocateDescriptorSets(
+    VkDevice device, const VkDescriptorSetAllocateInfo *info, VkDescriptorSet *out)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    struct fake_call *call = fake_note(fake, "vkAllocateDescriptorSets");
+    *out = (VkDescriptorSet)(uintptr_t)0xdeadbeef;
+    if (fails(fake, call->name))
+        return fake->fail_result;
+    use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_POOL, number(info->descriptorPool));
+    use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, number(info->pSetLayouts[0]));
+    struct fake_object *object = fake_add(fake, VK_OBJECT_TYPE_DESCRIPTOR_SET);
+    object->parent = number(info->descriptorPool);
+    call->handle = object->handle;
+    *out = (VkDescriptorSet)(uintptr_t)object->handle;
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_UpdateDescriptorSets(
+    VkDevice device, uint32_t count, const VkWriteDescriptorSet *writes, uint32_t copy_count,
+    const VkCopyDescriptorSet *copies)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    struct fake_call *call = fake_note(fake, "vkUpdateDescriptorSets");
+    (void)copies;
+    if (copy_count || count > FAKE_WRITES)
+        fake_misuse(fake, "vkUpdateDescriptorSets: %u writes, %u copies", count, copy_count);
+    for (uint32_t i = 0; i < count && i < FAKE_WRITES; ++i) {
+        struct fake_object *set = use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET,
+                                      number(writes[i].dstSet));
+        uint64_t view = number(writes[i].pImageInfo->imageView);
+        use(fake, call->name, VK_OBJECT_TYPE_IMAGE_VIEW, view);
+        if (set && writes[i].dstBinding < FAKE_WRITES)
+            set->views[writes[i].dstBinding] = view;
+        call->handle = number(writes[i].dstSet);
+        call->writes[call->write_count].binding = writes[i].dstBinding;
+        call->writes[call->write_count].type = writes[i].descriptorType;
+        call->writes[call->write_count].view = view;
+        call->writes[call->write_count++].layout = writes[i].pImageInfo->imageLayout;
+    }
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_GetImageMemoryRequirements(VkDevice device, VkImage image,
+                                                                  VkMemoryRequirements *out)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    fake_note(fake, "vkGetImageMemoryRequirements")->handle = number(image);
+    const struct fake_object *object = use(fake, "vkGetImageMemoryRequirements",
+                                           VK_OBJECT_TYPE_IMAGE, number(image));
+    VkDeviceSize texel = object && object->image.format == VK_FORMAT_R16_SFLOAT ? 2 : 4;
+    *out = (VkMemoryRequirements){
+        .size = object ? texel * object->image.extent.width * object->image.extent.height : 0,
+        .alignment = fake->image_alignment,
+        .memoryTypeBits = fake->image_type_bits,
+    };
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL fake_AllocateMemory(VkDevice device,
+                                                          const VkMemoryAllocateInfo *info,
+                                                          const VkAllocationCallbacks *allocator,
+                                                          VkDeviceMemory *out)
+{
+    struct fake_object *object;
+    uint64_t handle;
+    VkResult result = create(device, "vkAllocateMemory", VK_OBJECT_TYPE_DEVICE_MEMORY, allocator,
+                             &handle, &object);
+    struct fake_vulkan *fake = fake_of(device);
+    fake->calls[fake->call_count - 1].size = info->allocationSize;
+    fake->calls[fake->call_count - 1].memory_type = info->memoryTypeIndex;
+    *out = (VkDeviceMemory)(uintptr_t)handle;
+    return result;
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_FreeMemory(VkDevice device, VkDeviceMemory memory,
+                                                  const VkAllocationCallbacks *allocator)
+{
+    destroy(device, "vkFreeMemory", VK_OBJECT_TYPE_DEVICE_MEMORY, number(memory), allocator);
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL fake_BindImageMemory(VkDevice device, VkImage image,
+                                                           VkDeviceMemory memory,
+                                                           VkDeviceSize offset)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    struct fake_call *call = fake_note(fake, "vkBindImageMemory");
+    if (fails(fake, call->name))
+        return fake->fail_result;
+    struct fake_object *object = use(fake, call->name, VK_OBJECT_TYPE_IMAGE, number(image));
+    use(fake, call->name, VK_OBJECT_TYPE_DEVICE_MEMORY, number(memory));
+    if (offset % fake->image_alignment)
+        fake_misuse(fake, "vkBindImageMemory: offset %llu", (unsigned long long)offset);
+    if (object && object->memory)
+        fake_misuse(fake, "vkBindImageMemory: the image has memory");
+    if (object)
+        object->memory = number(memory);
+    call->handle = number(image);
+    call->memory = number(memory);
+    call->offset = offset;
+    return VK_SUCCESS;
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL fake_SetDebugUtilsObjectNameEXT(
+    VkDevice device, const VkDebugUtilsObjectNameInfoEXT *info)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    struct fake_call *call = fake_note(fake, "vkSetDebugUtilsObjectNameEXT");
+    call->handle = info->objectHandle;
+    use(fake, call->name, info->objectType, info->objectHandle);
+    return fails(fake, call->name) ? fake->fail_result : VK_SUCCESS;
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_CmdPipelineBarrier(
+    VkCommandBuffer cmd, VkPipelineStageFlags src, VkPipelineStageFlags dst,
+    VkDependencyFlags flags, uint32_t memory_count, const VkMemoryBarrier *memory,
+    uint32_t buffer_count, const VkBufferMemoryBarrier *buffers, uint32_t image_count,
+    const VkImageMemoryBarrier *images)
+{
+    struct fake_vulkan *fake = fake_of(cmd);
+    struct fake_call *call = fake_note(fake, "vkCmdPipelineBarrier");
+    (void)flags;
+    (void)buffers;
+    call->src_stages = src;
+    call->dst_stages = dst;
+    call->memory_barrier_count = memory_count;
+    call->buffer_barrier_count = buffer_count;
+    call->image_barrier_count = image_count;
+    if (memory_count)
+        call->memory_barrier = memory[0];
+    if (image_count > FAKE_BARRIERS)
+        fake_misuse(fake, "vkCmdPipelineBarrier: %u image barriers", image_count);
+    for (uint32_t i = 0; i < image_count && i < FAKE_BARRIERS; ++i) {
+        use(fake, call->name, VK_OBJECT_TYPE_IMAGE, number(images[i].image));
+        call->image_barriers[i] = images[i];
+    }
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_CmdBindPipeline(VkCommandBuffer cmd,
+                                                       VkPipelineBindPoint point,
+                                                       VkPipeline pipeline)
+{
+    struct fake_vulkan *fake = fake_of(cmd);
+    struct fake_call *call = fake_note(fake, "vkCmdBindPipeline");
+    use(fake, call->name, VK_OBJECT_TYPE_PIPELINE, number(pipeline));
+    call->handle = fake->bound_pipeline = number(pipeline);
+    call->bind_point = point;
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_CmdBindDescriptorSets(
+    VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout, uint32_t first,
+    uint32_t count, const VkDescriptorSet *sets, uint32_t dynamic_count, const uint32_t *dynamic)
+{
+    struct fake_vulkan *fake = fake_of(cmd);
+    struct fake_call *call = fake_note(fake, "vkCmdBindDescriptorSets");
+    (void)dynamic;
+    use(fake, call->name, VK_OBJECT_TYPE_PIPELINE_LAYOUT, number(layout));
+    use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET, number(sets[0]));
+    if (dynamic_count)
+        fake_misuse(fake, "vkCmdBindDescriptorSets: no dynamic descriptors in the layout");
+    call->handle = fake->bound_set = number(sets[0]);
+    call->bind_point = point;
+    call->first_set = first;
+    call->set_count = count;
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_CmdPushConstants(VkCommandBuffer cmd,
+                                                        VkPipelineLayout layout,
+                                                        VkShaderStageFlags stages, uint32_t offset,
+                                                        uint32_t size, const void *values)
+{
+    struct fake_vulkan *fake = fake_of(cmd);
+    struct fake_call *call = fake_note(fake, "vkCmdPushConstants");
+    use(fake, call->name, VK_OBJECT_TYPE_PIPELINE_LAYOUT, number(layout));
+    call->push_stages = stages;
+    call->push_offset = offset;
+    call->push_bytes = size;
+    if (offset % 4 || size % 4 || !size || offset + size > FAKE_PUSH_BYTES)
+        fake_misuse(fake, "vkCmdPushConstants: %u bytes at %u", size, offset);
+    else
+        memcpy(call->push + offset, values, size);
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_CmdDispatch(VkCommandBuffer cmd, uint32_t x, uint32_t y,
+                                                   uint32_t z)
+{
+    struct fake_vulkan *fake = fake_of(cmd);
+    struct fake_call *call = fake_note(fake, "vkCmdDispatch");
+    call->groups[0] = x;
+    call->groups[1] = y;
+    call->groups[2] = z;
+    call->handle = fake->bound_pipeline;
+    use(fake, call->name, VK_OBJECT_TYPE_PIPELINE, fake->bound_pipeline);
+    const struct fake_object *set = use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET,
+                                        fake->bound_set);
+    for (size_t i = 0; set && i < FAKE_WRITES; ++i) {
+        if (set->views[i])
+            use(fake, call->name, VK_OBJECT_TYPE_IMAGE_VIEW, set->views[i]);
+    }
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_CmdBeginDebugUtilsLabelEXT(VkCommandBuffer cmd,
+                                                                  const VkDebugUtilsLabelEXT *label)
+{
+    fake_note(fake_of(cmd), "vkCmdBeginDebugUtilsLabelEXT");
+    if (!label->pLabelName || !label->pLabelName[0])
+        fake_misuse(fake_of(cmd), "vkCmdBeginDebugUtilsLabelEXT: no name");
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_CmdEndDebugUtilsLabelEXT(VkCommandBuffer cmd)
+{
+    fake_note(fake_of(cmd), "vkCmdEndDebugUtilsLabelEXT");
+}
+
+#define ENTRY(name) {"vk" #name, (PFN_vkVoidFunction)fake_##name}
+const struct fake_entry fake_debug_functions[FAKE_DEBUG_FUNCTIONS] = {
+    ENTRY(SetDebugUtilsObjectNameEXT),
+    ENTRY(CmdBeginDebugUtilsLabelEXT),
+    ENTRY(CmdEndDebugUtilsLabelEXT),
+};
+const struct fake_entry fake_device_functions[FAKE_DEVICE_FUNCTIONS] = {
+    ENTRY(CreateShaderModule),        ENTRY(DestroyShaderModule),
+    ENTRY(CreateDescriptorSetLayout), ENTRY(DestroyDescriptorSetLayout),
+    ENTRY(CreatePipelineLayout),      ENTRY(DestroyPipelineLayout),
+    ENTRY(CreateComputePipelines),    ENTRY(DestroyPipeline),
+    ENTRY(CreateDescriptorPool),      ENTRY(DestroyDescriptorPool),
+    ENTRY(AllocateDescriptorSets),    ENTRY(UpdateDescriptorSets),
+    ENTRY(CreateImage),               ENTRY(DestroyImage),
+    ENTRY(GetImageMemoryRequirements), ENTRY(AllocateMemory),
+    ENTRY(FreeMemory),                ENTRY(BindImageMemory),
+    ENTRY(CreateImageView),           ENTRY(DestroyImageView),
+    ENTRY(CmdPipelineBarrier),        ENTRY(CmdBindPipeline),
+    ENTRY(CmdBindDescriptorSets),     ENTRY(CmdPushConstants),
+    ENTRY(CmdDispatch),
+};

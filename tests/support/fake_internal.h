@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the two halves of the fake share: its state (fake_vulkan.c) and its device functions
+ * (fake_device.c). */
+#ifndef FAKE_INTERNAL_H_
+#define FAKE_INTERNAL_H_
+
+#include "fake_vulkan.h"
+
+enum { FAKE_DEBUG_FUNCTIONS = 3, FAKE_DEVICE_FUNCTIONS = 25 };
+
+struct fake_entry {
+    const char *name;
+    PFN_vkVoidFunction function;
+};
+
+extern const struct fake_entry fake_debug_functions[FAKE_DEBUG_FUNCTIONS];
+extern const struct fake_entry fake_device_functions[FAKE_DEVICE_FUNCTIONS];
+
+/* The fake that a dispatchable handle belongs to. */
+struct fake_vulkan *fake_of(const void *dispatchable);
+struct fake_call *fake_note(struct fake_vulkan *fake, const char *name);
+struct fake_object *fake_add(struct fake_vulkan *fake, VkObjectType type);
+/* Keeps the first misuse of the API. */
+#ifdef __GNUC__
+__attribute__((format(printf, 2, 3)))
+#endif
+void fake_misuse(struct fake_vulkan *fake, const char *format, ...);
+
+#endif

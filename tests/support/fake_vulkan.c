@@ -1,0 +1,258 @@
+/* SPDX-License-Identifier: MIT */
+#include "fake_internal.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+struct fake_vulkan *fake_of(const void *dispatchable)
+{
+    return *(struct fake_vulkan *const *)dispatchable;
+}
+
+void fake_misuse(struct fake_vulkan *fake, const char *format, ...)
+{
+    if (fake->error[0])
+        return;
+    va_list args;
+    va_start(args, format);
+    vsnprintf(fake->error, sizeof fake->error, format, args);
+    va_end(args);
+}
+
+struct fake_call *fake_note(struct fake_vulkan *fake, const char *name)
+{
+    if (fake->call_count == FAKE_CALLS) {
+        fake_misuse(fake, "more than %d calls", FAKE_CALLS);
+        --fake->call_count;
+    }
+    struct fake_call *call = &fake->calls[fake->call_count++];
+    *call = (struct fake_call){.name = name};
+    return call;
+}
+
+struct fake_object *fake_add(struct fake_vulkan *fake, VkObjectType type)
+{
+    if (fake->object_count == FAKE_OBJECTS) {
+        fake_misuse(fake, "more than %d objects", FAKE_OBJECTS);
+        --fake->object_count;
+    }
+    struct fake_object *object = &fake->objects[fake->object_count++];
+    *object = (struct fake_object){
+        .type = type,
+        .handle = (uint64_t)type << 32 | (uint64_t)fake->object_count,
+        .alive = true,
+    };
+    return object;
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_GetPhysicalDeviceProperties(VkPhysicalDevice device,
+                                                                   VkPhysicalDeviceProperties *out)
+{
+    const struct fake_vulkan *fake = fake_of(device);
+    fake_note(fake_of(device), "vkGetPhysicalDeviceProperties");
+    *out = (VkPhysicalDeviceProperties){
+        .apiVersion = fake->api_version,
+        .deviceName = "fake",
+        .limits = {.maxImageDimension2D = fake->max_dimension, .maxPushConstantsSize = 128},
+    };
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_GetPhysicalDeviceMemoryProperties(
+    VkPhysicalDevice device, VkPhysicalDeviceMemoryProperties *out)
+{
+    fake_note(fake_of(device), "vkGetPhysicalDeviceMemoryProperties");
+    *out = fake_of(device)->memory;
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_GetPhysicalDeviceFormatProperties(VkPhysicalDevice device,
+                                                                         VkFormat format,
+                                                                         VkFormatProperties *out)
+{
+    const struct fake_vulkan *fake = fake_of(device);
+    const VkFormatFeatureFlags all = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT |
+                                     VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
+    fake_note(fake_of(device), "vkGetPhysicalDeviceFormatProperties");
+    *out = (VkFormatProperties){.optimalTilingFeatures = all, .linearTilingFeatures = all};
+    for (size_t i = 0; i < fake->format_count; ++i) {
+        if (fake->formats[i].format == format) {
+            out->optimalTilingFeatures = fake->formats[i].optimal;
+            out->linearTilingFeatures = fake->formats[i].linear;
+        }
+    }
+}
+
+#define ENTRY(name) {"vk" #name, (PFN_vkVoidFunction)fake_##name}
+static const struct fake_entry instance_functions[] = {
+    ENTRY(GetPhysicalDeviceProperties),
+    ENTRY(GetPhysicalDeviceMemoryProperties),
+    ENTRY(GetPhysicalDeviceFormatProperties),
+};
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static PFN_vkVoidFunction look_up(struct fake_vulkan *fake, const struct fake_entry *entries,
+                                  size_t count, const char *name)
+{
+    if (fake->missing && strcmp(fake->missing, name) == 0)
+        return NULL;
+    for (size_t i = 0; i < count; ++i) {
+        if (strcmp(entries[i].name, name) == 0)
+            return entries[i].function;
+    }
+    return NULL;
+}
+
+static void remember(struct fake_vulkan *fake, const struct fake_entry *entries, size_t count,
+                     const char *name)
+{
+    for (size_t i = 0; i < fake->asked_count; ++i) {
+        if (strcmp(fake->asked[i], name) == 0)
+            return;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        if (strcmp(entries[i].name, name) == 0 && fake->asked_count < FAKE_NAMES)
+            fake->asked[fake->asked_count++] = entries[i].name;
+    }
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL fake_get_instance_proc_addr(VkInstance instance,
+                                                                     const char *name)
+{
+    struct fake_vulkan *fake = fake_of(instance);
+    remember(fake, instance_functions, COUNT(instance_functions), name);
+    PFN_vkVoidFunction found = look_up(fake, instance_functions, COUNT(instance_functions), name);
+    if (!found && fake->debug_utils)
+        found = look_up(fake, fake_debug_functions, FAKE_DEBUG_FUNCTIONS, name);
+    return found;
+}
+
+VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL fake_get_device_proc_addr(VkDevice device,
+                                                                   const char *name)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    remember(fake, fake_device_functions, FAKE_DEVICE_FUNCTIONS, name);
+    return look_up(fake, fake_device_functions, FAKE_DEVICE_FUNCTIONS, name);
+}
+
+void fake_init(struct fake_vulkan *fake)
+{
+    *fake = (struct fake_vulkan){
+        .api_version = VK_API_VERSION_1_1,
+        .max_dimension = 4096,
+        .memory = {
+            .memoryTypeCount = 3,
+            .memoryTypes = {
+                {VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT, 0},
+                {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 1},
+                {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT, 1},
+            },
+            .memoryHeapCount = 2,
+        },
+        .image_alignment = 256,
+        .image_type_bits = 0x7,
+        .fail_result = VK_ERROR_DEVICE_LOST,
+    };
+    fake->instance = fake->physical_device = fake->device = fake->command_buffer = fake;
+    fake->calls = malloc(FAKE_CALLS * sizeof *fake->calls);
+    fake->objects = malloc(FAKE_OBJECTS * sizeof *fake->objects);
+    if (!fake->calls || !fake->objects)
+        abort();
+}
+
+void fake_release(struct fake_vulkan *fake)
+{
+    free(fake->calls);
+    free(fake->objects);
+    fake->calls = NULL;
+    fake->objects = NULL;
+}
+
+VkInstance fake_instance(struct fake_vulkan *fake)
+{
+    return (VkInstance)(void *)&fake->instance;
+}
+
+VkPhysicalDevice fake_physical_device(struct fake_vulkan *fake)
+{
+    return (VkPhysicalDevice)(void *)&fake->physical_device;
+}
+
+VkDevice fake_device(struct fake_vulkan *fake)
+{
+    return (VkDevice)(void *)&fake->device;
+}
+
+VkCommandBuffer fake_command_buffer(struct fake_vulkan *fake)
+{
+    return (VkCommandBuffer)(void *)&fake->command_buffer;
+}
+
+void fake_limit_format(struct fake_vulkan *fake, VkFormat format, VkFormatFeatureFlags optimal,
+                       VkFormatFeatureFlags linear)
+{
+    fake->formats[fake->format_count].format = format;
+    fake->formats[fake->format_count].optimal = optimal;
+    fake->formats[fake->format_count++].linear = linear;
+}
+
+VkImageView fake_caller_view(struct fake_vulkan *fake)
+{
+    struct fake_object *object = fake_add(fake, VK_OBJECT_TYPE_IMAGE_VIEW);
+    object->of_caller = true;
+    return (VkImageView)(uintptr_t)object->handle;
+}
+
+VkDeviceMemory fake_caller_memory(struct fake_vulkan *fake)
+{
+    struct fake_object *object = fake_add(fake, VK_OBJECT_TYPE_DEVICE_MEMORY);
+    object->of_caller = true;
+    return (VkDeviceMemory)(uintptr_t)object->handle;
+}
+
+size_t fake_live_of(const struct fake_vulkan *fake, VkObjectType type)
+{
+    size_t live = 0;
+    for (size_t i = 0; i < fake->object_count; ++i) {
+        const struct fake_object *object = &fake->objects[i];
+        live += object->alive && !object->of_caller &&
+                (type == VK_OBJECT_TYPE_UNKNOWN || object->type == type);
+    }
+    return live;
+}
+
+size_t fake_live(const struct fake_vulkan *fake)
+{
+    return fake_live_of(fake, VK_OBJECT_TYPE_UNKNOWN);
+}
+
+const struct fake_object *fake_find(const struct fake_vulkan *fake, uint64_t handle)
+{
+    for (size_t i = 0; i < fake->object_count; ++i) {
+        if (fake->objects[i].handle == handle)
+            return &fake->objects[i];
+    }
+    return NULL;
+}
+
+void fake_forget_calls(struct fake_vulkan *fake)
+{
+    fake->call_count = 0;
+}
+
+size_t fake_count(const struct fake_vulkan *fake, const char *prefix)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < fake->call_count; ++i)
+        count += strncmp(fake->calls[i].name, prefix, strlen(prefix)) == 0;
+    return count;
+}
+
+const struct fake_call *fake_nth(const struct fake_vulkan *fake, const char *name, size_t index)
+{
+    for (size_t i = 0; i < fake->call_count; ++i) {
+        if (strcmp(fake->calls[i].name, name) == 0 && index-- == 0)
+            return &fake->calls[i];
+    }
+    return NULL;
+}

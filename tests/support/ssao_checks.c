@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: MIT */
+#include "ssao_checks.h"
+
+#include "ref_normal.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void check_ssao(struct picture *p, ssao_reference *reference, const char *what)
+{
+    struct ref_scene scene;
+    size_t texels = picture_texels(p);
+    double *expected = test_alloc(texels, sizeof *expected);
+    picture_run(p);
+    picture_reference_scene(p, &scene);
+    reference(&scene, &p->ssao, expected);
+    check_close(what, p->values[SLOT_AO], expected, texels, 1e-4, 1e-3);
+    /* An image without occlusion would agree with a shader that does nothing. */
+    assert_true(mean_of(expected, texels) < 0.995);
+    ref_scene_free(&scene);
+    free(expected);
+}
+
+void check_every_normal_encoding(const vkao_ssao_params *params, ssao_reference *reference)
+{
+    static const struct {
+        const char *name;
+        vkao_normal_encoding encoding;
+        VkFormat format;
+    } rows[] = {
+        {"normals from depth", VKAO_NORMALS_FROM_DEPTH, VK_FORMAT_UNDEFINED},
+        {"normals xyz RGBA32F", VKAO_NORMALS_XYZ_SNORM, VK_FORMAT_R32G32B32A32_SFLOAT},
+        {"normals xyz RGBA16F", VKAO_NORMALS_XYZ_SNORM, VK_FORMAT_R16G16B16A16_SFLOAT},
+        {"normals xyz RGBA8_SNORM", VKAO_NORMALS_XYZ_SNORM, VK_FORMAT_R8G8B8A8_SNORM},
+        {"normals xyz RGBA8_UNORM", VKAO_NORMALS_XYZ_UNORM, VK_FORMAT_R8G8B8A8_UNORM},
+        {"normals xyz A2B10G10R10_UNORM", VKAO_NORMALS_XYZ_UNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32},
+        {"normals octahedral RG16_SNORM", VKAO_NORMALS_OCT_SNORM, VK_FORMAT_R16G16_SNORM},
+        {"normals octahedral RG16F", VKAO_NORMALS_OCT_SNORM, VK_FORMAT_R16G16_SFLOAT},
+        {"normals octahedral RG16_UNORM", VKAO_NORMALS_OCT_UNORM, VK_FORMAT_R16G16_UNORM},
+    };
+    struct lens lens = lens_perspective(0.6, 0.45);
+    const struct scene scene = scene_corner();
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        struct picture p;
+        picture_make(&p, VKAO_STAGE_SSAO, &scene);
+        p.ssao = *params;
+        p.view.normal_encoding = rows[i].encoding;
+        picture_render_scene(&p, &scene, &lens, VK_FORMAT_R32_SFLOAT, rows[i].format);
+        check_ssao(&p, reference, rows[i].name);
+        picture_free(&p);
+    }
+}
+
+void check_world_space_normals(const vkao_ssao_params *params, ssao_reference *reference)
+{
+    /* Columns of an orthonormal matrix that is neither symmetric nor close to the identity. */
+    static const double columns[3][3] = {
+        {2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0}, {2.0 / 3.0, 2.0 / 3.0, -1.0 / 3.0}, {-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0}};
+    struct picture p, turned;
+    const struct scene scene = scene_corner();
+    picture_make(&p, VKAO_STAGE_SSAO, &scene);
+    picture_make(&turned, VKAO_STAGE_SSAO, &scene);
+    p.ssao = turned.ssao = *params;
+    for (int i = 0; i < 9; ++i)
+        turned.view.normal_to_view[i] = (float)columns[i / 3][i % 3];
+    for (size_t i = 0; i < picture_texels(&p); ++i) {
+        const double *view = &p.values[SLOT_NORMALS][i * 4];
+        for (int c = 0; c < 3; ++c) /* the transpose turns back */
+            turned.values[SLOT_NORMALS][i * 4 + (size_t)c] = ref_dot(columns[c], view);
+    }
+    picture_run(&p);
+    check_ssao(&turned, reference, "world-space normals against the reference");
+    check_close("world-space against view-space normals", turned.values[SLOT_AO], p.values[SLOT_AO],
+                picture_texels(&p), 1e-3, 0.02);
+    picture_free(&p);
+    picture_free(&turned);
+}
+
+void check_every_projection(const vkao_ssao_params *params, ssao_reference *reference)
+{
+    static const struct {
+        const char *name;
+        bool orthographic, reversed, y_up;
+        double forward, shift;
+    } rows[] = {
+        {"perspective, left-handed, y up", false, false, true, 1.0, 0.0},
+        {"perspective, right-handed, off-centre", false, false, false, -1.0, 0.3},
+        {"orthographic, right-handed", true, false, false, -1.0, 0.0},
+        {"orthographic, left-handed, reversed, off-centre", true, true, true, 1.0, 0.5},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        struct picture p;
+        const struct scene scene = scene_corner();
+        struct lens lens = rows[i].orthographic ? lens_orthographic(1.6, 1.2) : lens_perspective(0.6, 0.45);
+        lens.x0 += rows[i].shift;
+        lens.x1 += rows[i].shift;
+        lens.reversed = rows[i].reversed;
+        lens.forward = rows[i].forward;
+        if (rows[i].y_up) {
+            double y = lens.y0;
+            lens.y0 = lens.y1;
+            lens.y1 = y;
+        }
+        picture_make(&p, VKAO_STAGE_SSAO, &scene);
+        p.ssao = *params;
+        picture_render_scene(&p, &scene, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+        check_ssao(&p, reference, rows[i].name);
+        picture_free(&p);
+    }
+}
+
+void check_bad_normals_are_replaced(const vkao_ssao_params *params)
+{
+    static const double bad[][3] = {
+        {0.0, 0.0, 0.0}, {0.2, 0.2, -0.2}, {(double)NAN, 0.0, 1.0}, {0.0, (double)INFINITY, 0.0}, {0.0, 0.0, -1e30}};
+    struct picture p, from_depth;
+    const struct scene scene = scene_corner();
+    picture_make(&from_depth, VKAO_STAGE_SSAO, &scene);
+    from_depth.view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
+    from_depth.ssao = *params;
+    picture_run(&from_depth);
+    for (size_t row = 0; row < sizeof bad / sizeof bad[0]; ++row) {
+        picture_make(&p, VKAO_STAGE_SSAO, &scene);
+        p.ssao = *params;
+        for (size_t i = 0; i < picture_texels(&p) * 4; ++i)
+            p.values[SLOT_NORMALS][i] = i % 4 < 3 ? bad[row][i % 4] : 0.0;
+        picture_run(&p);
+        check_equal("bad normals", p.values[SLOT_AO], from_depth.values[SLOT_AO], picture_texels(&p));
+        picture_free(&p);
+    }
+    picture_free(&from_depth);
+}
+
+void check_no_nan_at_the_limits(const vkao_ssao_params *params)
+{
+    static const uint32_t extents[][2] = {{1, 1}, {33, 1}, {1, 33}, {2, 2}, {17, 9}};
+    static const float radii[] = {1e-30f, 1e-3f, 100.0f, 1e30f};
+    const struct scene scene = scene_corner();
+    struct lens lens = lens_perspective(0.6, 0.45);
+    for (size_t i = 0; i < sizeof extents / sizeof extents[0] * 4; ++i) {
+        struct picture p;
+        picture_init(&p, extents[i / 4][0], extents[i / 4][1], VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
+        p.ssao = *params;
+        p.ssao.radius = radii[i % 4];
+        picture_render_scene(&p, &scene, &lens, VK_FORMAT_D32_SFLOAT, VK_FORMAT_UNDEFINED);
+        picture_set(&p, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
+        picture_run(&p);
+        for (size_t texel = 0; texel < picture_texels(&p); ++texel) {
+            double ao = p.values[SLOT_AO][texel];
+            if (!(ao >= 0.0 && ao <= 1.0))
+                fail_msg("%ux%u, radius %g: texel %zu is %g", p.width, p.height, (double)p.ssao.radius, texel, ao);
+        }
+        picture_free(&p);
+    }
+}

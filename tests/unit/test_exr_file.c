@@ -1,0 +1,652 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * EXR files in and out: what is appended, copied, refused and left behind. Every input is made
+ * here. */
+#ifndef _GNU_SOURCE
+#define _GNU_SOURCE
+#endif
+#include "atomic_file.h"
+#include "exr_file.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { WIDTH = 70, HEIGHT = 45, PIXELS = WIDTH * HEIGHT };
+
+static char directory[512];
+static float ramp[PIXELS], noise[PIXELS];
+
+struct bytes {
+    unsigned char *data;
+    size_t size;
+};
+
+static const char *in_directory(const char *name)
+{
+    static char paths[8][1024];
+    static unsigned next;
+    char *path = paths[next++ % 8];
+    snprintf(path, sizeof paths[0], "%s/%s", directory, name);
+    return path;
+}
+
+static struct bytes load(const char *path)
+{
+    struct bytes b = {0};
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    assert_int_equal(fseek(file, 0, SEEK_END), 0);
+    b.size = (size_t)ftell(file);
+    rewind(file);
+    b.data = malloc(b.size + 1);
+    assert_non_null(b.data);
+    assert_int_equal(fread(b.data, 1, b.size, file), b.size);
+    fclose(file);
+    return b;
+}
+
+static void store(const char *path, const void *data, size_t size)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(data, 1, size, file), size);
+    assert_int_equal(fclose(file), 0);
+}
+
+static size_t files_in_directory(void)
+{
+    size_t count = 0;
+    DIR *dir = opendir(directory);
+    assert_non_null(dir);
+    for (struct dirent *entry; (entry = readdir(dir));)
+        count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
+    closedir(dir);
+    return count;
+}
+
+/* Two channels that compress well and badly, at an offset inside the display window. */
+static struct exr_write default_channels[2] = {
+    {"Z", EXR_FLOAT, noise, 1},
+    {"A", EXR_HALF, ramp, 1},
+};
+
+static struct exr_new_part make_part(const char *name, const char *compression)
+{
+    return (struct exr_new_part){
+        .name = name,
+        .data_window = {-3, 5, -3 + WIDTH - 1, 5 + HEIGHT - 1},
+        .display_window = {0, 0, 99, 59},
+        .pixel_aspect = 1.5f,
+        .compression = compression,
+        .channels = default_channels,
+        .channel_count = 2,
+    };
+}
+
+static void write_ok(const char *path, const char *copy_from, const struct exr_new_part *parts,
+                     size_t count)
+{
+    struct tool_error err = {0};
+    if (!exr_write_file(path, copy_from, parts, count, true, &err))
+        fail_msg("%s", err.message);
+}
+
+static void info_ok(const char *path, struct exr_info *info)
+{
+    struct tool_error err = {0};
+    if (!exr_info_read(path, info, &err))
+        fail_msg("%s", err.message);
+}
+
+static const struct exr_attribute *find_attribute(const struct exr_part *part, const char *name)
+{
+    for (size_t i = 0; i < part->attribute_count; i++) {
+        if (strcmp(part->attributes[i].name, name) == 0)
+            return &part->attributes[i];
+    }
+    return NULL;
+}
+
+/* info first, then every channel: true if nothing complained. */
+static bool reads_whole(const char *path, struct tool_error *err)
+{
+    struct exr_info info;
+    bool ok = exr_info_read(path, &info, err);
+    for (size_t p = 0; ok && p < info.part_count; p++) {
+        const struct exr_part *part = &info.parts[p];
+        size_t width = (size_t)(part->data_window.x_max - part->data_window.x_min) + 1;
+        size_t height = (size_t)(part->data_window.y_max - part->data_window.y_min) + 1;
+        float *values = malloc(width * height * sizeof *values);
+        assert_non_null(values);
+        for (size_t c = 0; ok && c < part->channel_count; c++) {
+            struct exr_read read = {part->channels[c].name, values, 1};
+            ok = exr_read_channels(path, p, &read, 1, err);
+        }
+        free(values);
+    }
+    exr_info_free(&info);
+    return ok;
+}
+
+static void expect_refused(const char *path, int code, const char *text)
+{
+    struct tool_error err = {0};
+    if (reads_whole(path, &err))
+        fail_msg("%s was accepted", path);
+    assert_int_equal(err.code, code);
+    if (!strstr(err.message, text) || strncmp(err.message, path, strlen(path)) != 0)
+        fail_msg("'%s' lacks the path or '%s'", err.message, text);
+}
+
+static uint64_t little_endian(const unsigned char *p, int bytes)
+{
+    uint64_t value = 0;
+    while (bytes-- > 0)
+        value = value << 8 | p[bytes];
+    return value;
+}
+
+/* The file position of the chunk tables: behind the headers. */
+static size_t skip_headers(const struct bytes *file)
+{
+    bool multi_part = file->data[5] & 0x10;
+    size_t p = 8;
+    do {
+        while (file->data[p]) {
+            p += strlen((char *)file->data + p) + 1;
+            p += strlen((char *)file->data + p) + 1;
+            p += 4 + (size_t)little_endian(file->data + p, 4);
+        }
+        p++;
+    } while (multi_part && file->data[p]);
+    return p + multi_part;
+}
+
+/* Compares count chunks, whose tables begin at entry ia and ib, from the line number to the end of
+ * the data. */
+static void assert_same_chunks(const struct bytes *a, size_t ia, const struct bytes *b, size_t ib,
+                               size_t count)
+{
+    size_t table_a = skip_headers(a) + 8 * ia, table_b = skip_headers(b) + 8 * ib;
+    size_t part_a = a->data[5] & 0x10 ? 4 : 0, part_b = b->data[5] & 0x10 ? 4 : 0;
+    for (size_t i = 0; i < count; i++) {
+        size_t at_a = (size_t)little_endian(a->data + table_a + 8 * i, 8) + part_a;
+        size_t at_b = (size_t)little_endian(b->data + table_b + 8 * i, 8) + part_b;
+        size_t size = 8 + (size_t)little_endian(a->data + at_a + 4, 4);
+        assert_in_range(at_a + size, 0, a->size);
+        assert_in_range(at_b + size, 0, b->size);
+        assert_memory_equal(a->data + at_a, b->data + at_b, size);
+    }
+}
+
+static void written_floats_come_back_exactly(void **state)
+{
+    (void)state;
+    static const char *const lossless[] = {"none", "rle", "zips", "zip", "piz"};
+    static float values[2 * PIXELS];
+    for (size_t i = 0; i < sizeof lossless / sizeof lossless[0]; i++) {
+        struct exr_new_part part = make_part("g", lossless[i]);
+        struct exr_read read = {"Z", values + 1, 2};
+        struct exr_info info;
+        struct tool_error err = {0};
+        write_ok(in_directory("a.exr"), NULL, &part, 1);
+        memset(values, 0, sizeof values);
+        assert_true(exr_read_channels(in_directory("a.exr"), 0, &read, 1, &err));
+        for (size_t k = 0; k < PIXELS; k++) {
+            assert_memory_equal(&values[2 * k + 1], &noise[k], sizeof noise[k]);
+            assert_true(values[2 * k] == 0.0f); /* the stride leaves its gaps alone */
+        }
+        info_ok(in_directory("a.exr"), &info);
+        assert_string_equal(info.parts[0].compression, lossless[i]);
+        assert_memory_equal(&info.parts[0].data_window, &part.data_window,
+                            sizeof part.data_window);
+        assert_memory_equal(&info.parts[0].display_window, &part.display_window,
+                            sizeof part.display_window);
+        assert_true(info.parts[0].pixel_aspect == 1.5f);
+        exr_info_free(&info);
+    }
+}
+
+static void halves_are_rounded_to_nearest_and_stay_finite(void **state)
+{
+    (void)state;
+    /* 2049 lies midway between the halves 2048 and 2050 (even wins), 2051 between 2050 and 2052. */
+    const float values[] = {2049.0f, 2051.0f, 1e30f, -INFINITY, 0.1f, 65519.0f};
+    const float expected[] = {2048.0f, 2052.0f, 65504.0f, -65504.0f, 0.0999755859375f, 65504.0f};
+    float back[6];
+    struct exr_write channel = {"Y", EXR_HALF, values, 1};
+    struct exr_read read = {"Y", back, 1};
+    struct exr_new_part part = make_part("h", "none");
+    struct tool_error err = {0};
+    part.data_window = (struct exr_box){0, 0, 5, 0};
+    part.channels = &channel;
+    part.channel_count = 1;
+    write_ok(in_directory("h.exr"), NULL, &part, 1);
+    assert_true(exr_read_channels(in_directory("h.exr"), 0, &read, 1, &err));
+    assert_memory_equal(back, expected, sizeof back);
+}
+
+static void a_channel_asked_for_twice_is_filled_twice(void **state)
+{
+    (void)state;
+    static float one[PIXELS], two[PIXELS];
+    struct exr_new_part part = make_part("g", "zip");
+    struct exr_read reads[] = {{"Z", one, 1}, {"Z", two, 1}};
+    struct tool_error err = {0};
+    write_ok(in_directory("a.exr"), NULL, &part, 1);
+    assert_true(exr_read_channels(in_directory("a.exr"), 0, reads, 2, &err));
+    assert_memory_equal(one, noise, sizeof one);
+    assert_memory_equal(two, noise, sizeof two);
+}
+
+static void append_keeps_every_existing_chunk_bit_identical(void **state)
+{
+    (void)state;
+    static const char *const compressions[] = {"zips", "dwab"};
+    const size_t chunks[] = {HEIGHT, 1}, first[] = {0, HEIGHT};
+    struct exr_new_part parts[] = {make_part("one", compressions[0]),
+                                   make_part("two", compressions[1])};
+    struct exr_new_part ao = make_part("ao", "zip");
+    write_ok(in_directory("in.exr"), NULL, parts, 2);
+    write_ok(in_directory("out.exr"), in_directory("in.exr"), &ao, 1);
+    struct bytes in = load(in_directory("in.exr")), out = load(in_directory("out.exr"));
+    for (int i = 0; i < 2; i++)
+        assert_same_chunks(&in, first[i], &out, first[i], chunks[i]);
+    free(in.data);
+    free(out.data);
+}
+
+static void append_promotes_a_single_part_with_its_chunks_and_attributes(void **state)
+{
+    (void)state;
+    struct exr_string note = {"studio/note", "keep me"};
+    struct exr_new_part part = make_part("", "dwaa"), ao = make_part("part0", "zip");
+    struct exr_info info;
+    part.strings = &note;
+    part.string_count = 1;
+    write_ok(in_directory("in.exr"), NULL, &part, 1);
+    write_ok(in_directory("out.exr"), in_directory("in.exr"), &ao, 1);
+    info_ok(in_directory("out.exr"), &info);
+    assert_int_equal(info.part_count, 2);
+    assert_string_not_equal(info.parts[0].name, "");
+    assert_string_equal(info.parts[1].name, "part0");
+    const struct exr_attribute *kept = find_attribute(&info.parts[0], "studio/note");
+    assert_non_null(kept);
+    assert_string_equal(kept->text, "keep me");
+    exr_info_free(&info);
+    struct bytes in = load(in_directory("in.exr")), out = load(in_directory("out.exr"));
+    assert_same_chunks(&in, 0, &out, 0, 2);
+    free(in.data);
+    free(out.data);
+}
+
+static void appended_parts_share_the_first_display_window(void **state)
+{
+    (void)state;
+    struct exr_new_part part = make_part("g", "zip"), ao = make_part("ao", "zip");
+    struct exr_info info;
+    ao.display_window.x_max = 5000;
+    ao.pixel_aspect = 1.0f;
+    write_ok(in_directory("in.exr"), NULL, &part, 1);
+    write_ok(in_directory("out.exr"), in_directory("in.exr"), &ao, 1);
+    info_ok(in_directory("out.exr"), &info);
+    assert_int_equal(info.parts[1].display_window.x_max, 99);
+    assert_true(info.parts[1].pixel_aspect == 1.5f);
+    exr_info_free(&info);
+}
+
+static void new_parts_take_attributes_but_no_structure_from_another(void **state)
+{
+    (void)state;
+    struct exr_string strings[] = {{"owner", "studio"}, {"cryptomatte/1/name", "object"}};
+    struct exr_new_part part = make_part("g", "piz"), ao = make_part("ao", "zip");
+    struct exr_info info;
+    part.view = "left";
+    part.strings = strings;
+    part.string_count = 2;
+    ao.attributes_from = in_directory("in.exr");
+    write_ok(in_directory("in.exr"), NULL, &part, 1);
+    write_ok(in_directory("out.exr"), NULL, &ao, 1);
+    info_ok(in_directory("out.exr"), &info);
+    assert_non_null(find_attribute(&info.parts[0], "owner"));
+    assert_null(find_attribute(&info.parts[0], "cryptomatte/1/name"));
+    assert_string_equal(info.parts[0].name, "ao");
+    assert_string_equal(info.parts[0].view, "");
+    assert_string_equal(info.parts[0].compression, "zip");
+    exr_info_free(&info);
+}
+
+static void two_parts_of_one_name_are_an_error(void **state)
+{
+    (void)state;
+    struct exr_new_part part = make_part("ao", "zip");
+    struct tool_error err = {0};
+    write_ok(in_directory("in.exr"), NULL, &part, 1);
+    assert_false(exr_write_file(in_directory("out.exr"), in_directory("in.exr"), &part, 1, true,
+                                &err));
+    assert_int_equal(err.code, EXIT_OUTPUT);
+    assert_non_null(strstr(err.message, "'ao'"));
+    assert_int_equal(files_in_directory(), 1);
+}
+
+static void truncated_file_is_an_error(void **state)
+{
+    (void)state;
+    struct exr_new_part parts[] = {make_part("one", "zip"), make_part("two", "none")};
+    for (size_t count = 1; count <= 2; count++) {
+        write_ok(in_directory("whole.exr"), NULL, parts, count);
+        struct bytes file = load(in_directory("whole.exr"));
+        /* Every cut up to the first chunks, then in strides, and the last bytes. */
+        for (size_t cut = 0; cut < file.size; cut += cut < 1200 || cut + 9 > file.size ? 1 : 151) {
+            struct tool_error err = {0};
+            store(in_directory("cut.exr"), file.data, cut);
+            if (reads_whole(in_directory("cut.exr"), &err))
+                fail_msg("%zu of %zu bytes were accepted", cut, file.size);
+            assert_int_equal(err.code, EXIT_INPUT);
+        }
+        store(in_directory("cut.exr"), file.data, file.size - 1);
+        expect_refused(in_directory("cut.exr"), EXIT_INPUT, "truncated");
+        free(file.data);
+    }
+}
+
+static void truncated_file_is_not_appended_to(void **state)
+{
+    (void)state;
+    struct exr_new_part part = make_part("g", "none"), ao = make_part("ao", "zip");
+    struct tool_error err = {0};
+    write_ok(in_directory("whole.exr"), NULL, &part, 1);
+    struct bytes file = load(in_directory("whole.exr"));
+    store(in_directory("cut.exr"), file.data, file.size * 6 / 10);
+    free(file.data);
+    assert_false(exr_write_file(in_directory("out.exr"), in_directory("cut.exr"), &ao, 1, true,
+                                &err));
+    assert_int_equal(err.code, EXIT_INPUT);
+    assert_non_null(strstr(err.message, "cut.exr"));
+    assert_int_equal(files_in_directory(), 2);
+}
+
+static void unfinished_file_is_an_error(void **state)
+{
+    (void)state;
+    struct exr_new_part part = make_part("g", "none");
+    write_ok(in_directory("a.exr"), NULL, &part, 1);
+    struct bytes file = load(in_directory("a.exr"));
+    memset(file.data + skip_headers(&file) + 8 * 7, 0, 8); /* as a renderer that was killed */
+    store(in_directory("a.exr"), file.data, file.size);
+    free(file.data);
+    expect_refused(in_directory("a.exr"), EXIT_INPUT, "part 0 has 44 of 45 chunks");
+}
+
+/* The value of a header attribute, to be damaged. */
+static unsigned char *header_value(struct bytes *file, const char *name)
+{
+    unsigned char *at = memmem(file->data, file->size, name, strlen(name) + 1);
+    assert_non_null(at);
+    at += strlen(name) + 1;
+    return at + strlen((char *)at) + 1 + 4;
+}
+
+static void damaged_headers_are_named_errors(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *attribute;
+        size_t offset;
+        unsigned char bytes[4];
+        size_t count;
+        const char *text;
+    } cases[] = {
+        {"compression", 0, {10}, 1, "compression htj2k256 (10) needs a newer OpenEXR"},
+        {"compression", 0, {11}, 1, "compression htj2k32 (11) needs a newer OpenEXR"},
+        {"compression", 0, {200}, 1, "compression (200) needs a newer OpenEXR"},
+        {"dataWindow", 8, {0xff, 0xff, 0xff, 0x7f}, 4, "more than the limit"},
+        {"dataWindow", 8, {0, 0, 0, 0x80}, 4, "dataWindow is empty"},
+        {"dataWindow", 8, {0, 0xff, 0, 0}, 4, "cannot hold"},
+        {"dataWindow", 12, {0, 2, 0, 0}, 4, "of 508 chunks"},
+        {"channels", 2, {9}, 1, "channel 'A' is invalid"},
+        {"lineOrder", 0, {7}, 1, "damaged"},
+        {"channels", (size_t)-4, {0xff, 0xff, 0xff, 0x7f}, 4, "claims 2147483647 bytes"},
+    };
+    struct exr_new_part part = make_part("g", "none");
+    write_ok(in_directory("a.exr"), NULL, &part, 1);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        struct bytes file = load(in_directory("a.exr"));
+        memcpy(header_value(&file, cases[i].attribute) + cases[i].offset, cases[i].bytes,
+               cases[i].count);
+        store(in_directory("bad.exr"), file.data, file.size);
+        free(file.data);
+        expect_refused(in_directory("bad.exr"), EXIT_INPUT, cases[i].text);
+    }
+}
+
+static void other_formats_and_empty_files_are_named(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *bytes;
+        size_t size;
+        const char *text;
+    } cases[] = {
+        {"\x89PNG\r\n", 6, "not an OpenEXR file (first bytes 89 50 4E 47 = PNG)"},
+        {"\xff\xd8\xff\xe0", 4, "= JPEG"},
+        {"#?RADIANCE", 10, "= Radiance HDR"},
+        {"II*\0....", 8, "= TIFF"},
+        {"hello", 5, "(first bytes 68 65 6C 6C)"},
+        {"", 0, "empty file"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        store(in_directory("x.exr"), cases[i].bytes, cases[i].size);
+        expect_refused(in_directory("x.exr"), EXIT_INPUT, cases[i].text);
+    }
+    expect_refused(in_directory("none.exr"), EXIT_INPUT, "cannot open: No such file or directory");
+    expect_refused(directory, EXIT_INPUT, "Is a directory");
+}
+
+static void missing_channel_is_a_channel_error(void **state)
+{
+    (void)state;
+    float value[1];
+    struct exr_new_part part = make_part("g", "zip");
+    struct exr_read read = {"depth.Z", value, 1};
+    struct tool_error err = {0};
+    write_ok(in_directory("a.exr"), NULL, &part, 1);
+    assert_false(exr_read_channels(in_directory("a.exr"), 0, &read, 1, &err));
+    assert_int_equal(err.code, EXIT_CHANNELS);
+    assert_non_null(strstr(err.message, "'depth.Z'"));
+}
+
+static void no_temporary_is_left_when_the_disk_write_fails(void **state)
+{
+    (void)state;
+    struct exr_new_part part = make_part("g", "none");
+    struct tool_error err = {0};
+    struct rlimit old, small;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &old), 0);
+    small = old;
+    small.rlim_cur = 4096;
+    void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
+    bool ok = exr_write_file(in_directory("out.exr"), NULL, &part, 1, false, &err);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
+    signal(SIGXFSZ, handler);
+    assert_false(ok);
+    assert_int_equal(err.code, EXIT_OUTPUT);
+    assert_non_null(strstr(err.message, "out.exr: cannot write: File too large"));
+    assert_int_equal(files_in_directory(), 0);
+}
+
+static void missing_directory_is_an_output_error(void **state)
+{
+    (void)state;
+    struct exr_new_part part = make_part("g", "zip");
+    struct tool_error err = {0};
+    assert_false(exr_write_file(in_directory("no/out.exr"), NULL, &part, 1, false, &err));
+    assert_int_equal(err.code, EXIT_OUTPUT);
+    assert_non_null(strstr(err.message, "No such file or directory"));
+    assert_string_not_equal(err.hint, "");
+}
+
+static void existing_output_is_not_replaced(void **state)
+{
+    (void)state;
+    struct exr_new_part part = make_part("g", "zip");
+    struct tool_error err = {0};
+    store(in_directory("out.exr"), "mine", 4);
+    assert_false(exr_write_file(in_directory("out.exr"), NULL, &part, 1, false, &err));
+    assert_int_equal(err.code, EXIT_OUTPUT);
+    struct bytes file = load(in_directory("out.exr"));
+    assert_int_equal(file.size, 4);
+    free(file.data);
+    assert_int_equal(files_in_directory(), 1);
+}
+
+static void output_that_appears_meanwhile_is_not_replaced(void **state)
+{
+    (void)state;
+    struct atomic_file file;
+    struct tool_error err = {0};
+    assert_true(atomic_file_open(&file, in_directory("out"), false, &err));
+    assert_true(atomic_file_write(&file, "new", 3, &err));
+    store(in_directory("out"), "theirs", 6);
+    assert_false(atomic_file_commit(&file, &err));
+    assert_int_equal(err.code, EXIT_OUTPUT);
+    struct bytes left = load(in_directory("out"));
+    assert_int_equal(left.size, 6);
+    free(left.data);
+    assert_int_equal(files_in_directory(), 1);
+}
+
+static void output_is_invisible_until_the_commit(void **state)
+{
+    (void)state;
+    struct atomic_file file;
+    struct tool_error err = {0};
+    assert_true(atomic_file_open(&file, in_directory("out"), true, &err));
+    assert_true(atomic_file_write(&file, "new", 3, &err));
+    assert_int_equal(access(in_directory("out"), F_OK), -1);
+    assert_true(atomic_file_commit(&file, &err));
+    assert_int_equal(access(in_directory("out"), F_OK), 0);
+    atomic_file_abort(&file); /* harmless now */
+    assert_int_equal(files_in_directory(), 1);
+}
+
+static void interruption_removes_every_pending_file(void **state)
+{
+    (void)state;
+    struct atomic_file a, b;
+    struct tool_error err = {0};
+    assert_true(atomic_file_open(&a, in_directory("a"), true, &err));
+    assert_true(atomic_file_open(&b, in_directory("b"), false, &err));
+    assert_int_equal(files_in_directory(), 2);
+    atomic_file_remove_pending();
+    assert_int_equal(files_in_directory(), 0);
+    atomic_file_abort(&a);
+    atomic_file_abort(&b);
+}
+
+static void replacing_through_a_link_keeps_the_link_and_the_mode(void **state)
+{
+    (void)state;
+    struct exr_new_part part = make_part("g", "zip");
+    struct stat status;
+    store(in_directory("real.exr"), "old", 3);
+    assert_int_equal(chmod(in_directory("real.exr"), 0640), 0);
+    assert_int_equal(symlink("real.exr", in_directory("link.exr")), 0);
+    write_ok(in_directory("link.exr"), NULL, &part, 1);
+    assert_int_equal(lstat(in_directory("link.exr"), &status), 0);
+    assert_true(S_ISLNK(status.st_mode));
+    assert_int_equal(lstat(in_directory("real.exr"), &status), 0);
+    assert_true(S_ISREG(status.st_mode) && status.st_size > 3);
+    assert_int_equal(status.st_mode & 0777, 0640);
+}
+
+static void new_files_have_the_permissions_of_the_umask(void **state)
+{
+    (void)state;
+    struct exr_new_part part = make_part("g", "zip");
+    struct stat status;
+    mode_t old = umask(027);
+    write_ok(in_directory("out.exr"), NULL, &part, 1);
+    umask(old);
+    assert_int_equal(stat(in_directory("out.exr"), &status), 0);
+    assert_int_equal(status.st_mode & 0777, 0640);
+}
+
+static int make_directory(void **state)
+{
+    const char *base = getenv("TMPDIR");
+    (void)state;
+    snprintf(directory, sizeof directory, "%s/vkao-exr-XXXXXX", base && base[0] ? base : "/tmp");
+    return mkdtemp(directory) ? 0 : -1;
+}
+
+static int empty_directory(void **state)
+{
+    (void)state;
+    DIR *dir = opendir(directory);
+    if (!dir)
+        return -1;
+    for (struct dirent *entry; (entry = readdir(dir));) {
+        if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
+            unlinkat(dirfd(dir), entry->d_name, 0);
+    }
+    return closedir(dir);
+}
+
+static int remove_directory(void **state)
+{
+    (void)state;
+    return rmdir(directory);
+}
+
+#define TEST(name) cmocka_unit_test_teardown(name, empty_directory)
+
+int main(void)
+{
+    uint32_t random = 1;
+    for (size_t i = 0; i < PIXELS; i++) {
+        random = random * 1664525u + 1013904223u;
+        noise[i] = (float)(random >> 8) / 4096.0f - 1000.0f;
+        ramp[i] = (float)(i % WIDTH) / WIDTH;
+    }
+    const struct CMUnitTest tests[] = {
+        TEST(written_floats_come_back_exactly),
+        TEST(halves_are_rounded_to_nearest_and_stay_finite),
+        TEST(a_channel_asked_for_twice_is_filled_twice),
+        TEST(append_keeps_every_existing_chunk_bit_identical),
+        TEST(append_promotes_a_single_part_with_its_chunks_and_attributes),
+        TEST(appended_parts_share_the_first_display_window),
+        TEST(new_parts_take_attributes_but_no_structure_from_another),
+        TEST(two_parts_of_one_name_are_an_error),
+        TEST(truncated_file_is_an_error),
+        TEST(truncated_file_is_not_appended_to),
+        TEST(unfinished_file_is_an_error),
+        TEST(damaged_headers_are_named_errors),
+        TEST(other_formats_and_empty_files_are_named),
+        TEST(missing_channel_is_a_channel_error),
+        TEST(no_temporary_is_left_when_the_disk_write_fails),
+        TEST(missing_directory_is_an_output_error),
+        TEST(existing_output_is_not_replaced),
+        TEST(output_that_appears_meanwhile_is_not_replaced),
+        TEST(output_is_invisible_until_the_commit),
+        TEST(interruption_removes_every_pending_file),
+        TEST(replacing_through_a_link_keeps_the_link_and_the_mode),
+        TEST(new_files_have_the_permissions_of_the_umask),
+    };
+    return cmocka_run_group_tests(tests, make_directory, remove_directory);
+}

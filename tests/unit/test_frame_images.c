@@ -1,0 +1,390 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The image slots of a frame: which stages need which, formats, layouts, what the device can do
+ * with them, and pointing a frame at other images. The table is vkao.h's in other words; it does
+ * not look into lib/frame.c. */
+#include "internal.h"
+#include "world.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { DEPTH, NORMALS, AO_NOISY, AO, COLOR, DIRECT, OUTPUT };
+
+/* A letter per slot: r read, w written, b both, - not touched. */
+static const struct {
+    const char *access, *required;
+} combinations[VKAO_STAGE_ALL + 1] = {
+    [VKAO_STAGE_SSAO] = {"rr-w---", "x--x---"},
+    [VKAO_STAGE_BLUR] = {"rrrw---", "x-xx---"},
+    [VKAO_STAGE_SSAO | VKAO_STAGE_BLUR] = {"rrbw---", "x--x---"},
+    [VKAO_STAGE_COMPOSITE] = {"---rrrw", "---x--x"},
+    [VKAO_STAGE_SSAO | VKAO_STAGE_COMPOSITE] = {"rr-brrw", "x-----x"},
+    [VKAO_STAGE_BLUR | VKAO_STAGE_COMPOSITE] = {"rrrbrrw", "x-x---x"},
+    [VKAO_STAGE_ALL] = {"rrbbrrw", "x-----x"},
+};
+
+static bool writes(char access)
+{
+    return access == 'w' || access == 'b';
+}
+
+static bool reads(char access)
+{
+    return access == 'r' || access == 'b';
+}
+
+/* Creates the frame and, on success, destroys it. */
+static vkao_result attempt(struct world *w)
+{
+    vkao_result result = vkao_frame_create(w->ctx, &w->frame_info, &w->frame);
+    assert_true((result == VKAO_SUCCESS) == (w->frame != NULL));
+    vkao_frame_destroy(w->frame);
+    w->frame = NULL;
+    return result;
+}
+
+static void expect_result(struct world *w, vkao_result want, const char *name, const char *value)
+{
+    size_t before = fake_live(&w->fake);
+    fake_forget_calls(&w->fake);
+    vkao_result result = attempt(w);
+    if (want != VKAO_SUCCESS)
+        expect_refused(w, want, result, name, value);
+    else if (result != VKAO_SUCCESS)
+        fail_msg("stages 0x%x: %s refused: %s", w->frame_info.stages, name, w->log.last_error);
+    assert_int_equal(fake_live(&w->fake), before);
+}
+
+static void slots_are_required_as_the_stages_say(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open(&w);
+    for (vkao_stage_flags stages = 1; stages <= VKAO_STAGE_ALL; ++stages) {
+        for (size_t slot = 0; slot < SLOT_COUNT; ++slot) {
+            const vkao_image was = *world_slot(&w.images, slot);
+            w.frame_info.stages = stages;
+            *world_slot(&w.images, slot) = (vkao_image){0};
+            bool required = combinations[stages].required[slot] == 'x';
+            expect_result(&w, required ? VKAO_ERROR_INVALID_ARGUMENT : VKAO_SUCCESS,
+                          world_slot_names[slot], required ? "required" : "");
+            *world_slot(&w.images, slot) = was;
+        }
+    }
+    world_close(&w);
+}
+
+static void used_slots_need_views(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open(&w);
+    for (vkao_stage_flags stages = 1; stages <= VKAO_STAGE_ALL; ++stages) {
+        for (size_t slot = 0; slot < SLOT_COUNT; ++slot) {
+            const VkImageView was = world_slot(&w.images, slot)->view;
+            w.frame_info.stages = stages;
+            world_slot(&w.images, slot)->view = VK_NULL_HANDLE;
+            bool used = combinations[stages].access[slot] != '-';
+            expect_result(&w, used ? VKAO_ERROR_INVALID_ARGUMENT : VKAO_SUCCESS,
+                          world_slot_names[slot], used ? "view" : "");
+            world_slot(&w.images, slot)->view = was;
+        }
+    }
+    world_close(&w);
+}
+
+static void layouts_fit_what_is_done(void **state)
+{
+    (void)state;
+    static const struct {
+        VkImageLayout layout;
+        bool read, written;
+    } layouts[] = {
+        {VK_IMAGE_LAYOUT_GENERAL, true, true},
+        {VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, true, false},
+        {VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL, true, false},
+        {VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL, true, false},
+        {VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL, true, false},
+        {VK_IMAGE_LAYOUT_UNDEFINED, false, false},
+        {VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, false, false},
+        {VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL, false, false},
+        {VK_IMAGE_LAYOUT_DEPTH_ATTACHMENT_STENCIL_READ_ONLY_OPTIMAL, false, false},
+        {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, false, false},
+        {VK_IMAGE_LAYOUT_PREINITIALIZED, false, false},
+    };
+    for (vkao_stage_flags stages = 1; stages <= VKAO_STAGE_ALL; ++stages) {
+        struct world w;
+        world_open(&w);
+        for (size_t i = 0; i < SLOT_COUNT * COUNT(layouts); ++i) {
+            const size_t slot = i / COUNT(layouts), l = i % COUNT(layouts);
+            const char access = combinations[stages].access[slot];
+            bool fits =
+                (!reads(access) || layouts[l].read) && (!writes(access) || layouts[l].written);
+            char name[64], value[32];
+            snprintf(name, sizeof name, "%s.layout", world_slot_names[slot]);
+            snprintf(value, sizeof value, "%d", (int)layouts[l].layout);
+            w.frame_info.stages = stages;
+            world_slot(&w.images, slot)->layout = layouts[l].layout;
+            expect_result(&w, fits ? VKAO_SUCCESS : VKAO_ERROR_INVALID_ARGUMENT, name, value);
+            world_slot(&w.images, slot)->layout = VK_IMAGE_LAYOUT_GENERAL;
+        }
+        world_close(&w);
+    }
+}
+
+static void device_abilities_decide_about_formats(void **state)
+{
+    (void)state;
+    const VkFormatFeatureFlags sampled = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
+    const VkFormatFeatureFlags storage = VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
+    const VkFormatFeatureFlags abilities[][2] = {
+        {0, 0}, {sampled, 0}, {storage, 0}, {sampled | storage, 0}, {0, sampled | storage},
+    };
+    for (vkao_stage_flags stages = 1; stages <= VKAO_STAGE_ALL; ++stages) {
+        struct world w;
+        world_open(&w);
+        for (size_t i = 0; i < SLOT_COUNT * COUNT(abilities); ++i) {
+            const size_t slot = i / COUNT(abilities), a = i % COUNT(abilities);
+            const char access = combinations[stages].access[slot];
+            const VkFormatFeatureFlags either = abilities[a][0] | abilities[a][1];
+            bool can =
+                (!reads(access) || (either & sampled)) && (!writes(access) || (either & storage));
+            char value[32];
+            snprintf(value, sizeof value, "%d", (int)world_slot(&w.images, slot)->format);
+            w.frame_info.stages = stages;
+            w.fake.format_count = 0; /* the scratch formats stay able: no slot has them */
+            fake_limit_format(&w.fake, world_slot(&w.images, slot)->format, abilities[a][0],
+                              abilities[a][1]);
+            expect_result(&w, can ? VKAO_SUCCESS : VKAO_ERROR_UNSUPPORTED, world_slot_names[slot],
+                          value);
+        }
+        world_close(&w);
+    }
+}
+
+static const VkFormat integer_formats[] = {
+    VK_FORMAT_R8_UINT,           VK_FORMAT_R8G8B8A8_UINT,      VK_FORMAT_R8G8B8A8_SINT,
+    VK_FORMAT_B8G8R8A8_UINT,     VK_FORMAT_R16_UINT,           VK_FORMAT_R16G16_SINT,
+    VK_FORMAT_R16G16B16A16_UINT, VK_FORMAT_R32_UINT,           VK_FORMAT_R32_SINT,
+    VK_FORMAT_R32G32B32A32_UINT, VK_FORMAT_R32G32B32A32_SINT,  VK_FORMAT_A2B10G10R10_UINT_PACK32,
+    VK_FORMAT_R64_UINT,          VK_FORMAT_R64G64B64A64_SINT,  VK_FORMAT_S8_UINT,
+    VK_FORMAT_R64_SFLOAT,        VK_FORMAT_G8_B8_R8_3PLANE_420_UNORM,
+};
+
+static void expect_formats(const VkFormat *formats, size_t count, size_t slot, bool fits)
+{
+    struct world w;
+    world_open(&w);
+    const VkFormat was = world_slot(&w.images, slot)->format;
+    for (size_t i = 0; i < count; ++i) {
+        char name[64], value[32];
+        snprintf(name, sizeof name, "%s.format", world_slot_names[slot]);
+        snprintf(value, sizeof value, "%d", (int)formats[i]);
+        world_slot(&w.images, slot)->format = formats[i];
+        expect_result(&w, fits ? VKAO_SUCCESS : VKAO_ERROR_INVALID_ARGUMENT, name, value);
+    }
+    world_slot(&w.images, slot)->format = was;
+    world_close(&w);
+}
+
+static void integer_formats_fit_no_slot(void **state)
+{
+    (void)state;
+    for (size_t slot = 0; slot < SLOT_COUNT; ++slot)
+        expect_formats(integer_formats, COUNT(integer_formats), slot, false);
+}
+
+static void formats_fit_their_slots(void **state)
+{
+    (void)state;
+    static const VkFormat depth[] = {
+        VK_FORMAT_D16_UNORM,         VK_FORMAT_X8_D24_UNORM_PACK32,  VK_FORMAT_D32_SFLOAT,
+        VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT,   VK_FORMAT_D16_UNORM_S8_UINT,
+        VK_FORMAT_R16_UNORM,         VK_FORMAT_R16_SFLOAT,           VK_FORMAT_R32_SFLOAT,
+    };
+    static const VkFormat not_depth[] = {
+        VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
+    };
+    static const VkFormat ao[] = {
+        VK_FORMAT_R8_UNORM, VK_FORMAT_R16_UNORM, VK_FORMAT_R16_SFLOAT, VK_FORMAT_R32_SFLOAT,
+    };
+    static const VkFormat not_ao[] = {
+        VK_FORMAT_R8_SNORM,       VK_FORMAT_R8_SRGB,   VK_FORMAT_R16_SNORM, VK_FORMAT_R8G8_UNORM,
+        VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_D16_UNORM, VK_FORMAT_D32_SFLOAT,
+    };
+    static const VkFormat colors[] = {
+        VK_FORMAT_R8G8B8A8_UNORM,
+        VK_FORMAT_B8G8R8A8_UNORM,
+        VK_FORMAT_R8G8B8A8_SRGB,
+        VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+        VK_FORMAT_B10G11R11_UFLOAT_PACK32,
+        VK_FORMAT_R16G16B16A16_SFLOAT,
+        VK_FORMAT_R32G32B32A32_SFLOAT,
+        VK_FORMAT_R16G16_SNORM,
+        VK_FORMAT_R8_UNORM,
+    };
+    expect_formats(depth, COUNT(depth), DEPTH, true);
+    expect_formats(not_depth, COUNT(not_depth), DEPTH, false);
+    expect_formats(ao, COUNT(ao), AO, true);
+    expect_formats(ao, COUNT(ao), AO_NOISY, true);
+    expect_formats(not_ao, COUNT(not_ao), AO, false);
+    expect_formats(not_ao, COUNT(not_ao), AO_NOISY, false);
+    expect_formats(colors, COUNT(colors), NORMALS, true);
+    expect_formats(colors, COUNT(colors), COLOR, true);
+    expect_formats(colors, COUNT(colors), DIRECT, true);
+    expect_formats(colors, COUNT(colors), OUTPUT, true);
+}
+
+static void view_without_format_is_refused(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open(&w);
+    for (size_t slot = 0; slot < SLOT_COUNT; ++slot) {
+        const VkFormat was = world_slot(&w.images, slot)->format;
+        world_slot(&w.images, slot)->format = VK_FORMAT_UNDEFINED;
+        expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, world_slot_names[slot], "format");
+        world_slot(&w.images, slot)->format = was;
+    }
+    world_close(&w);
+}
+
+static void reserved_is_refused(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open_frame(&w, VKAO_STAGE_ALL);
+    w.images.reserved = 9;
+    expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, vkao_frame_update(w.frame, &w.images),
+                   "images.reserved", "9");
+    assert_int_equal(w.fake.call_count, 0);
+    vkao_frame_destroy(w.frame);
+    w.frame = NULL;
+    expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, "images.reserved", "9");
+    world_close(&w);
+}
+
+/* The view behind a binding after creation or update. */
+static uint64_t bound_view(const struct world *w, uint32_t binding)
+{
+    const struct fake_object *set = NULL;
+    for (size_t i = 0; i < w->fake.object_count; ++i) {
+        if (w->fake.objects[i].type == VK_OBJECT_TYPE_DESCRIPTOR_SET && w->fake.objects[i].alive)
+            set = &w->fake.objects[i];
+    }
+    assert_non_null(set);
+    return set->views[binding];
+}
+
+static const struct {
+    size_t slot;
+    uint32_t binding;
+} bindings[] = {
+    {DEPTH, VKAO_BINDING_DEPTH},          {NORMALS, VKAO_BINDING_NORMALS},
+    {AO_NOISY, VKAO_BINDING_NOISY_WRITE}, {AO_NOISY, VKAO_BINDING_NOISY_READ},
+    {AO, VKAO_BINDING_AO_WRITE},          {AO, VKAO_BINDING_AO_READ},
+    {COLOR, VKAO_BINDING_COLOR},          {DIRECT, VKAO_BINDING_DIRECT},
+    {OUTPUT, VKAO_BINDING_OUTPUT},
+};
+
+static void each_binding_holds_its_slot(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open(&w);
+    w.images.depth.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+    fake_forget_calls(&w.fake);
+    assert_int_equal(vkao_frame_create(w.ctx, &w.frame_info, &w.frame), VKAO_SUCCESS);
+    const struct fake_call *call = fake_nth(&w.fake, "vkUpdateDescriptorSets", 0);
+    for (size_t i = 0; i < COUNT(bindings); ++i) {
+        const vkao_image *image = world_slot(&w.images, bindings[i].slot);
+        assert_int_equal(bound_view(&w, bindings[i].binding), (uint64_t)image->view);
+        for (uint32_t k = 0; k < call->write_count; ++k) {
+            if (call->writes[k].binding == bindings[i].binding)
+                assert_int_equal(call->writes[k].layout, image->layout);
+        }
+    }
+    world_close(&w);
+}
+
+static void without_blur_ssao_writes_ao_itself(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open_frame(&w, VKAO_STAGE_SSAO);
+    assert_int_equal(bound_view(&w, VKAO_BINDING_NOISY_WRITE), (uint64_t)w.images.ao.view);
+    world_close(&w);
+}
+
+static void update_points_at_other_images_without_allocation(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open_frame(&w, VKAO_STAGE_ALL);
+    for (size_t slot = 0; slot < SLOT_COUNT; ++slot)
+        world_slot(&w.images, slot)->view = fake_caller_view(&w.fake);
+    const unsigned host = w.host.total;
+    assert_int_equal(vkao_frame_update(w.frame, &w.images), VKAO_SUCCESS);
+    assert_int_equal(w.host.total, host);
+    assert_int_equal(fake_count(&w.fake, "vkCreate"), 0);
+    assert_int_equal(fake_count(&w.fake, "vkAllocate"), 0);
+    for (size_t i = 0; i < COUNT(bindings); ++i)
+        assert_int_equal(bound_view(&w, bindings[i].binding),
+                         (uint64_t)world_slot(&w.images, bindings[i].slot)->view);
+    world_close(&w);
+}
+
+static void refused_update_leaves_the_frame(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open_frame(&w, VKAO_STAGE_ALL);
+    const vkao_images was = w.images;
+    for (size_t slot = 0; slot < SLOT_COUNT; ++slot) {
+        for (int wrong = 0; wrong < 4; ++wrong) {
+            w.images = was;
+            for (size_t i = 0; i < SLOT_COUNT; ++i)
+                world_slot(&w.images, i)->view = fake_caller_view(&w.fake);
+            vkao_image *image = world_slot(&w.images, slot);
+            if (wrong == 0)
+                image->format = VK_FORMAT_R32_SFLOAT;
+            if (wrong == 1)
+                *image = (vkao_image){0};
+            if (wrong == 2)
+                image->view = VK_NULL_HANDLE;
+            if (wrong == 3)
+                image->layout = VK_IMAGE_LAYOUT_UNDEFINED;
+            expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, vkao_frame_update(w.frame, &w.images),
+                           world_slot_names[slot], "");
+            assert_int_equal(fake_count(&w.fake, "vkUpdateDescriptorSets"), 0);
+        }
+    }
+    for (size_t i = 0; i < COUNT(bindings); ++i) {
+        vkao_images old = was;
+        assert_int_equal(bound_view(&w, bindings[i].binding),
+                         (uint64_t)world_slot(&old, bindings[i].slot)->view);
+    }
+    expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, vkao_frame_update(w.frame, NULL), "images",
+                   "NULL");
+    world_close(&w);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(slots_are_required_as_the_stages_say),
+        cmocka_unit_test(used_slots_need_views),
+        cmocka_unit_test(layouts_fit_what_is_done),
+        cmocka_unit_test(device_abilities_decide_about_formats),
+        cmocka_unit_test(integer_formats_fit_no_slot),
+        cmocka_unit_test(formats_fit_their_slots),
+        cmocka_unit_test(view_without_format_is_refused),
+        cmocka_unit_test(reserved_is_refused),
+        cmocka_unit_test(each_binding_holds_its_slot),
+        cmocka_unit_test(without_blur_ssao_writes_ao_itself),
+        cmocka_unit_test(update_points_at_other_images_without_allocation),
+        cmocka_unit_test(refused_update_leaves_the_frame),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Renderers crop the data window to what they see, differently in each frame. AO is computed at the
+ * place of the data window in the display, so that its noise does not move along with the crop. */
+#ifndef VKAO_TOOLS_PLACEMENT_H_
+#define VKAO_TOOLS_PLACEMENT_H_
+
+#include "ao.h"
+#include "error.h"
+#include "gbuffer.h"
+
+/* Texels that were added on the left and on top. */
+struct placement {
+    uint32_t left, top;
+};
+
+/* Pads the images of a data window that lies inside its display window; others stay, with a
+ * placement of 0, 0. gbuffer->width and height stay those of the data window; the job is larger by
+ * the placement. */
+bool placement_expand(struct gbuffer *gbuffer, struct placement *placement, struct tool_error *err);
+/* Takes the padding off the results, and off the colour. */
+void placement_crop(const struct placement *placement, struct gbuffer *gbuffer,
+                    struct ao_result *result);
+
+#endif
