@@ -174,9 +174,10 @@ class Scratch:
         return self.path(name)
 
     def start(self, *arguments, env=None, **more):
+        more = {'stdout': subprocess.PIPE, **more}
         return subprocess.Popen([_settings.vkao, *arguments], cwd=self.directory, text=True,
-                                stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                                stderr=subprocess.PIPE, env={**os.environ, **(env or {})}, **more)
+                                stdin=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                env={**os.environ, **(env or {})}, **more)
 
     def run(self, *arguments, timeout=TIMEOUT, **more):
         arguments = [str(a) for a in arguments]

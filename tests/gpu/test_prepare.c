@@ -76,8 +76,9 @@ static void view_z_agrees_with_reference_for_every_format_encoding_and_far_plane
     }
 }
 
-/* Wall at z = 4 from a standard camera, then one value everywhere but in a 12x12 block in the middle: the block's AO
- * must be 1 in the rescaled forms, as the rest occludes nothing, and the rest's own must be 1. */
+/* The picture is a wall that faces the eye; this leaves a 12x12 block of it in the middle and makes the rest
+ * background. The rest must be 1, in the literal form too, which greys every surface. The block must be 1 in the
+ * rescaled forms, as the rest occludes nothing, and darker than 1 in the literal form, or it was not seen at all. */
 static void check_background(struct picture *p, const char *what, double background)
 {
     for (size_t i = 0; i < picture_texels(p); ++i) {
@@ -85,13 +86,21 @@ static void check_background(struct picture *p, const char *what, double backgro
         if (x < 34 || x >= 46 || y < 24 || y >= 36)
             p->values[SLOT_DEPTH][i] = background;
     }
-    for (int method = 0; method < 2; ++method) {
-        p->ssao.method = (vkao_ssao_method)method;
+    for (int method = 0; method < 3; ++method) {
+        size_t grey = 0;
+        p->ssao.method = method == 0 ? VKAO_SSAO_HEMISPHERE : VKAO_SSAO_SPHERE;
+        p->ssao.sphere_form = method == 2 ? VKAO_SPHERE_LITERAL : VKAO_SPHERE_RESCALED;
         picture_run(p);
         for (size_t i = 0; i < picture_texels(p); ++i) {
-            if (!(p->values[SLOT_AO][i] == 1.0))
-                fail_msg("%s, method %d: texel %zu is %.9g, want 1", what, method, i, p->values[SLOT_AO][i]);
+            size_t x = i % p->width, y = i / p->width;
+            bool block = x >= 34 && x < 46 && y >= 24 && y < 36;
+            double ao = p->values[SLOT_AO][i];
+            grey += ao < 0.9;
+            if (!(ao == 1.0) && !(block && method == 2))
+                fail_msg("%s, method %d: texel %zu is %.9g, want 1", what, method, i, ao);
         }
+        if (method == 2)
+            assert_true(grey > 100);
     }
 }
 
@@ -123,7 +132,7 @@ static void background_is_exactly_one_and_occludes_nothing(void **state)
         {"view z infinity", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, (double)INFINITY, false, true, false},
         {"view z half infinity", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R16_SFLOAT, (double)INFINITY, false, true, false},
         {"view z -infinity", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, -(double)INFINITY, false, false, false},
-        {"view z at the far plane", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, 100.0, false, false, false},
+        {"view z past the far plane", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, 100.1, false, false, false},
         {"view z 1e10 beyond it", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, 1e10, false, false, false},
         {"distance infinity", VKAO_DEPTH_DISTANCE, VK_FORMAT_R32_SFLOAT, (double)INFINITY, false, true, false},
         {"distance NaN", VKAO_DEPTH_DISTANCE, VK_FORMAT_R32_SFLOAT, (double)NAN, false, false, false},

@@ -61,6 +61,44 @@ static void callers_scratch_at_an_offset_gives_the_same_picture(void **state)
     picture_free(&callers);
 }
 
+/* Two frames side by side in one memory, their stages interleaved: each must keep to its own place. */
+static void frames_at_different_offsets_do_not_touch_each_other(void **state)
+{
+    (void)state;
+    struct picture alone[2], p[2];
+    struct picture_gpu g[2];
+    const struct scene scenes[2] = {scene_corner(), scene_steps()};
+    for (int i = 0; i < 2; ++i) {
+        make(&alone[i], scenes[i]);
+        make(&p[i], scenes[i]);
+        picture_run(&alone[i]);
+    }
+    VkMemoryRequirements r = requirements_of(&p[0]);
+    VkDeviceSize second = (r.size + r.alignment - 1) / r.alignment * r.alignment;
+    p[0].scratch_memory = p[1].scratch_memory = fixture_allocate(&r, second + r.size);
+    p[1].scratch_offset = second;
+    for (int i = 0; i < 2; ++i)
+        picture_open(&p[i], &g[i]);
+    VkCommandBuffer cmd = gpu_begin(&fixture.gpu, &fixture.error);
+    for (int i = 0; i < 2; ++i)
+        check_vkao(vkao_cmd_prepare(g[i].frame, cmd, &p[i].view));
+    for (int i = 0; i < 2; ++i)
+        check_vkao(vkao_cmd_ssao(g[i].frame, cmd, &p[i].view, &p[i].ssao));
+    for (int i = 0; i < 2; ++i)
+        check_vkao(vkao_cmd_blur(g[i].frame, cmd, &p[i].view, &p[i].blur));
+    check(gpu_submit(&fixture.gpu, cmd, &fixture.error));
+    for (int i = 0; i < 2; ++i) {
+        picture_download(&p[i], &g[i]);
+        check_equal("ao", p[i].values[SLOT_AO], alone[i].values[SLOT_AO], picture_texels(&p[i]));
+        picture_close(&g[i]);
+    }
+    vkFreeMemory(fixture.gpu.device, p[0].scratch_memory, NULL);
+    for (int i = 0; i < 2; ++i) {
+        picture_free(&alone[i]);
+        picture_free(&p[i]);
+    }
+}
+
 static void misaligned_scratch_is_refused(void **state)
 {
     (void)state;
@@ -293,6 +331,7 @@ int main(void)
         gpu_test(validation_sees_a_missing_barrier_between_submits),
         gpu_test(validation_sees_a_caller_who_forgets_the_barrier_after_vkao),
         gpu_test(callers_scratch_at_an_offset_gives_the_same_picture),
+        gpu_test(frames_at_different_offsets_do_not_touch_each_other),
         gpu_test(misaligned_scratch_is_refused),
         gpu_test(frames_in_flight_share_scratch),
         gpu_test(frames_of_one_command_buffer_share_scratch),

@@ -40,15 +40,19 @@ void check_every_normal_encoding(const vkao_ssao_params *params, ssao_reference 
         {"normals octahedral RG16F", VKAO_NORMALS_OCT_SNORM, VK_FORMAT_R16G16_SFLOAT},
         {"normals octahedral RG16_UNORM", VKAO_NORMALS_OCT_UNORM, VK_FORMAT_R16G16_UNORM},
     };
-    struct lens lens = lens_perspective(0.6, 0.45);
     const struct scene scene = scene_corner();
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0] * 2; ++i) {
         struct picture p;
+        char what[80];
+        struct lens lens = lens_perspective(0.6, 0.45);
+        /* Normals that face the eye have z > 0 or z < 0: octahedral ones are folded or not. */
+        lens.forward = i % 2 ? 1.0 : -1.0;
         picture_make(&p, VKAO_STAGE_SSAO, &scene);
         p.ssao = *params;
-        p.view.normal_encoding = rows[i].encoding;
-        picture_render_scene(&p, &scene, &lens, VK_FORMAT_R32_SFLOAT, rows[i].format);
-        check_ssao(&p, reference, rows[i].name);
+        p.view.normal_encoding = rows[i / 2].encoding;
+        picture_render_scene(&p, &scene, &lens, VK_FORMAT_R32_SFLOAT, rows[i / 2].format);
+        snprintf(what, sizeof what, "%s, %s-handed", rows[i / 2].name, i % 2 ? "left" : "right");
+        check_ssao(&p, reference, what);
         picture_free(&p);
     }
 }

@@ -220,8 +220,12 @@ static struct bounds primitive_bounds(const struct trace_primitive *p)
                              vec3(fabs(m.y.x), fabs(m.y.y), fabs(m.y.z)),
                              vec3(fabs(m.z.x), fabs(m.z.y), fabs(m.z.z))};
     struct vec3 size = p->size;
-    if (p->kind == TRACE_CYLINDER || p->kind == TRACE_BORED_CYLINDER)
+    if (p->kind != TRACE_BOX && p->kind != TRACE_BORED_BOX)
         size.z = size.x;
+    if (p->kind == TRACE_SPHERE)
+        size.y = size.x;
+    if (p->kind == TRACE_DISK)
+        size.y = 0;
     struct vec3 half = mul_transposed(magnitude, size);
     double slack = 1e-9 * (1.0 + length(half) + length(p->position)); /* a disk has no thickness */
     half = add(half, vec3(slack, slack, slack));
