@@ -55,6 +55,17 @@ def depth_alone_of_every_type_gives_the_result_of_planar(scratch, kind, name, pl
     check_close(ao, wanted, 0.25, 2e-3, kind)
 
 
+@cases(DEPTH_TYPES)
+def depth_type_in_a_cut_data_window_gives_the_result_of_planar(scratch, kind, name, planes):
+    # Rays belong to the display window: distances along them are wrong if taken for the cut's.
+    cut, results = (slice(20, 80), slice(60, 150)), []
+    for depth, options in (('planar', ()), (kind, ('--depth-type', name, *planes))):
+        channels = {'Z': SCENE.depth(depth), **SCENE.normals()}
+        results.append(ao_of(scratch, {k: v[cut] for k, v in channels.items()}, '--fov', FOV,
+                             *options, x=60, y=20, display=(0, 0, WIDTH - 1, HEIGHT - 1)))
+    check_close(results[1], results[0], 0.07, 2e-4, kind)
+
+
 @case
 def infinite_far_plane_is_a_limit(scratch):
     wanted = planar(scratch)
@@ -218,7 +229,8 @@ def lens_shift_moves_the_view(scratch, axis):
     half = {k: v[HEIGHT:] for k, v in {'Z': tall.depth(), **tall.normals()}.items()}
     lens, fov = {'shift_y': -0.5}, FOV
     if axis == 'x':
-        half = {'Z': half['Z'].T, 'N.X': -half['N.Y'].T, 'N.Y': -half['N.X'].T, 'N.Z': half['N.Z'].T}
+        half = {'Z': half['Z'].T, 'N.X': -half['N.Y'].T, 'N.Y': -half['N.X'].T,
+                'N.Z': half['N.Z'].T}
         lens = {'shift_x': 0.5}
         fov = 2 * np.degrees(np.arctan(np.tan(np.radians(FOV / 2)) * HEIGHT / WIDTH))
     floor = slice(40, 70), slice(0, 30)

@@ -8,7 +8,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* A picture that the blur reads noise from, or one value if it is not negative. Single-precision images. */
+/* A picture that the blur reads noise from, or one value if it is not negative. Single-precision
+ * images. */
 static void make(struct picture *p, const struct scene *scene, double value)
 {
     uint32_t seed = 12345;
@@ -23,8 +24,8 @@ static void make(struct picture *p, const struct scene *scene, double value)
         p->values[SLOT_NOISY][i] = (double)(float)p->values[SLOT_NOISY][i];
 }
 
-/* What lies between the two directions has 11 bits: a step of the upper half of [0,1] is 4.9e-4, and some drivers cut
- * rather than round. Intensity and power amplify it. */
+/* What lies between the two directions has 11 bits: a step of the upper half of [0,1] is 4.9e-4,
+ * and some drivers cut rather than round. Intensity and power amplify it. */
 static void agrees_with_reference_for_every_parameter(void **state)
 {
     (void)state;
@@ -53,7 +54,8 @@ static void agrees_with_reference_for_every_parameter(void **state)
             double *expected = test_alloc(picture_texels(&p), sizeof *expected);
             if (rows[i].orthographic) {
                 struct lens lens = lens_orthographic(1.6, 1.2);
-                picture_render_scene(&p, &scenes[s], &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+                picture_render_scene(&p, &scenes[s], &lens, VK_FORMAT_R32_SFLOAT,
+                                     VK_FORMAT_R32G32B32A32_SFLOAT);
             }
             p.view.normal_encoding = rows[i].normals;
             p.blur.radius = rows[i].radius;
@@ -63,8 +65,8 @@ static void agrees_with_reference_for_every_parameter(void **state)
             p.blur.power = rows[i].power;
             picture_run(&p);
             picture_reference_scene(&p, &reference);
-            ref_blur(&reference, &p.blur, p.view.normal_encoding, p.values[SLOT_NORMALS], p.values[SLOT_NOISY],
-                     expected);
+            ref_blur(&reference, &p.blur, p.view.normal_encoding, p.values[SLOT_NORMALS],
+                     p.values[SLOT_NOISY], expected);
             snprintf(what, sizeof what, "row %zu, scene %zu", i, s);
             check_close(what, p.values[SLOT_AO], expected, picture_texels(&p), 3e-4, 2e-3);
             ref_scene_free(&reference);
@@ -74,8 +76,8 @@ static void agrees_with_reference_for_every_parameter(void **state)
     }
 }
 
-/* A wall at z = 3 beside one at z = 4, each with its own AO. The walls face the eye, or are tilted so that the slope
- * is not 0. */
+/* A wall at z = 3 beside one at z = 4, each with its own AO. The walls face the eye, or are tilted
+ * so that the slope is not 0. */
 static void depth_edges_do_not_leak(void **state)
 {
     (void)state;
@@ -89,7 +91,8 @@ static void depth_edges_do_not_leak(void **state)
         p.view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
         p.blur.radius = radii[i % 3];
         for (size_t texel = 0; texel < picture_texels(&p); ++texel) {
-            double along = vertical ? (double)(texel / p.width) - 30.0 : (double)(texel % p.width) - 40.0;
+            double along =
+                vertical ? (double)(texel / p.width) - 30.0 : (double)(texel % p.width) - 40.0;
             p.values[SLOT_DEPTH][texel] = (along < 0.0 ? 3.0 : 4.0) + tilts[i / 3 % 2] * along;
             p.values[SLOT_NOISY][texel] = along < 0.0 ? 0.0 : 1.0;
         }
@@ -142,8 +145,8 @@ static void tilted_walls_are_blurred_in_one_piece(void **state)
     picture_free(&p);
 }
 
-/* Halfway between its two directions the blur stores 11 bits, and drivers may round them either way: a step of the
- * upper half of [0,1] is 1/2048. Open and fully hidden stay so exactly. */
+/* Halfway between its two directions the blur stores 11 bits, and drivers may round them either
+ * way: a step of the upper half of [0,1] is 1/2048. Open and fully hidden stay so exactly. */
 static void constants_are_kept(void **state)
 {
     (void)state;
@@ -180,7 +183,8 @@ static void radius_0_copies(void **state)
 static void intensity_and_power_follow_the_formula(void **state)
 {
     (void)state;
-    static const float intensities[] = {0.0f, 0.5f, 1.0f, 3.0f, 8.0f}, powers[] = {0.25f, 1.0f, 2.0f, 8.0f};
+    static const float intensities[] = {0.0f, 0.5f, 1.0f, 3.0f, 8.0f},
+                       powers[] = {0.25f, 1.0f, 2.0f, 8.0f};
     const struct scene wall = scene_tilted_plane(0.0, 0.0);
     for (size_t i = 0; i < sizeof intensities / sizeof intensities[0] * 4; ++i) {
         struct picture p;
@@ -196,7 +200,8 @@ static void intensity_and_power_follow_the_formula(void **state)
             double want = pow(fmin(1.0, fmax(0.0, scaled)), (double)p.blur.power);
             if (!(fabs(p.values[SLOT_AO][texel] - want) < 1e-5))
                 fail_msg("intensity %g, power %g: %g becomes %g, want %g", (double)p.blur.intensity,
-                         (double)p.blur.power, p.values[SLOT_NOISY][texel], p.values[SLOT_AO][texel], want);
+                         (double)p.blur.power, p.values[SLOT_NOISY][texel],
+                         p.values[SLOT_AO][texel], want);
         }
         picture_free(&p);
     }

@@ -54,13 +54,15 @@ static void modes_follow_their_formulas_in_every_format(void **state)
         make(&p, (vkao_composite_mode)(i % 3), rows[i / 3].format);
         picture_set(&p, SLOT_OUTPUT, rows[i / 3].format, NULL);
         double *want = expected(&p);
-        for (size_t v = 0; rows[i / 3].format == VK_FORMAT_R8G8B8A8_UNORM && v < picture_texels(&p) * 4; ++v)
+        for (size_t v = 0;
+             rows[i / 3].format == VK_FORMAT_R8G8B8A8_UNORM && v < picture_texels(&p) * 4; ++v)
             want[v] = want[v] > 1.0 ? 1.0 : want[v];
         picture_run(&p);
         /* Both the mean and all but a hundredth: there is nothing discontinuous here. */
-        check_close(rows[i / 3].name, p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4, rows[i / 3].tolerance,
-                    rows[i / 3].tolerance);
-        assert_true(difference_of(p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4).max < 2.0 * rows[i / 3].tolerance);
+        check_close(rows[i / 3].name, p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4,
+                    rows[i / 3].tolerance, rows[i / 3].tolerance);
+        assert_true(difference_of(p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4).max <
+                    2.0 * rows[i / 3].tolerance);
         free(want);
         picture_free(&p);
     }
@@ -77,7 +79,8 @@ static void output_may_be_the_color_image(void **state)
         in_place.output_is_color = true;
         picture_run(&apart);
         picture_run(&in_place);
-        check_equal("output", in_place.values[SLOT_COLOR], apart.values[SLOT_OUTPUT], picture_texels(&apart) * 4);
+        check_equal("output", in_place.values[SLOT_COLOR], apart.values[SLOT_OUTPUT],
+                    picture_texels(&apart) * 4);
         picture_free(&apart);
         picture_free(&in_place);
     }

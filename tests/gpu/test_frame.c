@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
  *
- * Rectangles, stages recorded one by one or all at once, frames with fewer stages, updated images. */
+ * Rectangles, stages recorded one by one or all at once, frames with fewer stages, other images. */
 #include "fixture.h"
 #include "ref_hemisphere.h"
 
@@ -25,22 +25,23 @@ static bool inside(const struct picture *p, size_t texel, VkRect2D rect)
 }
 
 /* In the rect as in `whole`, outside as before. */
-static void check_slot(const struct picture *p, const struct picture *whole, enum picture_slot slot, double canary,
-                       VkRect2D rect, const char *what)
+static void check_slot(const struct picture *p, const struct picture *whole, enum picture_slot slot,
+                       double canary, VkRect2D rect, const char *what)
 {
     uint32_t channels = picture_channels(slot);
     for (size_t i = 0; i < picture_texels(p) * channels; ++i) {
         double want = inside(p, i / channels, rect) ? whole->values[slot][i] : canary;
         if (!(p->values[slot][i] == want))
-            fail_msg("%s: texel %zu,%zu is %.9g, want %.9g", what, i / channels % p->width, i / channels / p->width,
-                     p->values[slot][i], want);
+            fail_msg("%s: texel %zu,%zu is %.9g, want %.9g", what, i / channels % p->width,
+                     i / channels / p->width, p->values[slot][i], want);
     }
 }
 
 static VkRect2D grown(VkRect2D rect, int by, const struct picture *p)
 {
     int x0 = rect.offset.x - by, y0 = rect.offset.y - by;
-    int x1 = rect.offset.x + (int)rect.extent.width + by, y1 = rect.offset.y + (int)rect.extent.height + by;
+    int x1 = rect.offset.x + (int)rect.extent.width + by,
+        y1 = rect.offset.y + (int)rect.extent.height + by;
     x0 = x0 < 0 ? 0 : x0;
     y0 = y0 < 0 ? 0 : y0;
     x1 = x1 > (int)p->width ? (int)p->width : x1;
@@ -52,11 +53,13 @@ static void rect_leaves_exterior_untouched(void **state)
 {
     (void)state;
     static const VkRect2D rects[] = {
-        {{13, 11}, {37, 29}}, {{0, 0}, {1, 1}}, {{79, 59}, {1, 1}}, {{0, 20}, {80, 3}}, {{64, 0}, {16, 60}},
+        {{13, 11}, {37, 29}}, {{0, 0}, {1, 1}},    {{79, 59}, {1, 1}},
+        {{0, 20}, {80, 3}},   {{64, 0}, {16, 60}},
     };
     struct picture whole;
     make(&whole);
-    double ao = whole.values[SLOT_AO][0], noisy = whole.values[SLOT_NOISY][0], out = whole.values[SLOT_OUTPUT][0];
+    double ao = whole.values[SLOT_AO][0], noisy = whole.values[SLOT_NOISY][0],
+           out = whole.values[SLOT_OUTPUT][0];
     picture_run(&whole);
     for (size_t i = 0; i < sizeof rects / sizeof rects[0]; ++i) {
         struct picture p;
@@ -65,7 +68,8 @@ static void rect_leaves_exterior_untouched(void **state)
         picture_run(&p);
         check_slot(&p, &whole, SLOT_AO, ao, rects[i], "ao");
         check_slot(&p, &whole, SLOT_OUTPUT, out, rects[i], "output");
-        check_slot(&p, &whole, SLOT_NOISY, noisy, grown(rects[i], (int)p.blur.radius, &p), "ao_noisy");
+        check_slot(&p, &whole, SLOT_NOISY, noisy, grown(rects[i], (int)p.blur.radius, &p),
+                   "ao_noisy");
         picture_free(&p);
     }
     picture_free(&whole);
@@ -90,14 +94,15 @@ static void split_rects_equal_the_whole(void **state)
     check(gpu_submit(&fixture.gpu, cmd, &fixture.error));
     picture_download(&split, &g);
     check_equal("ao", split.values[SLOT_AO], whole.values[SLOT_AO], picture_texels(&whole));
-    check_equal("output", split.values[SLOT_OUTPUT], whole.values[SLOT_OUTPUT], picture_texels(&whole) * 4);
+    check_equal("output", split.values[SLOT_OUTPUT], whole.values[SLOT_OUTPUT],
+                picture_texels(&whole) * 4);
     picture_close(&g);
     picture_free(&whole);
     picture_free(&split);
 }
 
-/* Dynamic resolution: the valid part of a large image and a small image of that size. What lies beyond is not read:
- * the large one's other texels hold a wall right before the eye. */
+/* Dynamic resolution: the valid part of a large image and a small image of that size. What lies
+ * beyond is not read: the large one's other texels hold a wall right before the eye. */
 static void valid_part_equals_a_cropped_image(void **state)
 {
     (void)state;
@@ -106,7 +111,8 @@ static void valid_part_equals_a_cropped_image(void **state)
     struct lens lens = lens_perspective(0.6, 0.45);
     make(&large);
     large.view.valid = (VkRect2D){{0, 0}, {52, 39}};
-    picture_render_scene(&large, &scene, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+    picture_render_scene(&large, &scene, &lens, VK_FORMAT_R32_SFLOAT,
+                         VK_FORMAT_R32G32B32A32_SFLOAT);
     for (size_t i = 0; i < picture_texels(&large); ++i) {
         if (!inside(&large, i, large.view.valid))
             large.values[SLOT_DEPTH][i] = 0.125;
@@ -114,14 +120,16 @@ static void valid_part_equals_a_cropped_image(void **state)
     picture_init(&small, 52, 39, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
     small.view.depth_encoding = large.view.depth_encoding;
     small.view.normal_encoding = large.view.normal_encoding;
-    picture_render_scene(&small, &scene, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+    picture_render_scene(&small, &scene, &lens, VK_FORMAT_R32_SFLOAT,
+                         VK_FORMAT_R32G32B32A32_SFLOAT);
     picture_set(&small, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
     double canary = large.values[SLOT_AO][0];
     struct picture_gpu g;
     VkRect2D valid = large.view.valid, nowhere = {{79, 59}, {1, 1}};
     picture_open(&large, &g);
     VkCommandBuffer cmd = gpu_begin(&fixture.gpu, &fixture.error);
-    /* First the whole image, so that scratch knows the wall; it writes one texel that is not looked at. */
+    /* First the whole image, so that scratch knows the wall; it writes one texel that is not looked
+     * at. */
     large.view.valid = (VkRect2D){{0, 0}, {80, 60}};
     large.view.rect = nowhere;
     picture_record(&large, &g, cmd);
@@ -182,9 +190,11 @@ static void stage_by_stage_equals_all(void **state)
     check_vkao(vkao_cmd_composite(g.frame, cmd, &stages.view, &stages.composite));
     check(gpu_submit(&fixture.gpu, cmd, &fixture.error));
     picture_download(&stages, &g);
-    check_equal("ao_noisy", stages.values[SLOT_NOISY], all.values[SLOT_NOISY], picture_texels(&all));
+    check_equal("ao_noisy", stages.values[SLOT_NOISY], all.values[SLOT_NOISY],
+                picture_texels(&all));
     check_equal("ao", stages.values[SLOT_AO], all.values[SLOT_AO], picture_texels(&all));
-    check_equal("output", stages.values[SLOT_OUTPUT], all.values[SLOT_OUTPUT], picture_texels(&all) * 4);
+    check_equal("output", stages.values[SLOT_OUTPUT], all.values[SLOT_OUTPUT],
+                picture_texels(&all) * 4);
     picture_close(&g);
     picture_free(&all);
     picture_free(&stages);
@@ -201,7 +211,8 @@ static void scratch_images_give_the_same_output(void **state)
     scratch.formats[SLOT_AO] = scratch.formats[SLOT_NOISY] = VK_FORMAT_UNDEFINED;
     picture_run(&own);
     picture_run(&scratch);
-    check_equal("output", scratch.values[SLOT_OUTPUT], own.values[SLOT_OUTPUT], picture_texels(&own) * 4);
+    check_equal("output", scratch.values[SLOT_OUTPUT], own.values[SLOT_OUTPUT],
+                picture_texels(&own) * 4);
     picture_free(&own);
     picture_free(&scratch);
 }
@@ -218,7 +229,8 @@ static void each_stage_alone_continues_where_the_last_one_ended(void **state)
     ssao.stages = VKAO_STAGE_SSAO;
     picture_run(&ssao);
     check_equal("ssao alone", ssao.values[SLOT_AO], all.values[SLOT_NOISY], picture_texels(&all));
-    assert_true(ssao.values[SLOT_NOISY][0] < 0.63); /* the canary: a slot that this frame does not use */
+    assert_true(ssao.values[SLOT_NOISY][0] <
+                0.63); /* the canary: a slot that this frame does not use */
 
     make(&blur);
     blur.stages = VKAO_STAGE_BLUR;
@@ -230,7 +242,8 @@ static void each_stage_alone_continues_where_the_last_one_ended(void **state)
     composite.stages = VKAO_STAGE_COMPOSITE;
     picture_set(&composite, SLOT_AO, VK_FORMAT_R32_SFLOAT, blur.values[SLOT_AO]);
     picture_run(&composite);
-    check_equal("composite alone", composite.values[SLOT_OUTPUT], all.values[SLOT_OUTPUT], picture_texels(&all) * 4);
+    check_equal("composite alone", composite.values[SLOT_OUTPUT], all.values[SLOT_OUTPUT],
+                picture_texels(&all) * 4);
     picture_free(&all);
     picture_free(&ssao);
     picture_free(&blur);
@@ -247,8 +260,10 @@ static void update_points_the_frame_at_other_images(void **state)
     make(&first);
     make(&second);
     make(&expected);
-    picture_render_scene(&second, &other, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
-    picture_render_scene(&expected, &other, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+    picture_render_scene(&second, &other, &lens, VK_FORMAT_R32_SFLOAT,
+                         VK_FORMAT_R32G32B32A32_SFLOAT);
+    picture_render_scene(&expected, &other, &lens, VK_FORMAT_R32_SFLOAT,
+                         VK_FORMAT_R32G32B32A32_SFLOAT);
     picture_run(&expected);
     picture_open(&first, &a);
     picture_open(&second, &b);
@@ -261,7 +276,8 @@ static void update_points_the_frame_at_other_images(void **state)
     picture_download(&second, &b);
     assert_true(first.values[SLOT_AO][0] == canary && first.values[SLOT_AO][4799] == canary);
     check_equal("ao", second.values[SLOT_AO], expected.values[SLOT_AO], picture_texels(&expected));
-    check_equal("output", second.values[SLOT_OUTPUT], expected.values[SLOT_OUTPUT], picture_texels(&expected) * 4);
+    check_equal("output", second.values[SLOT_OUTPUT], expected.values[SLOT_OUTPUT],
+                picture_texels(&expected) * 4);
 
     /* Another format is refused, and the frame still works. */
     vkao_images wrong = a.slots;

@@ -22,9 +22,12 @@ static void agrees_with_reference_for_every_count_falloff_and_noise(void **state
         vkao_falloff falloff;
         float radius, bias;
     } rows[] = {
-        {1, 0, VKAO_FALLOFF_SMOOTH, 0.5f, 0.01f},    {7, 3, VKAO_FALLOFF_THRESHOLD, 0.5f, 0.01f},
-        {16, 0, VKAO_FALLOFF_SMOOTH, 0.5f, 0.0f},    {16, 0, VKAO_FALLOFF_THRESHOLD, 0.2f, 0.1f},
-        {33, 12345, VKAO_FALLOFF_SMOOTH, 0.3f, 0.02f}, {64, 0xffffffffu, VKAO_FALLOFF_SMOOTH, 1.5f, 0.01f},
+        {1, 0, VKAO_FALLOFF_SMOOTH, 0.5f, 0.01f},
+        {7, 3, VKAO_FALLOFF_THRESHOLD, 0.5f, 0.01f},
+        {16, 0, VKAO_FALLOFF_SMOOTH, 0.5f, 0.0f},
+        {16, 0, VKAO_FALLOFF_THRESHOLD, 0.2f, 0.1f},
+        {33, 12345, VKAO_FALLOFF_SMOOTH, 0.3f, 0.02f},
+        {64, 0xffffffffu, VKAO_FALLOFF_SMOOTH, 1.5f, 0.01f},
     };
     const struct scene scene = scene_corner();
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
@@ -36,8 +39,8 @@ static void agrees_with_reference_for_every_count_falloff_and_noise(void **state
         p.ssao.falloff = rows[i].falloff;
         p.ssao.radius = rows[i].radius;
         p.ssao.bias = rows[i].bias;
-        snprintf(what, sizeof what, "%u samples, falloff %d, radius %g", rows[i].samples, (int)rows[i].falloff,
-                 (double)rows[i].radius);
+        snprintf(what, sizeof what, "%u samples, falloff %d, radius %g", rows[i].samples,
+                 (int)rows[i].falloff, (double)rows[i].radius);
         check_ssao(&p, ref_hemisphere, what);
         picture_free(&p);
     }

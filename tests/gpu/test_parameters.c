@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A parameter that changes nothing is a lie: one row for each field of ssao, blur, composite and view. */
+ * A parameter that changes nothing is a lie: one row for each field of ssao, blur, composite and
+ * view. */
 #include "fixture.h"
 
 #include <stdlib.h>
@@ -151,7 +152,8 @@ static void every_parameter_changes_the_picture(void **state)
         rows[i].change(&after);
         picture_run(&before);
         picture_run(&after);
-        struct difference d = difference_of(before.values[SLOT_OUTPUT], after.values[SLOT_OUTPUT], 80 * 60 * 4);
+        struct difference d =
+            difference_of(before.values[SLOT_OUTPUT], after.values[SLOT_OUTPUT], 80 * 60 * 4);
         print_message("    %-44s mean change %.2e\n", rows[i].name, d.mean);
         if (!(d.mean > 1e-5)) {
             print_error("%s changes nothing\n", rows[i].name);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Depth of any format and encoding to view z, and background. Prepare writes scratch, which tests do not read: the
- * literal sphere form shows it, whose result is a smooth function of view z differences. */
+ * Depth of any format and encoding to view z, and background. Prepare writes scratch, which tests
+ * do not read: the literal sphere form shows it, whose result is a smooth function of view z
+ * differences. */
 #include "fixture.h"
 #include "ref_sphere.h"
 
@@ -9,8 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static void probe(struct picture *p, const struct scene *scene, const struct lens *lens, VkFormat format,
-                  vkao_depth_encoding encoding)
+static void probe(struct picture *p, const struct scene *scene, const struct lens *lens,
+                  VkFormat format, vkao_depth_encoding encoding)
 {
     picture_make(p, VKAO_STAGE_SSAO, scene);
     p->view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
@@ -21,7 +22,8 @@ static void probe(struct picture *p, const struct scene *scene, const struct len
     picture_render_scene(p, scene, lens, format, VK_FORMAT_UNDEFINED);
 }
 
-/* 16-bit fixed point with the near plane at 0.1 is too coarse to be worth a test: 1.5 is what one would choose. */
+/* 16-bit fixed point with the near plane at 0.1 is too coarse to be worth a test: 1.5 is what one
+ * would choose. */
 static struct lens test_lens(bool orthographic, bool reversed, double far)
 {
     struct lens lens = orthographic ? lens_orthographic(1.6, 1.2) : lens_perspective(0.6, 0.45);
@@ -31,21 +33,25 @@ static struct lens test_lens(bool orthographic, bool reversed, double far)
     return lens;
 }
 
-/* The reference decodes the same rounded depths, so the tolerance is that of single precision: the rounding of the
- * matrix and of z/w near 1 moves z by 1e-5, and a few points over a texel's edge. */
+/* The reference decodes the same rounded depths, so the tolerance is that of single precision: the
+ * rounding of the matrix and of z/w near 1 moves z by 1e-5, and a few points over an edge. */
 static void view_z_agrees_with_reference_for_every_format_encoding_and_far_plane(void **state)
 {
     (void)state;
-    static const VkFormat formats[] = {VK_FORMAT_R32_SFLOAT, VK_FORMAT_R16_SFLOAT, VK_FORMAT_R16_UNORM,
-                                       VK_FORMAT_D32_SFLOAT, VK_FORMAT_D16_UNORM};
+    static const VkFormat formats[] = {VK_FORMAT_R32_SFLOAT, VK_FORMAT_R16_SFLOAT,
+                                       VK_FORMAT_R16_UNORM, VK_FORMAT_D32_SFLOAT,
+                                       VK_FORMAT_D16_UNORM};
     static const struct {
         const char *name;
         bool orthographic, reversed;
         double far;
     } lenses[] = {
-        {"standard", false, false, 10.0},  {"reversed", false, true, 10.0},
-        {"infinite", false, false, (double)INFINITY}, {"reversed infinite", false, true, (double)INFINITY},
-        {"orthographic", true, false, 10.0}, {"orthographic reversed", true, true, 10.0},
+        {"standard", false, false, 10.0},
+        {"reversed", false, true, 10.0},
+        {"infinite", false, false, (double)INFINITY},
+        {"reversed infinite", false, true, (double)INFINITY},
+        {"orthographic", true, false, 10.0},
+        {"orthographic reversed", true, true, 10.0},
     };
     const struct scene scene = scene_corner();
     for (size_t l = 0; l < sizeof lenses / sizeof lenses[0]; ++l) {
@@ -66,7 +72,8 @@ static void view_z_agrees_with_reference_for_every_format_encoding_and_far_plane
             picture_run(&p);
             picture_reference_scene(&p, &reference);
             ref_sphere(&reference, &p.ssao, expected);
-            snprintf(what, sizeof what, "%s, format %d, encoding %d", lenses[l].name, (int)format, (int)encoding);
+            snprintf(what, sizeof what, "%s, format %d, encoding %d", lenses[l].name, (int)format,
+                     (int)encoding);
             check_close(what, p.values[SLOT_AO], expected, picture_texels(&p), 2e-4, 2e-3);
             assert_true(mean_of(expected, picture_texels(&p)) < 0.9);
             free(expected);
@@ -76,9 +83,10 @@ static void view_z_agrees_with_reference_for_every_format_encoding_and_far_plane
     }
 }
 
-/* The picture is a wall that faces the eye; this leaves a 12x12 block of it in the middle and makes the rest
- * background. The rest must be 1, in the literal form too, which greys every surface. The block must be 1 in the
- * rescaled forms, as the rest occludes nothing, and darker than 1 in the literal form, or it was not seen at all. */
+/* The picture is a wall that faces the eye; this leaves a 12x12 block of it in the middle and makes
+ * the rest background. The rest must be 1, in the literal form too, which greys every surface. The
+ * block must be 1 in the rescaled forms, as the rest occludes nothing, and darker than 1 in the
+ * literal form, or it was not seen at all. */
 static void check_background(struct picture *p, const char *what, double background)
 {
     for (size_t i = 0; i < picture_texels(p); ++i) {
@@ -104,58 +112,68 @@ static void check_background(struct picture *p, const char *what, double backgro
     }
 }
 
+enum { REVERSED = 1, INFINITE = 2, ORTHOGRAPHIC = 4 };
+
+#define PROJECTED VKAO_DEPTH_PROJECTED
+#define VIEW_Z VKAO_DEPTH_VIEW_Z
+#define D32 VK_FORMAT_D32_SFLOAT
+#define R32 VK_FORMAT_R32_SFLOAT
+
+static const struct {
+    const char *name;
+    vkao_depth_encoding encoding;
+    VkFormat format;
+    double value;
+    unsigned camera;
+} backgrounds[] = {
+    {"far plane, D32", PROJECTED, D32, 1.0, 0},
+    {"far plane, D16", PROJECTED, VK_FORMAT_D16_UNORM, 1.0, 0},
+    {"infinite far plane", PROJECTED, D32, 1.0, INFINITE},
+    {"reversed far plane", PROJECTED, D32, 0.0, REVERSED},
+    {"reversed infinite far plane", PROJECTED, D32, 0.0, REVERSED | INFINITE},
+    {"orthographic far plane", PROJECTED, D32, 1.0, ORTHOGRAPHIC},
+    {"orthographic reversed far plane", PROJECTED, D32, 0.0, ORTHOGRAPHIC | REVERSED},
+    {"beyond 1", PROJECTED, R32, 1.5, 0},
+    {"below 0, reversed", PROJECTED, R32, -0.5, REVERSED},
+    {"projected NaN", PROJECTED, R32, (double)NAN, 0},
+    {"projected NaN, orthographic", PROJECTED, R32, (double)NAN, ORTHOGRAPHIC},
+    {"projected infinity", PROJECTED, R32, (double)INFINITY, 0},
+    {"view z 0", VIEW_Z, R32, 0.0, 0},
+    {"view z negative", VIEW_Z, R32, -4.0, 0},
+    {"view z NaN", VIEW_Z, R32, (double)NAN, 0},
+    {"view z infinity", VIEW_Z, R32, (double)INFINITY, INFINITE},
+    {"view z half infinity", VIEW_Z, VK_FORMAT_R16_SFLOAT, (double)INFINITY, INFINITE},
+    {"view z -infinity", VIEW_Z, R32, -(double)INFINITY, 0},
+    {"view z past the far plane", VIEW_Z, R32, 100.1, 0},
+    {"view z 1e10", VIEW_Z, R32, 1e10, 0},
+    {"distance infinity", VKAO_DEPTH_DISTANCE, R32, (double)INFINITY, INFINITE},
+    {"distance NaN", VKAO_DEPTH_DISTANCE, R32, (double)NAN, 0},
+    {"distance 0", VKAO_DEPTH_DISTANCE, R32, 0.0, 0},
+    {"1/z 0", VKAO_DEPTH_INVERSE_Z, R32, 0.0, INFINITE},
+    {"1/z -0", VKAO_DEPTH_INVERSE_Z, R32, -0.0, INFINITE},
+    {"1/z negative", VKAO_DEPTH_INVERSE_Z, R32, -0.25, 0},
+    {"1/z NaN", VKAO_DEPTH_INVERSE_Z, R32, (double)NAN, 0},
+    {"1/z infinity", VKAO_DEPTH_INVERSE_Z, R32, (double)INFINITY, 0},
+};
+
 static void background_is_exactly_one_and_occludes_nothing(void **state)
 {
     (void)state;
-    static const struct {
-        const char *name;
-        vkao_depth_encoding encoding;
-        VkFormat format;
-        double value;
-        bool reversed, infinite, orthographic;
-    } rows[] = {
-        {"far plane, D32", VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT, 1.0, false, false, false},
-        {"far plane, D16", VKAO_DEPTH_PROJECTED, VK_FORMAT_D16_UNORM, 1.0, false, false, false},
-        {"infinite far plane", VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT, 1.0, false, true, false},
-        {"reversed far plane", VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT, 0.0, true, false, false},
-        {"reversed infinite far plane", VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT, 0.0, true, true, false},
-        {"orthographic far plane", VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT, 1.0, false, false, true},
-        {"orthographic reversed far plane", VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT, 0.0, true, false, true},
-        {"beyond 1", VKAO_DEPTH_PROJECTED, VK_FORMAT_R32_SFLOAT, 1.5, false, false, false},
-        {"below 0, reversed", VKAO_DEPTH_PROJECTED, VK_FORMAT_R32_SFLOAT, -0.5, true, false, false},
-        {"projected NaN", VKAO_DEPTH_PROJECTED, VK_FORMAT_R32_SFLOAT, (double)NAN, false, false, false},
-        {"projected NaN, orthographic", VKAO_DEPTH_PROJECTED, VK_FORMAT_R32_SFLOAT, (double)NAN, false, false, true},
-        {"projected infinity", VKAO_DEPTH_PROJECTED, VK_FORMAT_R32_SFLOAT, (double)INFINITY, false, false, false},
-        {"view z 0", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, 0.0, false, false, false},
-        {"view z negative", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, -4.0, false, false, false},
-        {"view z NaN", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, (double)NAN, false, false, false},
-        {"view z infinity", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, (double)INFINITY, false, true, false},
-        {"view z half infinity", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R16_SFLOAT, (double)INFINITY, false, true, false},
-        {"view z -infinity", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, -(double)INFINITY, false, false, false},
-        {"view z past the far plane", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, 100.1, false, false, false},
-        {"view z 1e10 beyond it", VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT, 1e10, false, false, false},
-        {"distance infinity", VKAO_DEPTH_DISTANCE, VK_FORMAT_R32_SFLOAT, (double)INFINITY, false, true, false},
-        {"distance NaN", VKAO_DEPTH_DISTANCE, VK_FORMAT_R32_SFLOAT, (double)NAN, false, false, false},
-        {"distance 0", VKAO_DEPTH_DISTANCE, VK_FORMAT_R32_SFLOAT, 0.0, false, false, false},
-        {"1/z 0", VKAO_DEPTH_INVERSE_Z, VK_FORMAT_R32_SFLOAT, 0.0, false, true, false},
-        {"1/z -0", VKAO_DEPTH_INVERSE_Z, VK_FORMAT_R32_SFLOAT, -0.0, false, true, false},
-        {"1/z negative", VKAO_DEPTH_INVERSE_Z, VK_FORMAT_R32_SFLOAT, -0.25, false, false, false},
-        {"1/z NaN", VKAO_DEPTH_INVERSE_Z, VK_FORMAT_R32_SFLOAT, (double)NAN, false, false, false},
-        {"1/z infinity", VKAO_DEPTH_INVERSE_Z, VK_FORMAT_R32_SFLOAT, (double)INFINITY, false, false, false},
-    };
     const struct scene wall = scene_tilted_plane(0.0, 0.0);
-    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+    for (size_t i = 0; i < sizeof backgrounds / sizeof backgrounds[0]; ++i) {
         struct picture p;
-        struct lens lens = rows[i].orthographic ? lens_orthographic(2.4, 1.8) : lens_perspective(0.6, 0.45);
-        lens.reversed = rows[i].reversed;
-        if (rows[i].infinite)
+        struct lens lens = (backgrounds[i].camera & ORTHOGRAPHIC) ? lens_orthographic(2.4, 1.8)
+                                                                  : lens_perspective(0.6, 0.45);
+        lens.reversed = (backgrounds[i].camera & REVERSED) != 0;
+        if (backgrounds[i].camera & INFINITE)
             lens.far = INFINITY;
         picture_make(&p, VKAO_STAGE_SSAO, &wall);
-        p.view.depth_encoding = rows[i].encoding;
-        picture_render_scene(&p, &wall, &lens, rows[i].format, VK_FORMAT_R32G32B32A32_SFLOAT);
-        check_background(&p, rows[i].name, rows[i].value);
+        p.view.depth_encoding = backgrounds[i].encoding;
+        picture_render_scene(&p, &wall, &lens, backgrounds[i].format,
+                             VK_FORMAT_R32G32B32A32_SFLOAT);
+        check_background(&p, backgrounds[i].name, backgrounds[i].value);
         p.view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
-        check_background(&p, rows[i].name, rows[i].value);
+        check_background(&p, backgrounds[i].name, backgrounds[i].value);
         picture_free(&p);
     }
 }
@@ -164,8 +182,8 @@ static void background_is_exactly_one_and_occludes_nothing(void **state)
 static void background_is_exactly_one_in_every_ao_format(void **state)
 {
     (void)state;
-    static const VkFormat formats[] = {VK_FORMAT_R8_UNORM, VK_FORMAT_R16_UNORM, VK_FORMAT_R16_SFLOAT,
-                                       VK_FORMAT_R32_SFLOAT};
+    static const VkFormat formats[] = {VK_FORMAT_R8_UNORM, VK_FORMAT_R16_UNORM,
+                                       VK_FORMAT_R16_SFLOAT, VK_FORMAT_R32_SFLOAT};
     const struct scene scene = scene_open_sky();
     for (size_t i = 0; i < sizeof formats / sizeof formats[0]; ++i) {
         struct picture p;

@@ -44,8 +44,8 @@ static void agrees_with_reference_for_every_form_count_falloff_and_noise(void **
         p.ssao.falloff = rows[i].falloff;
         p.ssao.radius = rows[i].radius;
         p.ssao.blocking_scale = rows[i].blocking_scale;
-        snprintf(what, sizeof what, "form %d, %u samples, falloff %d, radius %g", (int)rows[i].form, rows[i].samples,
-                 (int)rows[i].falloff, (double)rows[i].radius);
+        snprintf(what, sizeof what, "form %d, %u samples, falloff %d, radius %g", (int)rows[i].form,
+                 rows[i].samples, (int)rows[i].falloff, (double)rows[i].radius);
         check_ssao(&p, ref_sphere, what);
         picture_free(&p);
     }
@@ -91,7 +91,8 @@ static void limits_give_numbers(void **state)
 }
 
 /* Runs both and compares bit for bit. */
-static void check_same(const vkao_ssao_params *a, const vkao_ssao_params *b, vkao_normal_encoding b_normals)
+static void check_same(const vkao_ssao_params *a, const vkao_ssao_params *b,
+                       vkao_normal_encoding b_normals)
 {
     struct picture p, q;
     const struct scene scene = scene_corner();

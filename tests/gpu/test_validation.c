@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Scratch memory, frames in flight, and whether the validation layers, whose silence every GPU test relies on, are
- * awake. */
+ * Scratch memory, frames in flight, and whether the validation layers, whose silence every GPU test
+ * relies on, are awake. */
 #include "fixture.h"
 
 #include <stdlib.h>
@@ -34,8 +34,9 @@ static VkMemoryRequirements requirements_of(const struct picture *p)
     VkMemoryRequirements out;
     struct picture_gpu g = {.slots = vkao_images_default()};
     picture_frame_info(p, &g, &info); /* formats are enough, views are not needed */
-    vkao_image *const slots[SLOT_COUNT] = {&g.slots.depth, &g.slots.normals, &g.slots.ao_noisy, &g.slots.ao,
-                                           &g.slots.color, &g.slots.direct,  &g.slots.output};
+    vkao_image *const slots[SLOT_COUNT] = {&g.slots.depth, &g.slots.normals, &g.slots.ao_noisy,
+                                           &g.slots.ao,    &g.slots.color,   &g.slots.direct,
+                                           &g.slots.output};
     for (int i = 0; i < SLOT_COUNT; ++i) {
         slots[i]->format = p->formats[i];
         slots[i]->layout = p->formats[i] ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED;
@@ -55,13 +56,14 @@ static void callers_scratch_at_an_offset_gives_the_same_picture(void **state)
     callers.scratch_memory = fixture_allocate(&r, r.size + callers.scratch_offset);
     picture_run(&own);
     picture_run(&callers);
-    check_equal("output", callers.values[SLOT_OUTPUT], own.values[SLOT_OUTPUT], picture_texels(&own) * 4);
+    check_equal("output", callers.values[SLOT_OUTPUT], own.values[SLOT_OUTPUT],
+                picture_texels(&own) * 4);
     vkFreeMemory(fixture.gpu.device, callers.scratch_memory, NULL);
     picture_free(&own);
     picture_free(&callers);
 }
 
-/* Two frames side by side in one memory, their stages interleaved: each must keep to its own place. */
+/* Two frames side by side in one memory, their stages interleaved: each must keep its place. */
 static void frames_at_different_offsets_do_not_touch_each_other(void **state)
 {
     (void)state;
@@ -113,7 +115,8 @@ static void misaligned_scratch_is_refused(void **state)
     picture_frame_info(&p, &g, &info);
     info.scratch_memory = fixture_allocate(&r, r.size + r.alignment);
     info.scratch_offset = 1;
-    assert_int_equal(vkao_frame_create(fixture.context, &info, &frame), VKAO_ERROR_INVALID_ARGUMENT);
+    assert_int_equal(vkao_frame_create(fixture.context, &info, &frame),
+                     VKAO_ERROR_INVALID_ARGUMENT);
     assert_null(frame);
     vkFreeMemory(fixture.gpu.device, info.scratch_memory, NULL);
     picture_close(&g);
@@ -151,7 +154,8 @@ static void frames_in_flight_share_scratch(void **state)
     vkFreeCommandBuffers(fixture.gpu.device, fixture.gpu.command_pool, 6, cmds);
     for (int i = 0; i < 2; ++i) {
         picture_download(&shared[i], &g[i]);
-        check_equal("ao", shared[i].values[SLOT_AO], alone[i].values[SLOT_AO], picture_texels(&alone[i]));
+        check_equal("ao", shared[i].values[SLOT_AO], alone[i].values[SLOT_AO],
+                    picture_texels(&alone[i]));
         check_equal("output", shared[i].values[SLOT_OUTPUT], alone[i].values[SLOT_OUTPUT],
                     picture_texels(&alone[i]) * 4);
         picture_close(&g[i]);
@@ -198,15 +202,18 @@ static void frames_of_one_command_buffer_share_scratch(void **state)
 static uint32_t allocations;
 static VkDeviceSize allocated_bytes;
 
-static VKAPI_ATTR VkResult VKAPI_CALL counting_allocate(VkDevice device, const VkMemoryAllocateInfo *info,
-                                                        const VkAllocationCallbacks *allocator, VkDeviceMemory *out)
+static VKAPI_ATTR VkResult VKAPI_CALL counting_allocate(VkDevice device,
+                                                        const VkMemoryAllocateInfo *info,
+                                                        const VkAllocationCallbacks *allocator,
+                                                        VkDeviceMemory *out)
 {
     ++allocations;
     allocated_bytes += info->allocationSize;
     return vkAllocateMemory(device, info, allocator, out);
 }
 
-static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL counting_proc_addr(VkDevice device, const char *name)
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL counting_proc_addr(VkDevice device,
+                                                                   const char *name)
 {
     if (strcmp(name, "vkAllocateMemory") == 0)
         return (PFN_vkVoidFunction)counting_allocate;
@@ -216,19 +223,24 @@ static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL counting_proc_addr(VkDevice devi
 static void scratch_query_equals_what_create_allocates(void **state)
 {
     (void)state;
-    static const vkao_stage_flags stages[] = {VKAO_STAGE_SSAO, VKAO_STAGE_BLUR, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR,
-                                              VKAO_STAGE_COMPOSITE, VKAO_STAGE_SSAO | VKAO_STAGE_COMPOSITE,
+    static const vkao_stage_flags stages[] = {VKAO_STAGE_SSAO,
+                                              VKAO_STAGE_BLUR,
+                                              VKAO_STAGE_SSAO | VKAO_STAGE_BLUR,
+                                              VKAO_STAGE_COMPOSITE,
+                                              VKAO_STAGE_SSAO | VKAO_STAGE_COMPOSITE,
                                               VKAO_STAGE_ALL};
     vkao_context *context;
-    check_vkao(vkao_context_create(&(vkao_context_info){
-        .struct_size = sizeof(vkao_context_info),
-        .instance = fixture.gpu.instance,
-        .physical_device = fixture.gpu.physical_device,
-        .device = fixture.gpu.device,
-        .get_instance_proc_addr = vkGetInstanceProcAddr,
-        .get_device_proc_addr = counting_proc_addr,
-        .enabled_features = &fixture.gpu.features,
-    }, &context));
+    check_vkao(vkao_context_create(
+        &(vkao_context_info){
+            .struct_size = sizeof(vkao_context_info),
+            .instance = fixture.gpu.instance,
+            .physical_device = fixture.gpu.physical_device,
+            .device = fixture.gpu.device,
+            .get_instance_proc_addr = vkGetInstanceProcAddr,
+            .get_device_proc_addr = counting_proc_addr,
+            .enabled_features = &fixture.gpu.features,
+        },
+        &context));
     for (size_t i = 0; i < sizeof stages / sizeof stages[0] * 2; ++i) {
         struct picture p;
         struct picture_gpu g;
@@ -259,16 +271,16 @@ static void scratch_query_equals_what_create_allocates(void **state)
     vkao_context_destroy(context);
 }
 
-/* Clears the image and then copies from it, with nothing in between: a hazard that the layers must see, within one
- * command buffer and from one submit to the next. */
+/* Clears the image and then copies from it, with nothing in between: a hazard that the layers must
+ * see, within one command buffer and from one submit to the next. */
 static void check_hazard_is_reported(bool across_submits)
 {
     struct gpu_image image;
     VkCommandBuffer cmds[2];
     const VkImageSubresourceRange range = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     const VkClearColorValue black = {{0.0f, 0.0f, 0.0f, 0.0f}};
-    check(gpu_image_create(&fixture.gpu, VK_FORMAT_R32_SFLOAT, (VkExtent2D){8, 8}, VK_IMAGE_USAGE_STORAGE_BIT, &image,
-                           &fixture.error));
+    check(gpu_image_create(&fixture.gpu, VK_FORMAT_R32_SFLOAT, (VkExtent2D){8, 8},
+                           VK_IMAGE_USAGE_STORAGE_BIT, &image, &fixture.error));
     assert_int_equal(fixture.gpu.validation_messages, 0);
     fixture.gpu.print_validation = false;
     for (int i = 0; i < 2; ++i) {
@@ -299,8 +311,9 @@ static void validation_sees_a_missing_barrier_between_submits(void **state)
     check_hazard_is_reported(true);
 }
 
-/* The hazard that matters here: compute writes ao, compute of the next submit writes it again, and the only thing
- * between them is the library's own barrier. Reading it by a copy without a barrier is the caller's fault, and seen. */
+/* The hazard that matters here: compute writes ao, compute of the next submit writes it again, and
+ * the only thing between them is the library's own barrier. Reading it by a copy without a barrier
+ * is the caller's fault, and seen. */
 static void validation_sees_a_caller_who_forgets_the_barrier_after_vkao(void **state)
 {
     (void)state;

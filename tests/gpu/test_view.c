@@ -37,7 +37,8 @@ static void check_open(struct picture *p, const char *what)
         fail_msg("%s: the darkest texel is %g, want at least 0.995", what, worst);
 }
 
-static void check_tilted_planes(bool orthographic, bool given_normals, float bias, VkFormat other_format)
+static void check_tilted_planes(bool orthographic, bool given_normals, float bias,
+                                VkFormat other_format)
 {
     const VkFormat formats[] = {VK_FORMAT_D32_SFLOAT, other_format};
     for (int i = 0; i < 5 * 4 * 2 * 2; ++i) {
@@ -47,20 +48,25 @@ static void check_tilted_planes(bool orthographic, bool given_normals, float bia
         double tilt = 20.0 * (i / 4 % 5), azimuth = 25.0 + 90.0 * (i / 20);
         struct lens lens = orthographic ? lens_orthographic(1.6, 1.2) : lens_perspective(0.6, 0.45);
         struct scene wall = scene_tilted_plane(tilt, azimuth);
-        /* Off the axis, so that steep walls turn their back on the origin, but not on an orthographic camera. The near
-         * plane cuts them there, and leaves texels without neighbours to take a normal from. */
-        wall.shapes[0].center[0] = orthographic && given_normals ? 1.2 : 0.0;
-        lens.near = 1.0;
+        if (given_normals) {
+            /* Off the axis, so that steep walls turn their back on the origin, but not on an
+             * orthographic camera. The near plane cuts them there, and leaves texels without
+             * neighbours, which could not take a normal from depth. */
+            wall.shapes[0].center[0] = orthographic ? 1.2 : 0.0;
+            lens.near = 1.0; /* what 16 bits of depth need */
+        }
         picture_init(&p, 64, 48, VKAO_STAGE_SSAO);
         p.view.normal_encoding = given_normals ? VKAO_NORMALS_XYZ_SNORM : VKAO_NORMALS_FROM_DEPTH;
-        VkFormat normals = bias > 0.0f ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
-        picture_render_scene(&p, &wall, &lens, formats[i / 2 % 2], given_normals ? normals : VK_FORMAT_UNDEFINED);
+        VkFormat normals =
+            bias > 0.0f ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
+        picture_render_scene(&p, &wall, &lens, formats[i / 2 % 2],
+                             given_normals ? normals : VK_FORMAT_UNDEFINED);
         picture_set(&p, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
         set_method(&p, method);
         p.ssao.bias = bias;
-        snprintf(what, sizeof what, "%s, %s, %s normals, format %d, %g degrees towards %g", method->name,
-                 orthographic ? "orthographic" : "perspective", given_normals ? "given" : "no", (int)formats[i / 2 % 2],
-                 tilt, azimuth);
+        snprintf(what, sizeof what, "%s, %s, %s normals, format %d, %g degrees towards %g",
+                 method->name, orthographic ? "orthographic" : "perspective",
+                 given_normals ? "given" : "no", (int)formats[i / 2 % 2], tilt, azimuth);
         check_open(&p, what);
         picture_free(&p);
     }
@@ -85,8 +91,8 @@ static void orthographic_tilted_planes_are_open(void **state)
     check_tilted_planes(true, false, vkao_ssao_params_default().bias, VK_FORMAT_R32_SFLOAT);
 }
 
-/* Without a bias only the guard that knows the precision of the depth stands between a wall and acne; it does not know
- * the precision of normals, which must be exact then. */
+/* Without a bias only the guard that knows the precision of the depth stands between a wall and
+ * acne; it does not know the precision of normals, which must be exact then. */
 static void tilted_planes_are_open_without_a_bias(void **state)
 {
     (void)state;
@@ -102,8 +108,9 @@ struct convention {
     VkFormat format;
 };
 
-/* All hold the same depths, to the precision of the encoding: what differs is a point here and there at the edge of
- * blocking, worth 1/32. D32 with standard Z is exact to 2e-5 of z here, the others to 1e-7. */
+/* All hold the same depths, to the precision of the encoding: what differs is a point here and
+ * there at the edge of blocking, worth 1/32. D32 with standard Z is exact to 2e-5 of z here, the
+ * others to 1e-7. */
 static const struct convention conventions[] = {
     {"standard D32", false, 100.0, -1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT},
     {"standard R32F", false, 100.0, -1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_R32_SFLOAT},
@@ -112,16 +119,19 @@ static const struct convention conventions[] = {
     {"reversed, left-handed", true, 100.0, 1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT},
     {"infinite", false, (double)INFINITY, -1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT},
     {"reversed infinite", true, (double)INFINITY, -1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT},
-    {"reversed infinite, left-handed", true, (double)INFINITY, 1.0, VKAO_DEPTH_PROJECTED, VK_FORMAT_D32_SFLOAT},
+    {"reversed infinite, left-handed", true, (double)INFINITY, 1.0, VKAO_DEPTH_PROJECTED,
+     VK_FORMAT_D32_SFLOAT},
     {"view z", false, 100.0, -1.0, VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT},
-    {"view z, left-handed, infinite", false, (double)INFINITY, 1.0, VKAO_DEPTH_VIEW_Z, VK_FORMAT_R32_SFLOAT},
+    {"view z, left-handed, infinite", false, (double)INFINITY, 1.0, VKAO_DEPTH_VIEW_Z,
+     VK_FORMAT_R32_SFLOAT},
     {"distance", false, 100.0, -1.0, VKAO_DEPTH_DISTANCE, VK_FORMAT_R32_SFLOAT},
-    {"distance, reversed infinite", true, (double)INFINITY, -1.0, VKAO_DEPTH_DISTANCE, VK_FORMAT_R32_SFLOAT},
+    {"distance, reversed infinite", true, (double)INFINITY, -1.0, VKAO_DEPTH_DISTANCE,
+     VK_FORMAT_R32_SFLOAT},
     {"1/z", false, 100.0, -1.0, VKAO_DEPTH_INVERSE_Z, VK_FORMAT_R32_SFLOAT},
 };
 
-static void render(struct picture *p, const struct lens *base, const struct convention *c, const struct method *m,
-                   bool given_normals)
+static void render(struct picture *p, const struct lens *base, const struct convention *c,
+                   const struct method *m, bool given_normals)
 {
     struct lens lens = *base;
     const struct scene scene = scene_corner();
@@ -150,9 +160,10 @@ static void check_conventions(const struct lens *lens)
         assert_true(mean_of(first.values[SLOT_AO], picture_texels(&first)) < 0.98);
         for (size_t c = 0; c < count; ++c) {
             render(&p, lens, &conventions[c], &methods[i % 3], given_normals);
-            snprintf(what, sizeof what, "%s %s, %s", methods[i % 3].name, given_normals ? "normals" : "depth only",
-                     conventions[c].name);
-            check_close(what, p.values[SLOT_AO], first.values[SLOT_AO], picture_texels(&p), 1e-4, 1e-4);
+            snprintf(what, sizeof what, "%s %s, %s", methods[i % 3].name,
+                     given_normals ? "normals" : "depth only", conventions[c].name);
+            check_close(what, p.values[SLOT_AO], first.values[SLOT_AO], picture_texels(&p), 1e-4,
+                        1e-4);
             picture_free(&p);
         }
         picture_free(&first);
@@ -173,8 +184,8 @@ static void every_orthographic_convention_gives_the_same_ao(void **state)
     check_conventions(&lens);
 }
 
-/* A camera with y up shows the same scene upside down. The noise stays where it is in the image, so that only the
- * means of blocks agree: 5x5 texels times 64 points. */
+/* A camera with y up shows the same scene upside down. The noise stays where it is in the image, so
+ * that only the means of blocks agree: 5x5 texels times 64 points. */
 static void y_flip_mirrors_the_picture(void **state)
 {
     (void)state;
@@ -187,7 +198,8 @@ static void y_flip_mirrors_the_picture(void **state)
         picture_make(&up, VKAO_STAGE_SSAO, &scene);
         lens.y0 = 0.45;
         lens.y1 = -0.45;
-        picture_render_scene(&up, &scene, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+        picture_render_scene(&up, &scene, &lens, VK_FORMAT_R32_SFLOAT,
+                             VK_FORMAT_R32G32B32A32_SFLOAT);
         set_method(&up, &methods[m]);
         set_method(&down, &methods[m]);
         up.ssao.sample_count = down.ssao.sample_count = 64;
@@ -206,9 +218,9 @@ static void y_flip_mirrors_the_picture(void **state)
     }
 }
 
-/* A shift of the window by whole texels moves the picture; by half a texel it changes next to nothing. Overscan: a
- * larger image whose viewport is the smaller one's shows the same there, if the noise is laid on alike. Here the
- * viewport begins at the origin, so it is. */
+/* A shift of the window by whole texels moves the picture; by half a texel it changes next to
+ * nothing. Overscan: a larger image whose viewport is the smaller one's shows the same there, if
+ * the noise is laid on alike. Here the viewport begins at the origin, so it is. */
 static void viewport_with_overscan_agrees_where_both_see_the_neighbourhood(void **state)
 {
     (void)state;
@@ -221,19 +233,22 @@ static void viewport_with_overscan_agrees_where_both_see_the_neighbourhood(void 
         picture_init(&large, 96, 76, VKAO_STAGE_SSAO);
         large.view = small.view;
         large.view.viewport = (VkRect2D){{0, 0}, {80, 60}};
-        picture_render_scene(&large, &scene, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+        picture_render_scene(&large, &scene, &lens, VK_FORMAT_R32_SFLOAT,
+                             VK_FORMAT_R32G32B32A32_SFLOAT);
         picture_set(&large, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
         set_method(&small, &methods[m]);
         set_method(&large, &methods[m]);
         small.ssao.radius = large.ssao.radius = 0.25f;
         picture_run(&small);
         picture_run(&large);
-        /* 0.25 at z = 1.6 is 10 texels, at the wall 4: texels further than that from the small image's far edges */
+        /* 0.25 at z = 1.6 is 10 texels, at the wall 4: texels further than that from the small
+         * image's far edges */
         for (size_t y = 0; y < 44; ++y) {
             for (size_t x = 0; x < 64; ++x) {
                 double a = small.values[SLOT_AO][y * 80 + x], b = large.values[SLOT_AO][y * 96 + x];
                 if (!(fabs(a - b) < 1e-6))
-                    fail_msg("%s: texel %zu,%zu is %g, in the larger image %g", methods[m].name, x, y, a, b);
+                    fail_msg("%s: texel %zu,%zu is %g, in the larger image %g", methods[m].name, x,
+                             y, a, b);
                 agreeing += a < 0.999;
             }
         }
@@ -243,12 +258,13 @@ static void viewport_with_overscan_agrees_where_both_see_the_neighbourhood(void 
     }
 }
 
-/* A viewport that begins outside the image, and one inside: against the reference in test_sphere and
- * test_hemisphere's terms, by making the camera of the cropped window off-centre instead. */
+/* A viewport that begins outside the image, and one inside: against the reference in test_sphere
+ * and test_hemisphere's terms, by making the camera of the cropped window off-centre instead. */
 static void viewport_equals_the_off_centre_projection_of_the_same_window(void **state)
 {
     (void)state;
-    const VkRect2D viewports[] = {{{-16, -9}, {112, 78}}, {{16, 12}, {40, 30}}, {{-40, 5}, {80, 60}}};
+    const VkRect2D viewports[] = {
+        {{-16, -9}, {112, 78}}, {{16, 12}, {40, 30}}, {{-40, 5}, {80, 60}}};
     for (size_t i = 0; i < 3 * 3; ++i) {
         struct picture by_viewport, off_centre;
         VkRect2D viewport = viewports[i / 3];
@@ -262,14 +278,16 @@ static void viewport_equals_the_off_centre_projection_of_the_same_window(void **
         picture_make(&by_viewport, VKAO_STAGE_SSAO, &scene);
         picture_make(&off_centre, VKAO_STAGE_SSAO, &scene);
         by_viewport.view.viewport = viewport;
-        picture_render_scene(&by_viewport, &scene, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
-        picture_render_scene(&off_centre, &scene, &window, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+        picture_render_scene(&by_viewport, &scene, &lens, VK_FORMAT_R32_SFLOAT,
+                             VK_FORMAT_R32G32B32A32_SFLOAT);
+        picture_render_scene(&off_centre, &scene, &window, VK_FORMAT_R32_SFLOAT,
+                             VK_FORMAT_R32G32B32A32_SFLOAT);
         set_method(&by_viewport, &methods[i % 3]);
         set_method(&off_centre, &methods[i % 3]);
         picture_run(&by_viewport);
         picture_run(&off_centre);
-        check_close("viewport and off-centre window", by_viewport.values[SLOT_AO], off_centre.values[SLOT_AO],
-                    picture_texels(&off_centre), 1e-4, 1e-3);
+        check_close("viewport and off-centre window", by_viewport.values[SLOT_AO],
+                    off_centre.values[SLOT_AO], picture_texels(&off_centre), 1e-4, 1e-3);
         picture_free(&by_viewport);
         picture_free(&off_centre);
     }

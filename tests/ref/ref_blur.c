@@ -11,7 +11,8 @@ struct blur {
     const vkao_blur_params *params;
     vkao_normal_encoding encoding;
     const double *stored;
-    double ndc_width; /* scene units across the viewport, what sharpness is relative to without perspective */
+    double ndc_width; /* scene units across the viewport, what sharpness is relative to without
+                         perspective */
 };
 
 static size_t texel_index(const struct blur *blur, int x, int y)
@@ -23,7 +24,8 @@ static size_t texel_index(const struct blur *blur, int x, int y)
 static double slope(const struct blur *blur, int x, int y, int dx, int dy)
 {
     double z = ref_scene_z(blur->scene, x, y);
-    double a = z - ref_scene_z(blur->scene, x - dx, y - dy), b = ref_scene_z(blur->scene, x + dx, y + dy) - z;
+    double a = z - ref_scene_z(blur->scene, x - dx, y - dy),
+           b = ref_scene_z(blur->scene, x + dx, y + dy) - z;
     if (isnan(a) && isnan(b))
         return 0.0;
     if (isnan(a) || isnan(b))
@@ -49,7 +51,8 @@ static double blurred(const struct blur *blur, const double *ao, int x, int y, i
     if (isnan(z))
         return 1.0;
     double s = slope(blur, x, y, dx, dy);
-    double scale = (double)blur->params->sharpness / (blur->scene->view.orthographic ? blur->ndc_width : z);
+    double scale =
+        (double)blur->params->sharpness / (blur->scene->view.orthographic ? blur->ndc_width : z);
     for (int k = -radius; k <= radius; ++k) {
         double tap_z = ref_scene_z(blur->scene, x + k * dx, y + k * dy);
         if (isnan(tap_z))
@@ -65,8 +68,8 @@ static double blurred(const struct blur *blur, const double *ao, int x, int y, i
     return sum / weights;
 }
 
-void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params, vkao_normal_encoding encoding,
-              const double *stored, const double *noisy, double *ao)
+void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params,
+              vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao)
 {
     double left[3], right[3];
     const double *viewport = scene->view.viewport;

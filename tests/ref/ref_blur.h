@@ -6,8 +6,9 @@
 
 #include "ref_view.h"
 
-/* stored: components of the normals image, 4 a texel, or NULL; encoding says how. Writes the view's rect of ao. */
-void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params, vkao_normal_encoding encoding,
-              const double *stored, const double *noisy, double *ao);
+/* stored: components of the normals image, 4 a texel, or NULL; encoding says how. Writes the view's
+ * rect of ao. */
+void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params,
+              vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao);
 
 #endif

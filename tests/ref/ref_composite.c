@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "ref_composite.h"
 
-void ref_composite(const vkao_composite_params *params, double ao, const double color[4], const double direct[4],
-                   double out[4])
+void ref_composite(const vkao_composite_params *params, double ao, const double color[4],
+                   const double direct[4], double out[4])
 {
     double strength = (double)params->strength, a = (1.0 - strength) + ao * strength;
     for (int i = 0; i < 3; ++i) {

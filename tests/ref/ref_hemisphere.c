@@ -7,8 +7,9 @@
 
 #include <math.h>
 
-/* The basis of Duff et al. 2017, here by Rodrigues' formula: (0, 0, s), the nearer of +z and -z, is rotated onto n by
- * the shortest way, and the x and y axes with it; b is turned so that t, b, n are right-handed. */
+/* The basis of Duff et al. 2017, here by Rodrigues' formula: (0, 0, s), the nearer of +z and -z, is
+ * rotated onto n by the shortest way, and the x and y axes with it; b is turned so that t, b, n are
+ * right-handed. */
 static void basis(const double n[3], double t[3], double b[3])
 {
     double s = n[2] >= 0.0 ? 1.0 : -1.0;
@@ -21,8 +22,8 @@ static void basis(const double n[3], double t[3], double b[3])
     }
 }
 
-static double visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
-                         const double p[3], const double n[3])
+static double visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x,
+                         int y, const double p[3], const double n[3])
 {
     const double golden_angle = 2.39996322972865332, two_pi = 6.28318530717958647692;
     double turn = two_pi * ref_gradient_noise((uint32_t)x, (uint32_t)y, params->noise_index);
@@ -31,13 +32,15 @@ static double visibility(const struct ref_scene *scene, const vkao_ssao_params *
     double t[3], b[3];
     basis(n, t, b);
     for (uint32_t k = 0; k < params->sample_count; ++k) {
-        /* Point k of the Fibonacci disk, lifted onto the hemisphere: directions follow the cosine. */
+        /* Point k of the Fibonacci disk, lifted onto the hemisphere: directions follow the cosine.
+         */
         double r = sqrt((k + 0.5) / params->sample_count), height = sqrt(1.0 - r * r);
         double angle = k * golden_angle + turn;
         double length = ref_point_length(params, ref_fract(ref_golden(k) + shift));
         double point[3], q[3];
         for (int i = 0; i < 3; ++i)
-            point[i] = p[i] + length * (r * cos(angle) * t[i] + r * sin(angle) * b[i] + height * n[i]);
+            point[i] =
+                p[i] + length * (r * cos(angle) * t[i] + r * sin(angle) * b[i] + height * n[i]);
         if (!ref_scene_lookup(scene, point, q))
             continue;
         double v[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};

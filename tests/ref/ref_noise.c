@@ -8,8 +8,8 @@ uint32_t ref_fixed_point(double c)
     return (uint32_t)(uint64_t)floor(c * 4294967296.0 + 0.5);
 }
 
-/* Jimenez 2014: fract(52.9829189 * fract(0.06711056 x + 0.00583715 y)), where a frame moves the pattern by 5.588238
- * texels along both axes. */
+/* Jimenez 2014: fract(52.9829189 * fract(0.06711056 x + 0.00583715 y)), where a frame moves the
+ * pattern by 5.588238 texels along both axes. */
 uint32_t ref_gradient_phase(uint32_t x, uint32_t y, uint32_t index)
 {
     const double a = 0.06711056, b = 0.00583715;
@@ -21,7 +21,8 @@ uint32_t ref_gradient_phase(uint32_t x, uint32_t y, uint32_t index)
 uint32_t ref_r2_phase(uint32_t x, uint32_t y, uint32_t index)
 {
     const double g = 1.32471795724474602596;
-    return x * ref_fixed_point(1.0 / g) + y * ref_fixed_point(1.0 / (g * g)) + ref_golden_phase(index);
+    return x * ref_fixed_point(1.0 / g) + y * ref_fixed_point(1.0 / (g * g)) +
+           ref_golden_phase(index);
 }
 
 uint32_t ref_golden_phase(uint32_t i)

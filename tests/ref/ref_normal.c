@@ -55,15 +55,16 @@ void ref_normal_encode(vkao_normal_encoding encoding, const double normal[3], do
         stored[i] = unorm ? v[i] * 0.5 + 0.5 : v[i];
 }
 
-/* What continues in a straight line on screen over a plane: 1/z in perspective, z in orthographic views. */
+/* What continues in a straight line on screen over a plane: 1/z in perspective, z in orthographic
+ * views. */
 static double linear_depth(const struct ref_scene *scene, int x, int y)
 {
     double z = ref_scene_z(scene, x, y);
     return scene->view.orthographic ? z : 1.0 / z;
 }
 
-/* How badly the pair of neighbours on one side (step = +1 or -1) predicts the centre; INFINITY without a neighbour,
- * and by the neighbour alone where it is the last. */
+/* How badly the pair of neighbours on one side (step = +1 or -1) predicts the centre; INFINITY
+ * without a neighbour, and by the neighbour alone where it is the last. */
 static double misprediction(const struct ref_scene *scene, int x, int y, int axis, int step)
 {
     int dx = axis == 0 ? step : 0, dy = axis == 1 ? step : 0;
@@ -76,13 +77,15 @@ static double misprediction(const struct ref_scene *scene, int x, int y, int axi
 
 static void tangent(const struct ref_scene *scene, int x, int y, int axis, double out[3])
 {
-    double before = misprediction(scene, x, y, axis, -1), after = misprediction(scene, x, y, axis, 1);
+    double before = misprediction(scene, x, y, axis, -1),
+           after = misprediction(scene, x, y, axis, 1);
     int step = before < after ? -1 : 1;
     double z = ref_scene_z(scene, x, y), neighbour_z = z, p[3], q[3];
     if (isfinite(before) || isfinite(after))
         neighbour_z = ref_scene_z(scene, axis == 0 ? x + step : x, axis == 1 ? y + step : y);
     ref_view_position(&scene->view, x, y, z, p);
-    ref_view_position(&scene->view, axis == 0 ? x + step : x, axis == 1 ? y + step : y, neighbour_z, q);
+    ref_view_position(&scene->view, axis == 0 ? x + step : x, axis == 1 ? y + step : y, neighbour_z,
+                      q);
     for (int i = 0; i < 3; ++i)
         out[i] = step * (q[i] - p[i]);
 }
@@ -98,8 +101,8 @@ static void from_depth(const struct ref_scene *scene, int x, int y, double out[3
         out[i] = n[i] / length;
 }
 
-void ref_scene_normal(const struct ref_scene *scene, const vkao_view *view, int x, int y, const double *stored,
-                      double out[3])
+void ref_scene_normal(const struct ref_scene *scene, const vkao_view *view, int x, int y,
+                      const double *stored, double out[3])
 {
     double n[3], p[3], eye[3], z = ref_scene_z(scene, x, y);
     for (int i = 0; i < 3; ++i)

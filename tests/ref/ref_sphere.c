@@ -19,7 +19,7 @@ static void ball_point(double u, double v, double w, double out[3])
     out[2] = r * z;
 }
 
-/* mean(1 / (1 + dz^2)), dz = scale * max(0, scene z - point z); nothing known there blocks nothing. */
+/* mean(1 / (1 + dz^2)), dz = scale * max(0, scene z - point z); the unknown blocks nothing. */
 static double literal(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
                       const double p[3], const double n[3])
 {
@@ -45,9 +45,10 @@ static double literal(const struct ref_scene *scene, const vkao_ssao_params *par
     return 1.0 - factor / params->sample_count;
 }
 
-/* 1 if the scene hides the point; where it is out of reach or unknown, what an endless wall would do. */
-static double hidden(const struct ref_scene *scene, const vkao_ssao_params *params, const double p[3],
-                     const double n[3], const double offset[3])
+/* 1 if the scene hides the point; where it is out of reach or unknown, what an endless wall would
+ * do. */
+static double hidden(const struct ref_scene *scene, const vkao_ssao_params *params,
+                     const double p[3], const double n[3], const double offset[3])
 {
     double height = ref_dot(n, offset), bias = ref_guard(scene, params, p[2]);
     double point[3] = {p[0] + offset[0], p[1] + offset[1], p[2] + offset[2]}, q[3];
@@ -71,7 +72,8 @@ static double rescaled(const struct ref_scene *scene, const vkao_ssao_params *pa
     for (uint32_t k = 0; k < pairs; ++k) {
         double z = (k + shift) / pairs, angle = k * golden_angle + turn;
         double length = ref_point_length(params, ref_fract(ref_golden(k) + shift));
-        double a[3] = {length * sqrt(1.0 - z * z) * cos(angle), length * sqrt(1.0 - z * z) * sin(angle), length * z};
+        double a[3] = {length * sqrt(1.0 - z * z) * cos(angle),
+                       length * sqrt(1.0 - z * z) * sin(angle), length * z};
         double b[3] = {-a[0], -a[1], -a[2]};
         blocked += hidden(scene, params, p, n, a) + hidden(scene, params, p, n, b);
     }

@@ -3,7 +3,8 @@
 
 #include <math.h>
 
-void ref_ssao(const struct ref_scene *scene, const vkao_ssao_params *params, ref_visibility *visibility, double *ao)
+void ref_ssao(const struct ref_scene *scene, const vkao_ssao_params *params,
+              ref_visibility *visibility, double *ao)
 {
     const VkRect2D *rect = &scene->view.rect;
     for (int y = rect->offset.y; y < rect->offset.y + (int)rect->extent.height; ++y) {
@@ -21,7 +22,8 @@ void ref_ssao(const struct ref_scene *scene, const vkao_ssao_params *params, ref
 
 double ref_point_length(const vkao_ssao_params *params, double u)
 {
-    return (double)params->radius * pow(u, params->falloff == VKAO_FALLOFF_SMOOTH ? 1.0 / 2.0 : 1.0 / 4.0);
+    return (double)params->radius *
+           pow(u, params->falloff == VKAO_FALLOFF_SMOOTH ? 1.0 / 2.0 : 1.0 / 4.0);
 }
 
 double ref_range_weight(const vkao_ssao_params *params, double dz)

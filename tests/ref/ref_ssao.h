@@ -7,14 +7,15 @@
 #include "ref_view.h"
 
 /* Visibility of texel (x, y), whose view-space position and normal are p and n. */
-typedef double ref_visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
-                              const double p[3], const double n[3]);
+typedef double ref_visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x,
+                              int y, const double p[3], const double n[3]);
 
 /* Every texel of the view's rect, 1 where there is background; the others are left alone. */
-void ref_ssao(const struct ref_scene *scene, const vkao_ssao_params *params, ref_visibility *visibility, double *ao);
+void ref_ssao(const struct ref_scene *scene, const vkao_ssao_params *params,
+              ref_visibility *visibility, double *ao);
 
-/* Length of a kernel point for u uniform in [0,1): P(length > t) = 1 - (t/R)^2 for the smooth falloff, 1 - (t/R)^4 for
- * the threshold. */
+/* Length of a kernel point for u uniform in [0,1): P(length > t) = 1 - (t/R)^2 for the smooth
+ * falloff, 1 - (t/R)^4 for the threshold. */
 double ref_point_length(const vkao_ssao_params *params, double u);
 /* smoothstep(0, 1, R / |dz|) for an occluder whose view z is dz off. */
 double ref_range_weight(const vkao_ssao_params *params, double dz);

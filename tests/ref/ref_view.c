@@ -7,7 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Further than any scene: an infinite far plane comes out of the inverse as some huge or infinite number. */
+/* Further than any scene: an infinite far plane comes out of the inverse as some huge or infinite
+ * number. */
 static const double endless = 1.0e12;
 
 bool ref_invert(const double m[16], double out[16])
@@ -164,7 +165,8 @@ double ref_view_depth_error(const struct ref_view *view, double z)
 {
     double rounding = fabs(z) * 0x1p-22;
     bool half = view->depth_format == VK_FORMAT_R16_SFLOAT;
-    bool fixed = view->depth_format == VK_FORMAT_D16_UNORM || view->depth_format == VK_FORMAT_R16_UNORM;
+    bool fixed =
+        view->depth_format == VK_FORMAT_D16_UNORM || view->depth_format == VK_FORMAT_R16_UNORM;
     double step = fixed ? 0x1p-16 : half ? 0x1p-11 : 0x1p-24;
     if (view->encoding != VKAO_DEPTH_PROJECTED)
         return rounding + fabs(z) * step;
@@ -217,8 +219,8 @@ void ref_scene_init(struct ref_scene *scene, const vkao_view *view, uint32_t wid
     for (size_t i = 0; i < texels; ++i)
         scene->z[i] = ref_view_z(&scene->view, (double)(i % width), (double)(i / width), depth[i]);
     for (size_t i = 0; i < texels; ++i)
-        ref_scene_normal(scene, view, (int)(i % width), (int)(i / width), normals ? &normals[i * 4] : NULL,
-                         &scene->normals[i * 3]);
+        ref_scene_normal(scene, view, (int)(i % width), (int)(i / width),
+                         normals ? &normals[i * 4] : NULL, &scene->normals[i * 3]);
 }
 
 void ref_scene_free(struct ref_scene *scene)

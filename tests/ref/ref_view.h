@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Texels, depths and view space, by inverting the projection matrix as a 4x4 matrix. View space here has +z away from
- * the eye and the caller's x and y. */
+ * Texels, depths and view space, by inverting the projection matrix as a 4x4 matrix. View space
+ * here has +z away from the eye and the caller's x and y. */
 #ifndef VKAO_TESTS_REF_VIEW_H_
 #define VKAO_TESTS_REF_VIEW_H_
 
@@ -11,7 +11,7 @@
 
 struct ref_view {
     double matrix[16], inverse[16]; /* column-major */
-    double forward;                 /* z of the caller's view space times it grows away from the eye */
+    double forward; /* z of the caller's view space times it grows away from the eye */
     bool orthographic;
     double viewport[4]; /* x, y, width, height in texels */
     VkRect2D valid, rect;
@@ -37,7 +37,8 @@ void ref_view_position(const struct ref_view *view, double x, double y, double z
 void ref_view_project(const struct ref_view *view, const double p[3], double out[2]);
 /* Unit vector to the eye. */
 void ref_view_eye(const struct ref_view *view, const double p[3], double out[3]);
-/* How far a view z may be off because of the steps of the depth format and single-precision arithmetic. */
+/* How far a view z may be off because of the steps of the depth format and single-precision
+ * arithmetic. */
 double ref_view_depth_error(const struct ref_view *view, double z);
 
 /* normals: components of the stored image, 4 a texel, or NULL. ref_scene_free frees. */
@@ -46,7 +47,8 @@ void ref_scene_init(struct ref_scene *scene, const vkao_view *view, uint32_t wid
 void ref_scene_free(struct ref_scene *scene);
 /* View z of a texel, NAN if there is none. */
 double ref_scene_z(const struct ref_scene *scene, int x, int y);
-/* The scene at the texel nearest to where p projects. False if p is behind the eye or nothing is known there. */
+/* The scene at the texel nearest to where p projects. False if p is behind the eye or nothing is
+ * known there. */
 bool ref_scene_lookup(const struct ref_scene *scene, const double p[3], double occluder[3]);
 
 #endif

@@ -11,8 +11,8 @@
 
 struct fixture fixture;
 
-/* LeakSanitizer cannot name, nor suppress, leaks of a library that is gone at exit: what the loader unloads with the
- * instance is kept mapped. A library that is not there needs no keeping. */
+/* LeakSanitizer cannot name, nor suppress, leaks of a library that is gone at exit: what the loader
+ * unloads with the instance is kept mapped. A library that is not there needs no keeping. */
 static void keep_loaded(void)
 {
     static const char *const libraries[] = {"libvulkan_lvp.so", "libVkLayer_khronos_validation.so"};
@@ -23,8 +23,9 @@ static void keep_loaded(void)
     }
 }
 
-/* The layers of 1.3.239 never let go of what queue-submit validation knows of a submit: objects that hold each other.
- * A Vulkan object that a test forgets is not hidden by this: the layers report it when the device is destroyed. */
+/* The layers of 1.3.239 never let go of what queue-submit validation knows of a submit: objects
+ * that hold each other. A Vulkan object that a test forgets is not hidden by this: the layers
+ * report it when the device is destroyed. */
 const char *__lsan_default_suppressions(void);
 const char *__lsan_default_suppressions(void)
 {
@@ -54,7 +55,8 @@ int fixture_close(void **state)
     gpu_destroy(&fixture.gpu);
     /* Objects that outlive their device are reported as it goes. */
     if (fixture.gpu.validation_messages)
-        print_error("%u validation messages at device destruction\n", fixture.gpu.validation_messages);
+        print_error("%u validation messages at device destruction\n",
+                    fixture.gpu.validation_messages);
     return fixture.gpu.validation_messages ? -1 : 0;
 }
 
@@ -89,11 +91,14 @@ VkDeviceMemory fixture_allocate(const VkMemoryRequirements *requirements, VkDevi
         if (!(requirements->memoryTypeBits >> i & 1u) ||
             !(memory->memoryTypes[i].propertyFlags & VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT))
             continue;
-        assert_int_equal(vkAllocateMemory(fixture.gpu.device, &(VkMemoryAllocateInfo){
-            .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-            .allocationSize = size,
-            .memoryTypeIndex = i,
-        }, NULL, &out), VK_SUCCESS);
+        assert_int_equal(vkAllocateMemory(fixture.gpu.device,
+                                          &(VkMemoryAllocateInfo){
+                                              .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                              .allocationSize = size,
+                                              .memoryTypeIndex = i,
+                                          },
+                                          NULL, &out),
+                         VK_SUCCESS);
         return out;
     }
     fail_msg("no device-local memory type among 0x%x", requirements->memoryTypeBits);

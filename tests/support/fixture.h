@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What GPU tests stand on: a device with core, synchronization and queue-submit validation, whose silence every test
- * ends with; and pictures, which are images in doubles with the parameters to run them by. */
+ * What GPU tests stand on: a device with core, synchronization and queue-submit validation, whose
+ * silence every test ends with; and pictures, which are images in doubles with the parameters to
+ * run them by. */
 #ifndef VKAO_TESTS_FIXTURE_H_
 #define VKAO_TESTS_FIXTURE_H_
 
@@ -27,7 +28,8 @@ struct fixture {
 };
 extern struct fixture fixture;
 
-/* False if there is no device or no validation layer here. VKAO_TEST_DEVICE chooses the device as --device does. */
+/* False if there is no device or no validation layer here. VKAO_TEST_DEVICE chooses the device as
+ * --device does. */
 bool fixture_open(void);
 int fixture_close(void **state);
 /* Fails the test that has just run if the validation layers said anything. */
@@ -40,19 +42,30 @@ int fixture_after_test(void **state);
 
 /* Fails the test with the tool's error if ok is false. */
 void check(bool ok);
-#define check_vkao(call) assert_string_equal(vkao_result_string(call), vkao_result_string(VKAO_SUCCESS))
+#define check_vkao(call)                                                                           \
+    assert_string_equal(vkao_result_string(call), vkao_result_string(VKAO_SUCCESS))
 
 /* Zeroed; fails the test when there is no memory. */
 void *test_alloc(size_t count, size_t size);
 VkDeviceMemory fixture_allocate(const VkMemoryRequirements *requirements, VkDeviceSize size);
 
-enum picture_slot { SLOT_DEPTH, SLOT_NORMALS, SLOT_NOISY, SLOT_AO, SLOT_COLOR, SLOT_DIRECT, SLOT_OUTPUT, SLOT_COUNT };
+enum picture_slot {
+    SLOT_DEPTH,
+    SLOT_NORMALS,
+    SLOT_NOISY,
+    SLOT_AO,
+    SLOT_COLOR,
+    SLOT_DIRECT,
+    SLOT_OUTPUT,
+    SLOT_COUNT
+};
 
 struct picture {
     uint32_t width, height;
     vkao_stage_flags stages;
     VkFormat formats[SLOT_COUNT];  /* UNDEFINED = slot not used */
-    double *values[SLOT_COUNT];    /* as the image holds them: depth, ao_noisy, ao 1 a texel, the others 4 */
+    double *values[SLOT_COUNT];    /* as the image holds them: depth, ao_noisy, ao 1 a texel, the
+                                      others 4 */
     bool output_is_color;          /* composite in place */
     VkDeviceMemory scratch_memory; /* null = the library's own */
     VkDeviceSize scratch_offset;
@@ -78,17 +91,18 @@ size_t picture_texels(const struct picture *p);
 void picture_set(struct picture *p, enum picture_slot slot, VkFormat format, const double *values);
 /* Every texel and channel of the slot. */
 void picture_fill(struct picture *p, enum picture_slot slot, VkFormat format, double value);
-/* Renders the scene into the depth slot (as view.depth_encoding) and, if a format is given, the normals slot (as
- * view.normal_encoding), and sets the projection. */
-void picture_render_scene(struct picture *p, const struct scene *scene, const struct lens *lens, VkFormat depth_format,
-                          VkFormat normals_format);
+/* Renders the scene into the depth slot (as view.depth_encoding) and, if a format is given, the
+ * normals slot (as view.normal_encoding), and sets the projection. */
+void picture_render_scene(struct picture *p, const struct scene *scene, const struct lens *lens,
+                          VkFormat depth_format, VkFormat normals_format);
 
-/* 80x60, SSAO and whatever else is asked for, the scene from a right-handed perspective camera as view z in R32F, given
- * normals in RGBA32F, AO in R32F. */
+/* 80x60, SSAO and whatever else is asked for, the scene from a right-handed perspective camera as
+ * view z in R32F, given normals in RGBA32F, AO in R32F. */
 void picture_make(struct picture *p, vkao_stage_flags stages, const struct scene *scene);
 
 void picture_open(const struct picture *p, struct picture_gpu *g);
-void picture_frame_info(const struct picture *p, const struct picture_gpu *g, vkao_frame_info *info);
+void picture_frame_info(const struct picture *p, const struct picture_gpu *g,
+                        vkao_frame_info *info);
 void picture_record(const struct picture *p, const struct picture_gpu *g, VkCommandBuffer cmd);
 /* Replaces the values of the slots that the stages write. */
 void picture_download(struct picture *p, struct picture_gpu *g);
@@ -102,8 +116,10 @@ struct difference {
     double max, mean, p99;
 };
 struct difference difference_of(const double *a, const double *b, size_t count);
-/* Prints the three figures and fails if one of the two exceeds its limit; NaN is never equal to anything. */
-void check_close(const char *what, const double *a, const double *b, size_t count, double mean, double p99);
+/* Prints the three figures and fails if one of the two exceeds its limit; NaN is never equal to
+ * anything. */
+void check_close(const char *what, const double *a, const double *b, size_t count, double mean,
+                 double p99);
 /* Bit for bit, NaN never. */
 void check_equal(const char *what, const double *a, const double *b, size_t count);
 double mean_of(const double *v, size_t count);

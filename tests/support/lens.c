@@ -6,15 +6,18 @@
 
 struct lens lens_perspective(double half_width, double half_height)
 {
-    return (struct lens){false, -half_width, half_width, -half_height, half_height, 0.1, 100.0, false, -1.0};
+    return (struct lens){false, -half_width, half_width, -half_height, half_height,
+                         0.1,   100.0,       false,      -1.0};
 }
 
 struct lens lens_orthographic(double half_width, double half_height)
 {
-    return (struct lens){true, -half_width, half_width, -half_height, half_height, 0.1, 100.0, false, -1.0};
+    return (struct lens){true, -half_width, half_width, -half_height, half_height,
+                         0.1,  100.0,       false,      -1.0};
 }
 
-/* Device depth is a + b / z in perspective, a + b z in orthographic views: 0 and 1 at the two planes. */
+/* Device depth is a + b / z in perspective, a + b z in orthographic views: 0 and 1 at the two
+ * planes. */
 static void depth_terms(const struct lens *lens, double *a, double *b)
 {
     double n = lens->reversed ? lens->far : lens->near, f = lens->reversed ? lens->near : lens->far;
@@ -59,7 +62,8 @@ void lens_matrix(const struct lens *lens, float matrix[16])
         matrix[i] = (float)m[i];
 }
 
-double lens_encode(const struct lens *lens, vkao_depth_encoding encoding, double x, double y, double z)
+double lens_encode(const struct lens *lens, vkao_depth_encoding encoding, double x, double y,
+                   double z)
 {
     double a, b;
     double ray_x = lens->x0 + (lens->x1 - lens->x0) * (x + 1.0) / 2.0;

@@ -10,10 +10,11 @@
 
 struct lens {
     bool orthographic;
-    /* View-space x and y at NDC -1 and +1: at distance 1 in perspective, anywhere in orthographic views. Unequal sizes
-     * are off-centre, y0 > y1 has y up, a fraction of a texel is a jitter. */
+    /* View-space x and y at NDC -1 and +1: at distance 1 in perspective, anywhere in orthographic
+     * views. Unequal sizes are off-centre, y0 > y1 has y up, a fraction of a texel is a jitter. */
     double x0, x1, y0, y1;
-    double near, far; /* far may be INFINITY in perspective; near may be negative in orthographic views */
+    double near,
+        far; /* far may be INFINITY in perspective; near may be negative in orthographic views */
     bool reversed;
     double forward; /* -1: the camera looks down -z (right-handed), +1: up z */
 };
@@ -23,6 +24,7 @@ struct lens lens_perspective(double half_width, double half_height);
 struct lens lens_orthographic(double half_width, double half_height);
 void lens_matrix(const struct lens *lens, float matrix[16]);
 /* What the depth image holds for view z (positive, INFINITY = background) at NDC position x, y. */
-double lens_encode(const struct lens *lens, vkao_depth_encoding encoding, double x, double y, double z);
+double lens_encode(const struct lens *lens, vkao_depth_encoding encoding, double x, double y,
+                   double z);
 
 #endif

@@ -92,16 +92,18 @@ static VkRect2D lens_viewport(const struct picture *p)
     return p->view.valid.extent.width ? p->view.valid : (VkRect2D){{0, 0}, {p->width, p->height}};
 }
 
-void picture_render_scene(struct picture *p, const struct scene *scene, const struct lens *lens, VkFormat depth_format,
-                          VkFormat normals_format)
+void picture_render_scene(struct picture *p, const struct scene *scene, const struct lens *lens,
+                          VkFormat depth_format, VkFormat normals_format)
 {
     size_t texels = picture_texels(p);
     double *z = test_alloc(texels, sizeof *z), *normals = test_alloc(texels * 4, sizeof *normals);
     VkRect2D viewport = lens_viewport(p);
     scene_render(scene, lens, viewport, p->width, p->height, z, normals);
     for (size_t i = 0; i < texels; ++i) {
-        double x = ((double)(i % p->width) + 0.5 - viewport.offset.x) / viewport.extent.width * 2.0 - 1.0;
-        double y = ((double)(i / p->width) + 0.5 - viewport.offset.y) / viewport.extent.height * 2.0 - 1.0;
+        double x =
+            ((double)(i % p->width) + 0.5 - viewport.offset.x) / viewport.extent.width * 2.0 - 1.0;
+        double y =
+            ((double)(i / p->width) + 0.5 - viewport.offset.y) / viewport.extent.height * 2.0 - 1.0;
         z[i] = lens_encode(lens, p->view.depth_encoding, x, y, z[i]);
         double normal[3] = {normals[i * 4], normals[i * 4 + 1], normals[i * 4 + 2]};
         ref_normal_encode(p->view.normal_encoding, normal, &normals[i * 4]);
@@ -128,8 +130,8 @@ static bool is_written(const struct picture *p, enum picture_slot slot)
 {
     bool makes_ao = p->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
     bool makes_noisy = (p->stages & VKAO_STAGE_SSAO) && (p->stages & VKAO_STAGE_BLUR);
-    return slot == SLOT_OUTPUT || (slot == SLOT_AO && makes_ao) || (slot == SLOT_NOISY && makes_noisy) ||
-           (slot == SLOT_COLOR && p->output_is_color);
+    return slot == SLOT_OUTPUT || (slot == SLOT_AO && makes_ao) ||
+           (slot == SLOT_NOISY && makes_noisy) || (slot == SLOT_COLOR && p->output_is_color);
 }
 
 static void open_slot(const struct picture *p, enum picture_slot slot, struct gpu_image *image)
@@ -137,8 +139,8 @@ static void open_slot(const struct picture *p, enum picture_slot slot, struct gp
     size_t bytes;
     VkImageUsageFlags usage = slot == SLOT_OUTPUT ? 0u : VK_IMAGE_USAGE_SAMPLED_BIT;
     usage |= is_written(p, slot) ? VK_IMAGE_USAGE_STORAGE_BIT : 0u;
-    check(gpu_image_create(&fixture.gpu, p->formats[slot], (VkExtent2D){p->width, p->height}, usage, image,
-                           &fixture.error));
+    check(gpu_image_create(&fixture.gpu, p->formats[slot], (VkExtent2D){p->width, p->height}, usage,
+                           image, &fixture.error));
     void *data = slot_encode(p, slot, &bytes);
     check(gpu_image_upload(&fixture.gpu, image, data, bytes, &fixture.error));
     free(data);
@@ -161,8 +163,9 @@ void picture_open(const struct picture *p, struct picture_gpu *g)
     vkao_frame_info info;
     *g = (struct picture_gpu){.slots = vkao_images_default()};
     vkao_image *const slots[SLOT_COUNT] = {
-        [SLOT_DEPTH] = &g->slots.depth,   [SLOT_NORMALS] = &g->slots.normals, [SLOT_NOISY] = &g->slots.ao_noisy,
-        [SLOT_AO] = &g->slots.ao,         [SLOT_COLOR] = &g->slots.color,     [SLOT_DIRECT] = &g->slots.direct,
+        [SLOT_DEPTH] = &g->slots.depth,    [SLOT_NORMALS] = &g->slots.normals,
+        [SLOT_NOISY] = &g->slots.ao_noisy, [SLOT_AO] = &g->slots.ao,
+        [SLOT_COLOR] = &g->slots.color,    [SLOT_DIRECT] = &g->slots.direct,
         [SLOT_OUTPUT] = &g->slots.output,
     };
     for (int i = 0; i < SLOT_COUNT; ++i) {
@@ -220,6 +223,6 @@ void picture_run(struct picture *p)
 void picture_reference_scene(const struct picture *p, struct ref_scene *scene)
 {
     bool stored = p->view.normal_encoding != VKAO_NORMALS_FROM_DEPTH;
-    ref_scene_init(scene, &p->view, p->width, p->height, p->formats[SLOT_DEPTH], p->values[SLOT_DEPTH],
-                   stored ? p->values[SLOT_NORMALS] : NULL);
+    ref_scene_init(scene, &p->view, p->width, p->height, p->formats[SLOT_DEPTH],
+                   p->values[SLOT_DEPTH], stored ? p->values[SLOT_NORMALS] : NULL);
 }

@@ -93,7 +93,8 @@ static uint32_t get(const unsigned char *bytes, uint32_t count)
 
 static uint32_t encode_component(const struct pixel_format *f, double v)
 {
-    double unorm_max = ldexp(1.0, (int)f->bytes * 8) - 1.0, snorm_max = ldexp(1.0, (int)f->bytes * 8 - 1) - 1.0;
+    double unorm_max = ldexp(1.0, (int)f->bytes * 8) - 1.0,
+           snorm_max = ldexp(1.0, (int)f->bytes * 8 - 1) - 1.0;
     float single = (float)v;
     uint32_t word;
     switch (f->kind) {
@@ -111,7 +112,8 @@ static uint32_t encode_component(const struct pixel_format *f, double v)
 
 static double decode_component(const struct pixel_format *f, uint32_t word)
 {
-    double unorm_max = ldexp(1.0, (int)f->bytes * 8) - 1.0, snorm_max = ldexp(1.0, (int)f->bytes * 8 - 1) - 1.0;
+    double unorm_max = ldexp(1.0, (int)f->bytes * 8) - 1.0,
+           snorm_max = ldexp(1.0, (int)f->bytes * 8 - 1) - 1.0;
     float single;
     switch (f->kind) {
     case UNORM:

@@ -11,7 +11,8 @@ struct scene scene_tilted_plane(double degrees, double azimuth)
 {
     double s = sin(degrees * degree);
     return (struct scene){{
-        {SHAPE_PLANE, {0.0, 0.0, 4.0},
+        {SHAPE_PLANE,
+         {0.0, 0.0, 4.0},
          {s * cos(azimuth * degree), s * sin(azimuth * degree), -cos(degrees * degree)}},
     }};
 }
@@ -57,7 +58,8 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-static double hit_box(const struct shape *shape, const double origin[3], const double ray[3], double normal[3])
+static double hit_box(const struct shape *shape, const double origin[3], const double ray[3],
+                      double normal[3])
 {
     double enter = -INFINITY, leave = INFINITY;
     int side = 0;
@@ -77,9 +79,11 @@ static double hit_box(const struct shape *shape, const double origin[3], const d
 }
 
 /* Ray parameter of the first hit, INFINITY for none. */
-static double hit(const struct shape *shape, const double origin[3], const double ray[3], double normal[3])
+static double hit(const struct shape *shape, const double origin[3], const double ray[3],
+                  double normal[3])
 {
-    double v[3] = {shape->center[0] - origin[0], shape->center[1] - origin[1], shape->center[2] - origin[2]};
+    double v[3] = {shape->center[0] - origin[0], shape->center[1] - origin[1],
+                   shape->center[2] - origin[2]};
     if (shape->kind == SHAPE_BOX)
         return hit_box(shape, origin, ray, normal);
     if (shape->kind == SHAPE_PLANE) {
@@ -96,13 +100,15 @@ static double hit(const struct shape *shape, const double origin[3], const doubl
     return t;
 }
 
-static double cast(const struct scene *scene, const struct lens *lens, double x, double y, double normal[3])
+static double cast(const struct scene *scene, const struct lens *lens, double x, double y,
+                   double normal[3])
 {
     const double axis[3] = {0.0, 0.0, 1.0};
     double at[3] = {lens->x0 + (lens->x1 - lens->x0) * (x + 1.0) / 2.0,
                     lens->y0 + (lens->y1 - lens->y0) * (y + 1.0) / 2.0, 0.0};
     const double ray[3] = {at[0], at[1], 1.0}, eye[3] = {0.0, 0.0, 0.0};
-    const double *origin = lens->orthographic ? at : eye, *direction = lens->orthographic ? axis : ray;
+    const double *origin = lens->orthographic ? at : eye,
+                 *direction = lens->orthographic ? axis : ray;
     double nearest = INFINITY, n[3] = {0.0, 0.0, -1.0};
     for (int i = 0; i < SCENE_SHAPES && scene->shapes[i].kind != SHAPE_NONE; ++i) {
         double candidate[3], t = hit(&scene->shapes[i], origin, direction, candidate);
@@ -118,8 +124,8 @@ static double cast(const struct scene *scene, const struct lens *lens, double x,
     return nearest;
 }
 
-void scene_render(const struct scene *scene, const struct lens *lens, VkRect2D viewport, uint32_t width,
-                  uint32_t height, double *z, double *normals)
+void scene_render(const struct scene *scene, const struct lens *lens, VkRect2D viewport,
+                  uint32_t width, uint32_t height, double *z, double *normals)
 {
     for (uint32_t row = 0; row < height; ++row) {
         for (uint32_t column = 0; column < width; ++column) {

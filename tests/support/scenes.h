@@ -31,9 +31,10 @@ struct scene scene_steps(void);
 /* A sphere and a box before nothing. */
 struct scene scene_open_sky(void);
 
-/* Ray cast into width * height texels, rows from the top; the lens spans the viewport. z is view z, INFINITY for
- * background; normals are 4 a texel in the lens' view space (z by its hand), facing the eye. */
-void scene_render(const struct scene *scene, const struct lens *lens, VkRect2D viewport, uint32_t width,
-                  uint32_t height, double *z, double *normals);
+/* Ray cast into width * height texels, rows from the top; the lens spans the viewport. z is view z,
+ * INFINITY for background; normals are 4 a texel in the lens' view space (z by its hand), facing
+ * the eye. */
+void scene_render(const struct scene *scene, const struct lens *lens, VkRect2D viewport,
+                  uint32_t width, uint32_t height, double *z, double *normals);
 
 #endif

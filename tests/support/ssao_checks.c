@@ -35,7 +35,8 @@ void check_every_normal_encoding(const vkao_ssao_params *params, ssao_reference 
         {"normals xyz RGBA16F", VKAO_NORMALS_XYZ_SNORM, VK_FORMAT_R16G16B16A16_SFLOAT},
         {"normals xyz RGBA8_SNORM", VKAO_NORMALS_XYZ_SNORM, VK_FORMAT_R8G8B8A8_SNORM},
         {"normals xyz RGBA8_UNORM", VKAO_NORMALS_XYZ_UNORM, VK_FORMAT_R8G8B8A8_UNORM},
-        {"normals xyz A2B10G10R10_UNORM", VKAO_NORMALS_XYZ_UNORM, VK_FORMAT_A2B10G10R10_UNORM_PACK32},
+        {"normals xyz A2B10G10R10_UNORM", VKAO_NORMALS_XYZ_UNORM,
+         VK_FORMAT_A2B10G10R10_UNORM_PACK32},
         {"normals octahedral RG16_SNORM", VKAO_NORMALS_OCT_SNORM, VK_FORMAT_R16G16_SNORM},
         {"normals octahedral RG16F", VKAO_NORMALS_OCT_SNORM, VK_FORMAT_R16G16_SFLOAT},
         {"normals octahedral RG16_UNORM", VKAO_NORMALS_OCT_UNORM, VK_FORMAT_R16G16_UNORM},
@@ -60,8 +61,9 @@ void check_every_normal_encoding(const vkao_ssao_params *params, ssao_reference 
 void check_world_space_normals(const vkao_ssao_params *params, ssao_reference *reference)
 {
     /* Columns of an orthonormal matrix that is neither symmetric nor close to the identity. */
-    static const double columns[3][3] = {
-        {2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0}, {2.0 / 3.0, 2.0 / 3.0, -1.0 / 3.0}, {-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0}};
+    static const double columns[3][3] = {{2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0},
+                                         {2.0 / 3.0, 2.0 / 3.0, -1.0 / 3.0},
+                                         {-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0}};
     struct picture p, turned;
     const struct scene scene = scene_corner();
     picture_make(&p, VKAO_STAGE_SSAO, &scene);
@@ -97,7 +99,8 @@ void check_every_projection(const vkao_ssao_params *params, ssao_reference *refe
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
         struct picture p;
         const struct scene scene = scene_corner();
-        struct lens lens = rows[i].orthographic ? lens_orthographic(1.6, 1.2) : lens_perspective(0.6, 0.45);
+        struct lens lens =
+            rows[i].orthographic ? lens_orthographic(1.6, 1.2) : lens_perspective(0.6, 0.45);
         lens.x0 += rows[i].shift;
         lens.x1 += rows[i].shift;
         lens.reversed = rows[i].reversed;
@@ -109,7 +112,8 @@ void check_every_projection(const vkao_ssao_params *params, ssao_reference *refe
         }
         picture_make(&p, VKAO_STAGE_SSAO, &scene);
         p.ssao = *params;
-        picture_render_scene(&p, &scene, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+        picture_render_scene(&p, &scene, &lens, VK_FORMAT_R32_SFLOAT,
+                             VK_FORMAT_R32G32B32A32_SFLOAT);
         check_ssao(&p, reference, rows[i].name);
         picture_free(&p);
     }
@@ -117,8 +121,11 @@ void check_every_projection(const vkao_ssao_params *params, ssao_reference *refe
 
 void check_bad_normals_are_replaced(const vkao_ssao_params *params)
 {
-    static const double bad[][3] = {
-        {0.0, 0.0, 0.0}, {0.2, 0.2, -0.2}, {(double)NAN, 0.0, 1.0}, {0.0, (double)INFINITY, 0.0}, {0.0, 0.0, -1e30}};
+    static const double bad[][3] = {{0.0, 0.0, 0.0},
+                                    {0.2, 0.2, -0.2},
+                                    {(double)NAN, 0.0, 1.0},
+                                    {0.0, (double)INFINITY, 0.0},
+                                    {0.0, 0.0, -1e30}};
     struct picture p, from_depth;
     const struct scene scene = scene_corner();
     picture_make(&from_depth, VKAO_STAGE_SSAO, &scene);
@@ -131,7 +138,8 @@ void check_bad_normals_are_replaced(const vkao_ssao_params *params)
         for (size_t i = 0; i < picture_texels(&p) * 4; ++i)
             p.values[SLOT_NORMALS][i] = i % 4 < 3 ? bad[row][i % 4] : 0.0;
         picture_run(&p);
-        check_equal("bad normals", p.values[SLOT_AO], from_depth.values[SLOT_AO], picture_texels(&p));
+        check_equal("bad normals", p.values[SLOT_AO], from_depth.values[SLOT_AO],
+                    picture_texels(&p));
         picture_free(&p);
     }
     picture_free(&from_depth);
@@ -154,7 +162,8 @@ void check_no_nan_at_the_limits(const vkao_ssao_params *params)
         for (size_t texel = 0; texel < picture_texels(&p); ++texel) {
             double ao = p.values[SLOT_AO][texel];
             if (!(ao >= 0.0 && ao <= 1.0))
-                fail_msg("%ux%u, radius %g: texel %zu is %g", p.width, p.height, (double)p.ssao.radius, texel, ao);
+                fail_msg("%ux%u, radius %g: texel %zu is %g", p.width, p.height,
+                         (double)p.ssao.radius, texel, ao);
         }
         picture_free(&p);
     }

@@ -6,10 +6,11 @@
 
 #include "fixture.h"
 
-typedef void ssao_reference(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao);
+typedef void ssao_reference(const struct ref_scene *scene, const vkao_ssao_params *params,
+                            double *ao);
 
-/* Single and double precision disagree about a few samples at the edge of blocking, each worth up to 2/n of a texel:
- * the tolerance is 1e-4 in the mean and 1e-3 in the 99th percentile. */
+/* Single and double precision disagree about a few samples at the edge of blocking, each worth up
+ * to 2/n of a texel: the tolerance is 1e-4 in the mean and 1e-3 in the 99th percentile. */
 void check_ssao(struct picture *p, ssao_reference *reference, const char *what);
 /* Every format and encoding that normals come in, and from depth. */
 void check_every_normal_encoding(const vkao_ssao_params *params, ssao_reference *reference);
@@ -19,7 +20,8 @@ void check_world_space_normals(const vkao_ssao_params *params, ssao_reference *r
 void check_every_projection(const vkao_ssao_params *params, ssao_reference *reference);
 /* Zero, short, infinite and NaN normals are replaced by those from depth, bit for bit. */
 void check_bad_normals_are_replaced(const vkao_ssao_params *params);
-/* The same scene in a smaller image, a row, a column and one texel, with reaches far beyond the screen: numbers. */
+/* The same scene in a smaller image, a row, a column and one texel, with reaches far beyond the
+ * screen: numbers. */
 void check_no_nan_at_the_limits(const vkao_ssao_params *params);
 
 #endif

@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { NAME_BYTES = 512, STRINGS = 3 };
 
@@ -41,9 +42,42 @@ static void color_part_name(const struct options *o, const struct exr_info *info
         snprintf(name, NAME_BYTES, "%s", base);
 }
 
-bool output_check_names(const struct options *options, const struct frame_source *source,
-                        struct tool_error *err)
+/* 'x.png' becomes 'x.left.png' where there is more than one view. */
+static void preview_path(const char *path, const char *view, size_t view_count, struct text *out)
 {
+    const char *dot = strrchr(path, '.');
+    size_t stem = dot && !strchr(dot, '/') ? (size_t)(dot - path) : strlen(path);
+    if (view_count > 1)
+        text_add(out, "%.*s.%s%s", (int)stem, path, view, path + stem);
+    else
+        text_add(out, "%s", path);
+}
+
+/* The plan checked the path as given; what it becomes for each view is known only now. */
+static bool check_previews(const struct plan_frame *frame, const struct frame_source *source,
+                           struct tool_error *err)
+{
+    for (size_t v = 0; source->view_count > 1 && v < source->view_count; v++) {
+        struct text path = {0};
+        struct stat s;
+        preview_path(frame->preview, source->views[v].name, source->view_count, &path);
+        bool taken = path.data && lstat(path.data, &s) == 0;
+        if (taken) {
+            fail_hint(err, "add --overwrite always");
+            fail(err, EXIT_OUTPUT, "%s: exists, not overwritten", path.data);
+        }
+        text_free(&path);
+        if (taken)
+            return false;
+    }
+    return true;
+}
+
+bool output_check_names(const struct options *options, const struct plan_frame *frame,
+                        const struct frame_source *source, struct tool_error *err)
+{
+    if (frame->preview && !options->overwrite && !check_previews(frame, source, err))
+        return false;
     char name[NAME_BYTES];
     for (size_t v = 0; options->mode == OUTPUT_APPEND && v < source->view_count; v++) {
         ao_part_name(options, source->views[v].name, name);
@@ -165,17 +199,6 @@ static float to_srgb(float linear)
     if (linear >= 1)
         return 1;
     return linear <= 0.0031308f ? linear * 12.92f : 1.055f * powf(linear, 1.0f / 2.4f) - 0.055f;
-}
-
-/* 'x.png' becomes 'x.left.png' where there is more than one view. */
-static void preview_path(const char *path, const char *view, size_t view_count, struct text *out)
-{
-    const char *dot = strrchr(path, '.');
-    size_t stem = dot && !strchr(dot, '/') ? (size_t)(dot - path) : strlen(path);
-    if (view_count > 1)
-        text_add(out, "%.*s.%s%s", (int)stem, path, view, path + stem);
-    else
-        text_add(out, "%s", path);
 }
 
 static bool write_preview(const struct options *o, const char *path,

@@ -19,9 +19,10 @@ struct rendered_view {
     vkao_ssao_params ssao; /* as resolved: radius, bias */
 };
 
-/* Whether the new part's name is free, asked before any work. */
-bool output_check_names(const struct options *options, const struct frame_source *source,
-                        struct tool_error *err);
+/* Whether the names of the new part and of the previews of several views are free, asked before any
+ * work. */
+bool output_check_names(const struct options *options, const struct plan_frame *frame,
+                        const struct frame_source *source, struct tool_error *err);
 /* The EXR file and, if asked for, the PNG. Errors: EXIT_OUTPUT, EXIT_MEMORY. */
 bool output_write(const struct options *options, const struct plan_frame *frame,
                   const struct frame_source *source, const struct rendered_view *views,

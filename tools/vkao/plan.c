@@ -152,12 +152,39 @@ static bool list_frames(const struct options *o, const struct patterns *patterns
     return ok;
 }
 
-static bool same_file(const char *a, const char *b)
+static bool same_inode(const char *a, const char *b)
 {
     struct stat x, y;
-    if (strcmp(a, b) == 0)
-        return true;
     return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
+/* The directory of a path, malloc'ed; NULL if memory runs out. */
+static char *directory_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash)
+        return text_copy(".", 1);
+    return text_copy(path, slash == path ? 1 : (size_t)(slash - path));
+}
+
+static const char *name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Also for files that are still to be written: the same name in the same directory. */
+static bool same_file(const char *a, const char *b)
+{
+    if (strcmp(a, b) == 0 || same_inode(a, b))
+        return true;
+    if (strcmp(name_of(a), name_of(b)) != 0)
+        return false;
+    char *x = directory_of(a), *y = directory_of(b);
+    bool same = x && y && same_inode(x, y);
+    free(x);
+    free(y);
+    return same;
 }
 
 static bool check_distinct(struct plan_frame *frame, struct tool_error *err)
@@ -180,11 +207,8 @@ static bool check_distinct(struct plan_frame *frame, struct tool_error *err)
 /* Where there is no directory, no AO needs to be computed. */
 static bool check_directory(const char *path, struct tool_error *err)
 {
-    const char *slash = strrchr(path, '/');
     struct stat s;
-    if (!slash || slash == path)
-        return true;
-    char *directory = text_copy(path, (size_t)(slash - path));
+    char *directory = directory_of(path);
     if (!directory)
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     bool ok = stat(directory, &s) == 0 && S_ISDIR(s.st_mode);

@@ -204,7 +204,7 @@ static bool render_frame(struct session *s, const struct plan_frame *frame, stru
     double start = now_ms();
     bool ok = plan_check_outputs(s->options, frame, err) &&
               frame_source_open(s->options, frame->input, frame->camera, &source, err) &&
-              output_check_names(s->options, &source, err);
+              output_check_names(s->options, frame, &source, err);
     times.read = now_ms() - start;
     for (size_t i = 0; ok && i < source.view_count; i++)
         ok = render_view(s, &source, &source.views[i], &views[i], &times, err);
