@@ -132,6 +132,14 @@ static void read_unproject(const struct projection *p, const vkao_view *view, st
     out->reference_z = p->orthographic ? (float)fabs(2.0 / p->x_scale) : 0.0f;
 }
 
+/* The far plane read back from a float matrix is off by up to this much, relative to far / near; what lies that close
+ * to it is background too. */
+static float far_limit(double near, double far)
+{
+    double ratio = near > 0.0 ? far / near : 1.0;
+    return (float)(far * (1.0 - fmin(0.5, 0x1p-22 * ratio)));
+}
+
 /* Device depth to view z. The step of the depth format tells how far z may be off: fixed-point steps are the same
  * everywhere, floating ones shrink towards 0, which is why reversed floating depth is accurate. */
 static void read_depth(const struct projection *p, const vkao_view *view, VkFormat format,
@@ -150,10 +158,11 @@ static void read_depth(const struct projection *p, const vkao_view *view, VkForm
         double shift = near > 0.0 ? 0.0 : 0.001 * (far - near) - near;
         out->linearize[0] = (float)(z0 + shift);
         out->linearize[1] = (float)(z1 - z0);
-        if (view->depth_encoding == VKAO_DEPTH_PROJECTED)
-            out->depth_error[0] += (float)(step * (far - near) / (far + shift));
-        else
-            out->far_z = (float)far;
+        bool projected = view->depth_encoding == VKAO_DEPTH_PROJECTED;
+        out->depth_error[0] = projected ? (float)(step * (far - near)) : 0.0f;
+        out->depth_error[1] = (float)(projected ? rounding : rounding + 2.0 * step);
+        if (!projected)
+            out->far_z = far_limit(near, far);
     } else {
         double add = p->z_z * p->forward, mul = -p->z_1; /* z = mul / (add - depth) */
         double at_one = add == 1.0 ? INFINITY : mul / (add - 1.0), at_zero = add == 0.0 ? INFINITY : mul / add;
@@ -166,11 +175,12 @@ static void read_depth(const struct projection *p, const vkao_view *view, VkForm
             if (!floating || one_is_far)
                 out->depth_error[1] = (float)(step / fabs(mul));
         } else if (isfinite(far) && far > 0.0) {
-            out->far_z = (float)far;
+            out->far_z = far_limit(fmin(at_zero, at_one), far);
         }
+        /* The point and its occluder err by half a step each; a step is up to twice the format's above a power of two. */
+        if (view->depth_encoding != VKAO_DEPTH_PROJECTED || (floating && !one_is_far))
+            out->depth_error[0] += (float)(2.0 * step);
     }
-    if (view->depth_encoding != VKAO_DEPTH_PROJECTED || (floating && out->far_depth < 0.5f))
-        out->depth_error[0] += (float)step;
 }
 
 static vkao_result check_enums(const struct vkao_logger *log, const vkao_view *view)

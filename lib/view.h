@@ -19,7 +19,7 @@ struct view_constants {
     float linearize[2];  /* see vkao_prepare_block */
     float far_depth;     /* device depth of the far plane */
     float far_z;         /* view z of the far plane, FLT_MAX if infinite or not to be tested */
-    float depth_error[2]; /* uncertainty of z: z * ([0] + [1] * z) */
+    float depth_error[2]; /* uncertainty of z: [0] + [1] * z, times z in perspective */
     float normal_rows[3][3]; /* normal_to_view with +z turned away from the eye */
     float reference_z;   /* width of the viewport in scene units if orthographic, else 0 */
     struct vkao_rect valid, rect;

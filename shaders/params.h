@@ -80,7 +80,7 @@ struct vkao_ssao_block {
     VKAO_VEC4(normal_x);
     VKAO_VEC4(normal_y);
     VKAO_VEC4(normal_z);
-    /* uncertainty of a view z of depth z: z * (.x + .y * z) */
+    /* uncertainty of a view z: .x + .y * z, times z in perspective */
     VKAO_VEC2(depth_error);
     VKAO_UINT(normal_encoding);
     VKAO_UINT(orthographic);

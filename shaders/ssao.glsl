@@ -17,7 +17,8 @@ float visibility(ivec2 texel, vec3 position, vec3 normal);
 /* How far a view z may be off through the precision of the depth that it came from. */
 float depth_error(float z)
 {
-    return z * (params.depth_error.x + params.depth_error.y * z);
+    float line = params.depth_error.x + params.depth_error.y * z;
+    return params.orthographic != 0u ? line : z * line;
 }
 
 /* Length of a point of the kernel, u uniform in [0,1). A point at length l is hidden if its ray hits anything within l,

@@ -144,7 +144,7 @@ static const struct {
     {"view z infinity", VIEW_Z, R32, (double)INFINITY, INFINITE},
     {"view z half infinity", VIEW_Z, VK_FORMAT_R16_SFLOAT, (double)INFINITY, INFINITE},
     {"view z -infinity", VIEW_Z, R32, -(double)INFINITY, 0},
-    {"view z past the far plane", VIEW_Z, R32, 100.1, 0},
+    {"view z past the far plane", VIEW_Z, R32, 100.0, 0},
     {"view z 1e10", VIEW_Z, R32, 1e10, 0},
     {"distance infinity", VKAO_DEPTH_DISTANCE, R32, (double)INFINITY, INFINITE},
     {"distance NaN", VKAO_DEPTH_DISTANCE, R32, (double)NAN, 0},

@@ -100,6 +100,31 @@ static void tilted_planes_are_open_without_a_bias(void **state)
     check_tilted_planes(true, true, 0.0f, VK_FORMAT_R32_SFLOAT);
 }
 
+/* The step of half precision just above z = 4 is 4e-3, and the lens is so long that a texel is as small. */
+static void walls_of_half_precision_depth_are_open_without_a_bias(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2 * 4; ++i) {
+        struct picture p;
+        char what[80];
+        struct lens lens = lens_perspective(0.05, 0.0375);
+        struct scene wall = scene_tilted_plane(20.0 * (i / 2), 25.0);
+        wall.shapes[0].center[2] = 4.0;
+        picture_init(&p, 64, 48, VKAO_STAGE_SSAO);
+        p.view.depth_encoding = VKAO_DEPTH_VIEW_Z;
+        p.view.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
+        picture_render_scene(&p, &wall, &lens, VK_FORMAT_R16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+        picture_set(&p, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
+        set_method(&p, &methods[i % 2]);
+        p.ssao.bias = 0.0f;
+        p.ssao.radius = 0.05f;
+        p.ssao.sample_count = 64;
+        snprintf(what, sizeof what, "%s, %g degrees", methods[i % 2].name, 20.0 * (i / 2));
+        check_open(&p, what);
+        picture_free(&p);
+    }
+}
+
 struct convention {
     const char *name;
     bool reversed;
@@ -300,6 +325,7 @@ int main(void)
         gpu_test(tilted_planes_are_open_with_normals_from_depth),
         gpu_test(orthographic_tilted_planes_are_open),
         gpu_test(tilted_planes_are_open_without_a_bias),
+        gpu_test(walls_of_half_precision_depth_are_open_without_a_bias),
         gpu_test(every_perspective_convention_gives_the_same_ao),
         gpu_test(every_orthographic_convention_gives_the_same_ao),
         gpu_test(y_flip_mirrors_the_picture),

@@ -89,20 +89,26 @@ void check_every_projection(const vkao_ssao_params *params, ssao_reference *refe
     static const struct {
         const char *name;
         bool orthographic, reversed, y_up;
-        double forward, shift;
+        double forward, shift, lift;
     } rows[] = {
-        {"perspective, left-handed, y up", false, false, true, 1.0, 0.0},
-        {"perspective, right-handed, off-centre", false, false, false, -1.0, 0.3},
-        {"orthographic, right-handed", true, false, false, -1.0, 0.0},
-        {"orthographic, left-handed, reversed, off-centre", true, true, true, 1.0, 0.5},
+        {"perspective, left-handed, y up", false, false, true, 1.0, 0.0, 0.0},
+        {"perspective, right-handed, off-centre", false, false, false, -1.0, 0.3, 0.0},
+        {"orthographic, right-handed", true, false, false, -1.0, 0.0, 0.0},
+        {"orthographic, left-handed, reversed, off-centre", true, true, true, 1.0, 0.5, 0.0},
+        /* The floor turns its back on the origin, but not on the camera. */
+        {"orthographic, lifted", true, false, false, 1.0, 0.0, -2.5},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
         struct picture p;
-        const struct scene scene = scene_corner();
+        struct scene scene = scene_corner();
         struct lens lens =
             rows[i].orthographic ? lens_orthographic(1.6, 1.2) : lens_perspective(0.6, 0.45);
         lens.x0 += rows[i].shift;
         lens.x1 += rows[i].shift;
+        lens.y0 += rows[i].lift;
+        lens.y1 += rows[i].lift;
+        for (int shape = 0; shape < SCENE_SHAPES; ++shape)
+            scene.shapes[shape].center[1] += rows[i].lift;
         lens.reversed = rows[i].reversed;
         lens.forward = rows[i].forward;
         if (rows[i].y_up) {

@@ -146,8 +146,8 @@ static void bottom_of_a_well(void **state)
     assert_visibility(&well, 1, 100, bore * bore / (bore * bore + depth * depth), NAN);
 }
 
-/* From the axis, a ray whose part along the axis is z meets the vault at t = 1 / sqrt(1 - z^2): those
- * within reach have |z| < c, a strip of the unit disk. */
+/* From the axis, a ray whose part along the axis is z meets the vault at t = 1 / sqrt(1 - z^2):
+ * those within reach have |z| < c, a strip of the unit disk. */
 static void under_a_long_vault(void **state)
 {
     (void)state;
@@ -166,21 +166,6 @@ static void closed_room_has_no_sky(void **state)
     struct trace_primitive room = trace_box(vec3(0.2, 1, -0.3), vec3(2, 1.5, 3));
     assert_visibility(&room, 1, 100, 0.0, NAN);
     assert_visibility(&room, 1, 1.0, 1.0, 1.0);
-}
-
-static void error_falls_faster_than_that_of_random_rays(void **state)
-{
-    (void)state;
-    struct trace_primitive parts[] = {floor_plane(), trace_sphere(vec3(0, 2, 0), 0.8)};
-    struct trace_scene scene = scene_of(parts, 2);
-    double sum = 0;
-    for (uint32_t seed = 0; seed < 64; seed++) {
-        double error = trace_ao(&scene, vec3(0, 0, 0), up, 100, 1024, seed).threshold - 0.84;
-        sum += error * error;
-    }
-    /* Random: sqrt(0.84 * 0.16 / 1024) = 0.0115. */
-    assert_true(sqrt(sum / 64) < 0.004);
-    trace_scene_free(&scene);
 }
 
 /* --- hits --- */
@@ -500,7 +485,6 @@ int main(void)
         cmocka_unit_test(bottom_of_a_well),
         cmocka_unit_test(under_a_long_vault),
         cmocka_unit_test(closed_room_has_no_sky),
-        cmocka_unit_test(error_falls_faster_than_that_of_random_rays),
         cmocka_unit_test(hits_lie_on_the_surface_and_normals_point_out_of_it),
         cmocka_unit_test(nothing_is_passed_on_the_way_to_a_hit),
         cmocka_unit_test(tree_finds_what_a_search_of_all_finds),

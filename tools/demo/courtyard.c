@@ -3,7 +3,7 @@
 
 enum pattern {
     PATTERN_PLAIN,
-    PATTERN_LOCAL, /* colour = local coordinates, as the cubes of the lecture this project grew from */
+    PATTERN_LOCAL, /* colour = local coordinates */
     PATTERN_STONE, /* a shade of its own per block, and blotches */
     PATTERN_PLASTER,
     PATTERN_WOOD, /* streaks along the longest axis */
@@ -100,7 +100,8 @@ static void rod(struct trace_scene *scene, struct vec3 a, struct vec3 b, double 
     put(scene, trace_cylinder(a, b, radius), colour, PATTERN_PLAIN);
 }
 
-/* A wall from low to high with a round-headed opening of the given half width, whose head begins at y = spring. */
+/* A wall from low to high with a round-headed opening of the given half width, whose head begins at
+ * y = spring. */
 static void arch(struct trace_scene *scene, struct vec3 low, struct vec3 high, double spring,
                  double half_width)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The demo's scene: a courtyard with corners, gaps, thin rails and clutter, all that ambient occlusion is good and
- * bad at. Units are metres, +y is up. */
+ * The demo's scene: a courtyard with corners, gaps, thin rails and clutter, all that ambient
+ * occlusion is good and bad at. Units are metres, +y is up. */
 #ifndef VKAO_DEMO_COURTYARD_H_
 #define VKAO_DEMO_COURTYARD_H_
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The light of the demo: a low warm sun with soft edges under a clear sky, all surfaces matt. Radiance is linear
- * Rec. 709, exposed so that sunlit chalk is about 1. */
+ * The light of the demo: a low warm sun with soft edges under a clear sky, all surfaces matt.
+ * Radiance is linear Rec. 709, exposed so that sunlit chalk is about 1. */
 #ifndef VKAO_DEMO_LIGHT_H_
 #define VKAO_DEMO_LIGHT_H_
 
@@ -9,7 +9,7 @@
 #include "trace.h"
 
 enum light_mode {
-    LIGHT_FLAT, /* sun and shadow, and the open sky's light everywhere: what a picture without AO looks like */
+    LIGHT_FLAT, /* sun and shadow, and open sky everywhere: a picture that lacks AO */
     LIGHT_PATH, /* path tracing: what it should look like */
 };
 

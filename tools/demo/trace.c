@@ -6,7 +6,8 @@
 
 /* --- solids as spans of the ray --- */
 
-/* The part of a line inside a convex solid, and the outward normals at its ends. Empty if enter >= exit. */
+/* The part of a line inside a convex solid, and the outward normals at its ends. Empty if enter >=
+ * exit. */
 struct span {
     double enter, exit;
     struct vec3 n_enter, n_exit;
@@ -319,8 +320,9 @@ static void test_primitive(const struct trace_scene *scene, uint32_t index, stru
     }
 }
 
-/* Comparisons instead of fmin(), which must mind NaN and is a call. NaN, 0 * infinity, comes from rays that run
- * in the plane of a face; the boxes have slack, so what they miss there is no primitive's. */
+/* Comparisons instead of fmin(), which must mind NaN and is a call. NaN, 0 * infinity, comes from
+ * rays that run in the plane of a face; the boxes have slack, so what they miss there is no
+ * primitive's. */
 static bool meets(const struct bounds *b, const struct query *q)
 {
     struct vec3 a = mul(sub(b->low, q->origin), q->inverse),

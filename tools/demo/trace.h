@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * An analytic ray tracer in double precision: it draws the demo's G-buffer and gives the tests ambient occlusion
- * whose true value is known. Scenes hold up to a few thousand primitives.
+ * An analytic ray tracer in double precision: it draws the demo's G-buffer and gives the tests
+ * ambient occlusion whose true value is known. Scenes hold up to a few thousand primitives.
  *
  *     struct trace_scene scene = {0};
  *     trace_add(&scene, trace_plane(vec3(0, 0, 0), vec3(0, 1, 0)));
@@ -103,13 +103,14 @@ struct trace_gbuffer {
 void trace_gbuffer(const struct trace_scene *scene, const struct trace_camera *camera, int width,
                    int height, int row, int row_end, const struct trace_gbuffer *out);
 
-/* Ambient visibility, 1 = open: threshold counts any hit nearer than the radius, falloff weighs it 1-(t/R)^2. */
+/* Ambient visibility, 1 = open: threshold counts any hit nearer than the radius, falloff weighs it
+ * 1-(t/R)^2. */
 struct trace_ao {
     double threshold, falloff;
 };
 
-/* At a surface point, cosine-weighted about a unit normal, by `rays` points of the R2 sequence (Roberts 2018)
- * shifted at random by seed. The error is about 0.5 / rays^0.75: 0.003 for 1024. */
+/* At a surface point, cosine-weighted about a unit normal, by `rays` points of the R2 sequence
+ * (Roberts 2018) shifted at random by seed. The error is about 0.5 / rays^0.75: 0.003 for 1024. */
 struct trace_ao trace_ao(const struct trace_scene *scene, struct vec3 position, struct vec3 normal,
                          double radius, int rays, uint32_t seed);
 
@@ -118,7 +119,8 @@ void trace_ao_image(const struct trace_scene *scene, const struct trace_camera *
                     int height, int row, int row_end, double radius, int rays, float *threshold,
                     float *falloff);
 
-/* A well mixed 32-bit hash (Wellons' lowbias32), and the direction of a cosine lobe about n at (u, v). */
+/* A well mixed 32-bit hash (Wellons' lowbias32), and the direction of a cosine lobe about n at (u,
+ * v). */
 uint32_t trace_hash(uint32_t x);
 struct vec3 trace_cosine(struct vec3 n, double u, double v);
 

@@ -14,7 +14,8 @@ struct vec3 trace_camera_eye(const struct trace_camera *camera)
     return scale(mul_transposed(camera->rotation, camera->translation), -1.0);
 }
 
-/* Half the width of the picture: at z = 1 for perspective cameras, everywhere for orthographic ones. */
+/* Half the width of the picture: at z = 1 for perspective cameras, everywhere for orthographic
+ * ones. */
 static double half_width(const struct trace_camera *camera)
 {
     return camera->orthographic ? 0.5 * camera->ortho_width : tan(camera->fov_x_deg * (PI / 360.0));

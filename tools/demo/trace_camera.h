@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The camera of the command line tool's --camera JSON: view space has +x right, +y up and looks along -z. */
+ * The camera of the command line tool's --camera JSON: view space has +x right, +y up and looks
+ * along -z. */
 #ifndef VKAO_DEMO_TRACE_CAMERA_H_
 #define VKAO_DEMO_TRACE_CAMERA_H_
 
@@ -31,8 +32,9 @@ struct vec3 trace_camera_eye(const struct trace_camera *camera);
 struct trace_ray trace_camera_ray(const struct trace_camera *camera, double x, double y, int width,
                                   int height);
 
-/* Row by row as OpenEXR stores them, for row vectors p * M. worldToCamera is left-handed and looks along +z;
- * worldToNDC has (0,0) in the upper left corner of the display window and (1,1) in the lower right. */
+/* Row by row as OpenEXR stores them, for row vectors p * M. worldToCamera is left-handed and looks
+ * along +z; worldToNDC has (0,0) in the upper left corner of the display window and (1,1) in the
+ * lower right. */
 void trace_camera_exr_matrices(const struct trace_camera *camera, int width, int height,
                                float world_to_camera[16], float world_to_ndc[16]);
 

@@ -20,7 +20,8 @@ struct vec3 trace_cosine(struct vec3 n, double u, double v)
     return mul_transposed(frame, vec3(r * cos(phi), sqrt(fmax(0.0, 1.0 - u)), r * sin(phi)));
 }
 
-/* How far a ray starts off the surface it leaves: beyond the rounding of the position, far below any detail. */
+/* How far a ray starts off the surface it leaves: beyond the rounding of the position, far below
+ * any detail. */
 static double lift(struct vec3 position)
 {
     return 1e-9 * (1.0 + length(position));

@@ -87,8 +87,8 @@ static inline struct mat3 mat3_identity(void)
     return (struct mat3){{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 }
 
-/* The frame whose y axis is the unit vector y; x and z are any that complete it. Continuous except at y = -z:
- * Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017. */
+/* The frame whose y axis is the unit vector y; x and z are any that complete it. Continuous except
+ * at y = -z: Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017. */
 static inline struct mat3 mat3_around(struct vec3 y)
 {
     double sign = copysign(1.0, y.z);
@@ -98,7 +98,8 @@ static inline struct mat3 mat3_around(struct vec3 y)
     return (struct mat3){t, y, cross(t, y)};
 }
 
-/* Object axes turned by yaw about +y, then by pitch about the object's x, then by roll about its z; radians. */
+/* Object axes turned by yaw about +y, then by pitch about the object's x, then by roll about its z;
+ * radians. */
 static inline struct mat3 mat3_turned(double yaw, double pitch, double roll)
 {
     double cy = cos(yaw), sy = sin(yaw), cp = cos(pitch), sp = sin(pitch);
