@@ -9,7 +9,19 @@ struct slot {
     enum slot_use use;
 };
 
-enum slot_index { DEPTH, NORMALS, AO_NOISY, AO, COLOR, DIRECT, OUTPUT, SLOT_COUNT };
+enum slot_index {
+    DEPTH,
+    NORMALS,
+    AO_NOISY,
+    AO,
+    COLOR,
+    DIRECT,
+    OUTPUT,
+    BENT_NORMALS,
+    ALBEDO,
+    SPECULAR,
+    SLOT_COUNT
+};
 
 static const struct slot slots[SLOT_COUNT] = {
     [DEPTH] = {"images.depth", offsetof(vkao_images, depth), SLOT_DEPTH},
@@ -19,6 +31,9 @@ static const struct slot slots[SLOT_COUNT] = {
     [COLOR] = {"images.color", offsetof(vkao_images, color), SLOT_COLOR},
     [DIRECT] = {"images.direct", offsetof(vkao_images, direct), SLOT_COLOR},
     [OUTPUT] = {"images.output", offsetof(vkao_images, output), SLOT_OUTPUT},
+    [BENT_NORMALS] = {"images.bent_normals", offsetof(vkao_images, bent_normals), SLOT_NORMALS},
+    [ALBEDO] = {"images.albedo", offsetof(vkao_images, albedo), SLOT_COLOR},
+    [SPECULAR] = {"images.specular", offsetof(vkao_images, specular), SLOT_COLOR},
 };
 
 static const vkao_image *slot_image(const vkao_images *images, enum slot_index i)
@@ -36,12 +51,15 @@ static void slot_accesses(vkao_stage_flags stages, struct slot_access out[SLOT_C
     const bool ssao = stages & VKAO_STAGE_SSAO, blur = stages & VKAO_STAGE_BLUR;
     const bool composite = stages & VKAO_STAGE_COMPOSITE, makes_ao = ssao || blur;
     out[DEPTH] = (struct slot_access){makes_ao, makes_ao, false};
-    out[NORMALS] = (struct slot_access){false, makes_ao, false};
+    out[NORMALS] = (struct slot_access){false, makes_ao || composite, false};
     out[AO_NOISY] = (struct slot_access){blur && !ssao, blur, ssao && blur};
     out[AO] = (struct slot_access){!composite || !makes_ao, composite, makes_ao};
     out[COLOR] = (struct slot_access){false, composite, false};
     out[DIRECT] = (struct slot_access){false, composite, false};
     out[OUTPUT] = (struct slot_access){composite, false, composite};
+    out[BENT_NORMALS] = (struct slot_access){false, composite, blur};
+    out[ALBEDO] = (struct slot_access){false, composite, false};
+    out[SPECULAR] = (struct slot_access){false, composite, false};
 }
 
 static bool format_fits(enum slot_use use, VkFormat format)
@@ -73,40 +91,49 @@ static bool read_layout(VkImageLayout layout)
     return false;
 }
 
-static vkao_result check_slot(const vkao_context *ctx, const struct slot *slot, const vkao_image *image,
-                              struct slot_access access)
+static vkao_result check_slot(const vkao_context *ctx, const struct slot *slot,
+                              const vkao_image *image, struct slot_access access)
 {
     if (image->format == VK_FORMAT_UNDEFINED) {
         if (image->view)
-            return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s has a view but no format", slot->name);
+            return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                               "%s has a view but no format", slot->name);
         if (access.required)
-            return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s is required by frame.stages", slot->name);
+            return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                               "%s is required by frame.stages", slot->name);
         return VKAO_SUCCESS;
     }
     if (!format_fits(slot->use, image->format))
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s.format is VkFormat %d, which cannot hold it",
-                           slot->name, (int)image->format);
-    if (access.written ? image->layout != VK_IMAGE_LAYOUT_GENERAL : access.read && !read_layout(image->layout))
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s.layout is VkImageLayout %d, want %s",
-                           slot->name, (int)image->layout, access.written ? "GENERAL" : "a read-only one or GENERAL");
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "%s.format is VkFormat %d, which cannot hold it", slot->name,
+                           (int)image->format);
+    if (access.written ? image->layout != VK_IMAGE_LAYOUT_GENERAL
+                       : access.read && !read_layout(image->layout))
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "%s.layout is VkImageLayout %d, want %s", slot->name, (int)image->layout,
+                           access.written ? "GENERAL" : "a read-only one or GENERAL");
     VkFormatFeatureFlags want = (access.read ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT : 0u) |
                                 (access.written ? VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT : 0u);
     VkFormatProperties properties;
     ctx->vk.GetPhysicalDeviceFormatProperties(ctx->physical_device, image->format, &properties);
     /* The caller's tiling is unknown: either will do. */
-    if ((properties.optimalTilingFeatures & want) != want && (properties.linearTilingFeatures & want) != want)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED, "%s.format is VkFormat %d, which the device cannot %s",
-                           slot->name, (int)image->format, access.written ? "use as a storage image" : "sample");
+    if ((properties.optimalTilingFeatures & want) != want &&
+        (properties.linearTilingFeatures & want) != want)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
+                           "%s.format is VkFormat %d, which the device cannot %s", slot->name,
+                           (int)image->format,
+                           access.written ? "use as a storage image" : "sample");
     return VKAO_SUCCESS;
 }
 
-static vkao_result check_images(const vkao_context *ctx, vkao_stage_flags stages, const vkao_images *images,
-                                bool need_views)
+static vkao_result check_images(const vkao_context *ctx, vkao_stage_flags stages,
+                                const vkao_images *images, bool need_views)
 {
     struct slot_access access[SLOT_COUNT];
     slot_accesses(stages, access);
     if (images->reserved)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "images.reserved is %u, want 0", images->reserved);
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "images.reserved is %u, want 0",
+                           images->reserved);
     for (int i = 0; i < SLOT_COUNT; ++i) {
         const vkao_image *image = slot_image(images, (enum slot_index)i);
         vkao_result result = check_slot(ctx, &slots[i], image, access[i]);
@@ -114,41 +141,75 @@ static vkao_result check_images(const vkao_context *ctx, vkao_stage_flags stages
             return result;
         bool used = image->format != VK_FORMAT_UNDEFINED && (access[i].read || access[i].written);
         if (need_views && used && !image->view)
-            return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s.view is VK_NULL_HANDLE", slots[i].name);
+            return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s.view is VK_NULL_HANDLE",
+                               slots[i].name);
     }
     return VKAO_SUCCESS;
 }
 
+/* Rules between slots and stages. */
+static vkao_result check_combination(const vkao_frame *frame)
+{
+    const struct vkao_logger *log = &frame->ctx->log;
+    const vkao_stage_flags both = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
+    const bool noisy = frame->images.ao_noisy.format != VK_FORMAT_UNDEFINED;
+    const bool bent = frame->images.bent_normals.format != VK_FORMAT_UNDEFINED;
+    if (frame->half_resolution && ((frame->stages & both) != both || noisy))
+        return vkao_refuse(
+            log, VKAO_ERROR_INVALID_ARGUMENT,
+            "frame.half_resolution needs the stages SSAO and BLUR (frame.stages is 0x%x) and no "
+            "images.ao_noisy",
+            frame->stages);
+    if (bent && (frame->stages & both) && ((frame->stages & both) != both || noisy))
+        return vkao_refuse(
+            log, VKAO_ERROR_INVALID_ARGUMENT,
+            "images.bent_normals needs the stages SSAO and BLUR (frame.stages is 0x%x) and no "
+            "images.ao_noisy",
+            frame->stages);
+    return VKAO_SUCCESS;
+}
+
 /* Checks the info and fills the frame's description, without creating anything. */
-static vkao_result describe(const vkao_context *ctx, const vkao_frame_info *caller_info, bool need_views,
-                            vkao_frame_info *info, vkao_frame *frame)
+static vkao_result describe(const vkao_context *ctx, const vkao_frame_info *caller_info,
+                            bool need_views, vkao_frame_info *info, vkao_frame *frame)
 {
     vkao_result result = vkao_import(&ctx->log, "frame", caller_info, info, sizeof *info);
     if (result == VKAO_SUCCESS)
-        result = vkao_import(&ctx->log, "frame.images", info->images, &frame->images, sizeof frame->images);
+        result = vkao_import(&ctx->log, "frame.images", info->images, &frame->images,
+                             sizeof frame->images);
     if (result != VKAO_SUCCESS)
         return result;
     if (!info->stages || (info->stages & ~VKAO_STAGE_ALL))
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "frame.stages is 0x%x, want bits of 0x%x",
-                           info->stages, VKAO_STAGE_ALL);
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "frame.stages is 0x%x, want bits of 0x%x", info->stages, VKAO_STAGE_ALL);
     if (!info->extent.width || !info->extent.height)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "frame.extent is %ux%u, want at least 1x1",
-                           info->extent.width, info->extent.height);
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "frame.extent is %ux%u, want at least 1x1", info->extent.width,
+                           info->extent.height);
     if (info->extent.width > ctx->max_dimension || info->extent.height > ctx->max_dimension)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED, "frame.extent is %ux%u, the limit is %u",
-                           info->extent.width, info->extent.height, ctx->max_dimension);
+        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
+                           "frame.extent is %ux%u, the limit is %u", info->extent.width,
+                           info->extent.height, ctx->max_dimension);
+    if (info->half_resolution > 1 || info->reserved)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "frame.half_resolution is %u, reserved %u, want 0 or 1, 0",
+                           info->half_resolution, info->reserved);
     frame->ctx = ctx;
     frame->stages = info->stages;
     frame->extent = info->extent;
-    return check_images(ctx, info->stages, &frame->images, need_views);
+    frame->half_resolution = info->half_resolution;
+    vkao_result checked = check_images(ctx, info->stages, &frame->images, need_views);
+    return checked == VKAO_SUCCESS ? check_combination(frame) : checked;
 }
 
-vkao_result vkao_frame_scratch(const vkao_context *ctx, const vkao_frame_info *info, VkMemoryRequirements *out)
+vkao_result vkao_frame_scratch(const vkao_context *ctx, const vkao_frame_info *info,
+                               VkMemoryRequirements *out)
 {
     if (!ctx)
         return VKAO_ERROR_INVALID_ARGUMENT;
     if (!out)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "vkao_frame_scratch: out is NULL");
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "vkao_frame_scratch: out is NULL");
     vkao_frame frame = {0};
     vkao_frame_info known;
     vkao_result result = describe(ctx, info, false, &known, &frame);
@@ -156,7 +217,7 @@ vkao_result vkao_frame_scratch(const vkao_context *ctx, const vkao_frame_info *i
         return result;
     VkMemoryRequirements requirements;
     scratch_plan(&frame, frame.scratch);
-    result = scratch_create_images(ctx, frame.extent, frame.scratch, &requirements);
+    result = scratch_create_images(&frame, frame.scratch, &requirements);
     scratch_destroy(ctx, frame.scratch);
     if (result == VKAO_SUCCESS)
         *out = requirements;
@@ -168,19 +229,25 @@ vkao_result vkao_frame_scratch(const vkao_context *ctx, const vkao_frame_info *i
 static void write_descriptors(const vkao_frame *frame, const vkao_images *images)
 {
     const struct scratch_image *s = frame->scratch;
-    const vkao_image view_z = {s[SCRATCH_VIEW_Z].view, VK_IMAGE_LAYOUT_GENERAL, s[SCRATCH_VIEW_Z].format};
-    const vkao_image halfway = {s[SCRATCH_HALFWAY].view, VK_IMAGE_LAYOUT_GENERAL, s[SCRATCH_HALFWAY].format};
+    const vkao_image view_z = {s[SCRATCH_VIEW_Z].view, VK_IMAGE_LAYOUT_GENERAL,
+                               s[SCRATCH_VIEW_Z].format};
+    const vkao_image halfway = {s[SCRATCH_HALFWAY].view, VK_IMAGE_LAYOUT_GENERAL,
+                                s[SCRATCH_HALFWAY].format};
     vkao_image noisy = images->ao_noisy, ao = images->ao;
     if (!ao.format)
         ao = (vkao_image){s[SCRATCH_AO].view, VK_IMAGE_LAYOUT_GENERAL, s[SCRATCH_AO].format};
     if (!(frame->stages & VKAO_STAGE_BLUR))
         noisy = ao; /* SSAO writes the final image itself */
     else if (!noisy.format)
-        noisy = (vkao_image){s[SCRATCH_NOISY].view, VK_IMAGE_LAYOUT_GENERAL, s[SCRATCH_NOISY].format};
+        noisy =
+            (vkao_image){s[SCRATCH_NOISY].view, VK_IMAGE_LAYOUT_GENERAL, s[SCRATCH_NOISY].format};
     const vkao_image color = images->color.format ? images->color : ao;
-    const vkao_image normals = images->normals.format ? images->normals : images->depth;
+    /* BLUR alone reads the caller's image and has no use for writing it, but the shader names the binding. */
+    const vkao_image noisy_write = frame->stages & VKAO_STAGE_SSAO ? noisy : halfway;
     const bool makes_ao = frame->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
-    const bool has_ssao = frame->stages & VKAO_STAGE_SSAO, has_blur = frame->stages & VKAO_STAGE_BLUR;
+    const vkao_image stand_in = makes_ao ? images->depth : ao;
+    const vkao_image normals = images->normals.format ? images->normals : stand_in;
+    const bool has_blur = frame->stages & VKAO_STAGE_BLUR;
     const bool composite = frame->stages & VKAO_STAGE_COMPOSITE;
     const struct {
         uint32_t binding;
@@ -188,10 +255,10 @@ static void write_descriptors(const vkao_frame *frame, const vkao_images *images
         vkao_image image;
     } table[VKAO_BINDING_COUNT] = {
         {VKAO_BINDING_DEPTH, makes_ao, false, images->depth},
-        {VKAO_BINDING_NORMALS, makes_ao, false, normals},
+        {VKAO_BINDING_NORMALS, makes_ao || composite, false, normals},
         {VKAO_BINDING_VIEW_Z, makes_ao, true, view_z},
-        {VKAO_BINDING_NOISY_WRITE, has_ssao, true, noisy},
-        {VKAO_BINDING_NOISY_READ, has_blur, false, noisy},
+        {VKAO_BINDING_NOISY_WRITE, makes_ao, true, noisy_write},
+        {VKAO_BINDING_NOISY_READ, has_blur || composite, false, has_blur ? noisy : ao},
         {VKAO_BINDING_HALFWAY_WRITE, has_blur, true, halfway},
         {VKAO_BINDING_HALFWAY_READ, has_blur, false, halfway},
         {VKAO_BINDING_AO_WRITE, has_blur, true, ao},
@@ -199,6 +266,12 @@ static void write_descriptors(const vkao_frame *frame, const vkao_images *images
         {VKAO_BINDING_COLOR, composite, false, color},
         {VKAO_BINDING_DIRECT, composite, false, images->direct.format ? images->direct : color},
         {VKAO_BINDING_OUTPUT, composite, true, images->output},
+        {VKAO_BINDING_BENT_WRITE, has_blur, true,
+         frame_has_bent_normals(frame) ? images->bent_normals : ao},
+        {VKAO_BINDING_BENT_READ, composite, false,
+         images->bent_normals.format ? images->bent_normals : ao},
+        {VKAO_BINDING_ALBEDO, composite, false, images->albedo.format ? images->albedo : ao},
+        {VKAO_BINDING_SPECULAR, composite, false, images->specular.format ? images->specular : ao},
     };
     VkDescriptorImageInfo infos[VKAO_BINDING_COUNT];
     VkWriteDescriptorSet writes[VKAO_BINDING_COUNT];
@@ -206,13 +279,15 @@ static void write_descriptors(const vkao_frame *frame, const vkao_images *images
     for (uint32_t i = 0; i < VKAO_BINDING_COUNT; ++i) {
         if (!table[i].used)
             continue;
-        infos[count] = (VkDescriptorImageInfo){.imageView = table[i].image.view, .imageLayout = table[i].image.layout};
+        infos[count] = (VkDescriptorImageInfo){.imageView = table[i].image.view,
+                                               .imageLayout = table[i].image.layout};
         writes[count] = (VkWriteDescriptorSet){
             .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
             .dstSet = frame->set,
             .dstBinding = table[i].binding,
             .descriptorCount = 1,
-            .descriptorType = table[i].storage ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
+            .descriptorType = table[i].storage ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
+                                               : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
             .pImageInfo = &infos[count],
         };
         ++count;
@@ -227,22 +302,28 @@ static vkao_result create_descriptors(vkao_frame *frame)
         {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VKAO_BINDING_COUNT},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VKAO_BINDING_COUNT},
     };
-    VkResult result = ctx->vk.CreateDescriptorPool(ctx->device, &(VkDescriptorPoolCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-        .maxSets = 1,
-        .poolSizeCount = 2,
-        .pPoolSizes = sizes,
-    }, ctx->allocator, &frame->pool);
+    VkResult result =
+        ctx->vk.CreateDescriptorPool(ctx->device,
+                                     &(VkDescriptorPoolCreateInfo){
+                                         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                         .maxSets = 1,
+                                         .poolSizeCount = 2,
+                                         .pPoolSizes = sizes,
+                                     },
+                                     ctx->allocator, &frame->pool);
     if (result != VK_SUCCESS) {
         frame->pool = VK_NULL_HANDLE;
         return vkao_vk_failed(&ctx->log, "vkCreateDescriptorPool", result);
     }
-    result = ctx->vk.AllocateDescriptorSets(ctx->device, &(VkDescriptorSetAllocateInfo){
-        .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-        .descriptorPool = frame->pool,
-        .descriptorSetCount = 1,
-        .pSetLayouts = &ctx->set_layout,
-    }, &frame->set);
+    result =
+        ctx->vk.AllocateDescriptorSets(ctx->device,
+                                       &(VkDescriptorSetAllocateInfo){
+                                           .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                           .descriptorPool = frame->pool,
+                                           .descriptorSetCount = 1,
+                                           .pSetLayouts = &ctx->set_layout,
+                                       },
+                                       &frame->set);
     if (result != VK_SUCCESS)
         return vkao_vk_failed(&ctx->log, "vkAllocateDescriptorSets", result);
     write_descriptors(frame, &frame->images);
@@ -254,42 +335,47 @@ static vkao_result create_scratch(vkao_frame *frame, const vkao_frame_info *info
     const vkao_context *ctx = frame->ctx;
     VkMemoryRequirements requirements;
     scratch_plan(frame, frame->scratch);
-    vkao_result result = scratch_create_images(ctx, frame->extent, frame->scratch, &requirements);
+    vkao_result result = scratch_create_images(frame, frame->scratch, &requirements);
     if (result != VKAO_SUCCESS || requirements.size == 0)
         return result;
     if (info->scratch_memory) {
         if (info->scratch_offset % requirements.alignment)
             return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
                                "frame.scratch_offset is %llu, want a multiple of %llu",
-                               (unsigned long long)info->scratch_offset, (unsigned long long)requirements.alignment);
+                               (unsigned long long)info->scratch_offset,
+                               (unsigned long long)requirements.alignment);
         return scratch_bind(ctx, frame->scratch, info->scratch_memory, info->scratch_offset);
     }
     uint32_t type = vk_memory_type(&ctx->memory, requirements.memoryTypeBits);
     if (type == UINT32_MAX)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED, "no DEVICE_LOCAL memory type among 0x%x",
-                           requirements.memoryTypeBits);
-    VkResult allocated = ctx->vk.AllocateMemory(ctx->device, &(VkMemoryAllocateInfo){
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .allocationSize = requirements.size,
-        .memoryTypeIndex = type,
-    }, ctx->allocator, &frame->memory);
+        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
+                           "no DEVICE_LOCAL memory type among 0x%x", requirements.memoryTypeBits);
+    VkResult allocated = ctx->vk.AllocateMemory(ctx->device,
+                                                &(VkMemoryAllocateInfo){
+                                                    .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                                    .allocationSize = requirements.size,
+                                                    .memoryTypeIndex = type,
+                                                },
+                                                ctx->allocator, &frame->memory);
     if (allocated != VK_SUCCESS) {
         frame->memory = VK_NULL_HANDLE;
         return vkao_vk_failed(&ctx->log, "vkAllocateMemory", allocated);
     }
-    vkao_log(&ctx->log, VKAO_LOG_INFO, "frame %ux%u: %llu bytes of scratch", frame->extent.width, frame->extent.height,
-             (unsigned long long)requirements.size);
+    vkao_log(&ctx->log, VKAO_LOG_INFO, "frame %ux%u: %llu bytes of scratch", frame->extent.width,
+             frame->extent.height, (unsigned long long)requirements.size);
     return scratch_bind(ctx, frame->scratch, frame->memory, 0);
 }
 
-vkao_result vkao_frame_create(const vkao_context *ctx, const vkao_frame_info *caller_info, vkao_frame **out)
+vkao_result vkao_frame_create(const vkao_context *ctx, const vkao_frame_info *caller_info,
+                              vkao_frame **out)
 {
     if (out)
         *out = NULL;
     if (!ctx)
         return VKAO_ERROR_INVALID_ARGUMENT;
     if (!out)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "vkao_frame_create: out is NULL");
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "vkao_frame_create: out is NULL");
     vkao_frame described = {0};
     vkao_frame_info info;
     vkao_result result = describe(ctx, caller_info, true, &info, &described);
@@ -297,7 +383,8 @@ vkao_result vkao_frame_create(const vkao_context *ctx, const vkao_frame_info *ca
         return result;
     vkao_frame *frame = vkao_calloc(ctx->allocator, sizeof *frame);
     if (!frame)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_OUT_OF_HOST_MEMORY, "no host memory for the frame");
+        return vkao_refuse(&ctx->log, VKAO_ERROR_OUT_OF_HOST_MEMORY,
+                           "no host memory for the frame");
     *frame = described;
     result = create_scratch(frame, &info);
     if (result == VKAO_SUCCESS)
@@ -324,8 +411,8 @@ vkao_result vkao_frame_update(vkao_frame *frame, const vkao_images *images)
         VkFormat is = slot_image(&known, (enum slot_index)i)->format;
         if (was != is)
             return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                               "%s.format is VkFormat %d, the frame was created with %d", slots[i].name, (int)is,
-                               (int)was);
+                               "%s.format is VkFormat %d, the frame was created with %d",
+                               slots[i].name, (int)is, (int)was);
     }
     result = check_images(ctx, frame->stages, &known, true);
     if (result != VKAO_SUCCESS)

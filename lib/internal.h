@@ -10,17 +10,22 @@
 #include <assert.h>
 #include <stddef.h>
 
-#define VKAO_METHOD_COUNT 2
+#define VKAO_METHOD_COUNT 6
 #define VKAO_PUSH_BYTES 128u
 
 enum pipeline {
     PIPELINE_PREPARE,
     PIPELINE_BLUR_X,
     PIPELINE_BLUR_Y,
+    PIPELINE_UPSAMPLE,
     PIPELINE_COMPOSITE,
+    PIPELINE_DEBUG,
     PIPELINE_SSAO, /* + vkao_ssao_method */
     PIPELINE_COUNT = PIPELINE_SSAO + VKAO_METHOD_COUNT
 };
+
+/* GTAO, VBAO and RAYMARCH know where the light comes from. */
+#define VKAO_BENT_METHODS 0x38u
 
 struct vkao_context {
     struct vk_table vk;
@@ -34,7 +39,8 @@ struct vkao_context {
     uint32_t method_mask;
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout pipeline_layout;
-    VkPipeline pipelines[PIPELINE_COUNT]; /* null for methods that were not asked for */
+    /* [1] also computes bent normals. Null for methods that were not asked for, or know no bent normals. */
+    VkPipeline pipelines[PIPELINE_COUNT][2];
 };
 
 /* Host memory through the caller's callbacks, zeroed; NULL when there is none. */
@@ -61,6 +67,7 @@ struct vkao_frame {
     const vkao_context *ctx;
     vkao_stage_flags stages;
     VkExtent2D extent;
+    bool half_resolution;
     vkao_images images;
     struct scratch_image scratch[SCRATCH_COUNT];
     VkDeviceMemory memory; /* null if the caller's memory is used */
@@ -71,30 +78,43 @@ struct vkao_frame {
 /* --- Checks, each before anything is recorded --- */
 
 /* Copies a caller's struct by the struct rule of vkao.h into dst, which has `known` bytes. */
-vkao_result vkao_import(const struct vkao_logger *log, const char *name, const void *src, void *dst, size_t known);
+vkao_result vkao_import(const struct vkao_logger *log, const char *name, const void *src, void *dst,
+                        size_t known);
 
-vkao_result ssao_params_check(const vkao_context *ctx, const vkao_ssao_params *in, vkao_ssao_params *out);
-vkao_result blur_params_check(const struct vkao_logger *log, const vkao_blur_params *in, vkao_blur_params *out);
+vkao_result ssao_params_check(const vkao_frame *frame, const vkao_ssao_params *in,
+                              vkao_ssao_params *out);
+vkao_result blur_params_check(const struct vkao_logger *log, const vkao_blur_params *in,
+                              vkao_blur_params *out);
 vkao_result composite_params_check(const vkao_frame *frame, const vkao_composite_params *in,
                                    vkao_composite_params *out);
 /* Imports the view and reads it off for a frame that must have been built for one of `stages`. */
-vkao_result frame_view_check(const vkao_frame *frame, VkCommandBuffer cmd, const char *call, vkao_stage_flags stages,
-                             const vkao_view *view, struct view_constants *out);
+vkao_result frame_view_check(const vkao_frame *frame, VkCommandBuffer cmd, const char *call,
+                             vkao_stage_flags stages, const vkao_view *view,
+                             struct view_constants *out);
 
 /* --- Recording of checked stages; cannot fail --- */
 
-void record_prepare(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
-                    const vkao_view *encodings);
+void record_prepare(const vkao_frame *frame, VkCommandBuffer cmd,
+                    const struct view_constants *view);
+/* border: how far around the rect, in texels of the grid, the blur will read. */
 void record_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
-                 const vkao_view *encodings, const vkao_ssao_params *params);
+                 const vkao_ssao_params *params, uint32_t border);
 void record_blur(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
-                 const vkao_view *encodings, const vkao_blur_params *params);
-void record_composite(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
-                      const vkao_composite_params *params);
+                 const vkao_blur_params *params);
+void record_upsample(const vkao_frame *frame, VkCommandBuffer cmd,
+                     const struct view_constants *view, const vkao_blur_params *params);
+void record_composite(const vkao_frame *frame, VkCommandBuffer cmd,
+                      const struct view_constants *view, const vkao_composite_params *params);
+
+/* The view on the grid that SSAO and BLUR run on. */
+struct view_constants frame_grid(const vkao_frame *frame, const struct view_constants *view);
+/* Rows of normal_to_view into the first three components of three rows of a block. */
+void copy_normal_rows(const struct view_constants *view, float x[4], float y[4], float z[4]);
+bool frame_has_bent_normals(const vkao_frame *frame);
 
 /* What every stage records: bind, push, one invocation per texel of the rect. */
-void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline pipeline, const void *block,
-                     size_t block_bytes, struct vkao_rect rect);
+void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline pipeline,
+                     const void *block, size_t block_bytes, struct vkao_rect rect);
 /* Earlier vkao work on this queue -> the next dispatch. */
 void record_barrier(const vkao_frame *frame, VkCommandBuffer cmd);
 void record_label_begin(const vkao_frame *frame, VkCommandBuffer cmd, const char *name);
@@ -105,10 +125,11 @@ void record_label_end(const vkao_frame *frame, VkCommandBuffer cmd);
 /* Fills the formats of the scratch images that a checked frame needs. */
 void scratch_plan(const vkao_frame *frame, struct scratch_image scratch[SCRATCH_COUNT]);
 /* Creates the planned images, unbound, and lays them out in one block. Unwinds by scratch_destroy. */
-vkao_result scratch_create_images(const vkao_context *ctx, VkExtent2D extent, struct scratch_image scratch[SCRATCH_COUNT],
+vkao_result scratch_create_images(const vkao_frame *frame,
+                                  struct scratch_image scratch[SCRATCH_COUNT],
                                   VkMemoryRequirements *out);
-vkao_result scratch_bind(const vkao_context *ctx, struct scratch_image scratch[SCRATCH_COUNT], VkDeviceMemory memory,
-                         VkDeviceSize offset);
+vkao_result scratch_bind(const vkao_context *ctx, struct scratch_image scratch[SCRATCH_COUNT],
+                         VkDeviceMemory memory, VkDeviceSize offset);
 void scratch_destroy(const vkao_context *ctx, struct scratch_image scratch[SCRATCH_COUNT]);
 
 void vkao_set_name(const vkao_context *ctx, VkObjectType type, uint64_t handle, const char *name);

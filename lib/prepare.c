@@ -3,8 +3,9 @@
 
 #include <string.h>
 
-static_assert(sizeof(struct vkao_prepare_block) == 48, "as shaders/prepare.comp lays it out");
-static_assert(VKAO_GLSL_DEPTH_PROJECTED == (int)VKAO_DEPTH_PROJECTED && VKAO_GLSL_DEPTH_VIEW_Z == (int)VKAO_DEPTH_VIEW_Z &&
+static_assert(sizeof(struct vkao_prepare_block) == 52, "as shaders/prepare.comp lays it out");
+static_assert(VKAO_GLSL_DEPTH_PROJECTED == (int)VKAO_DEPTH_PROJECTED &&
+                  VKAO_GLSL_DEPTH_VIEW_Z == (int)VKAO_DEPTH_VIEW_Z &&
                   VKAO_GLSL_DEPTH_DISTANCE == (int)VKAO_DEPTH_DISTANCE &&
                   VKAO_GLSL_DEPTH_INVERSE_Z == (int)VKAO_DEPTH_INVERSE_Z,
               "params.h repeats vkao_depth_encoding");
@@ -36,34 +37,37 @@ static void begin_scratch(const vkao_frame *frame, VkCommandBuffer cmd)
         .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
         .dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
     };
-    frame->ctx->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                                      0, 1, &memory, 0, NULL, count, barriers);
+    frame->ctx->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                                      VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1, &memory, 0, NULL,
+                                      count, barriers);
 }
 
-void record_prepare(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
-                    const vkao_view *encodings)
+void record_prepare(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view)
 {
+    const struct view_constants grid = frame_grid(frame, view);
     struct vkao_prepare_block block = {
         .linearize = {view->linearize[0], view->linearize[1]},
         .far_depth = view->far_depth,
         .far_z = view->far_z,
-        .depth_encoding = (uint32_t)encodings->depth_encoding,
+        .depth_encoding = view->depth_encoding,
         .orthographic = view->orthographic,
+        .grid_shift = grid.grid_shift,
     };
-    memcpy(block.unproject, view->unproject, sizeof block.unproject);
-    rect_pack(view->valid, block.valid);
+    memcpy(block.unproject, view->unproject,
+           sizeof block.unproject); /* of the image: prepare reads it there */
+    rect_pack(grid.valid, block.valid);
     record_label_begin(frame, cmd, "vkao prepare");
     begin_scratch(frame, cmd);
-    record_dispatch(frame, cmd, PIPELINE_PREPARE, &block, sizeof block, view->valid);
+    record_dispatch(frame, cmd, PIPELINE_PREPARE, &block, sizeof block, grid.valid);
     record_label_end(frame, cmd);
 }
 
 vkao_result vkao_cmd_prepare(const vkao_frame *frame, VkCommandBuffer cmd, const vkao_view *view)
 {
     struct view_constants constants = {0};
-    vkao_result result = frame_view_check(frame, cmd, "vkao_cmd_prepare", VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, view,
-                                          &constants);
+    vkao_result result = frame_view_check(frame, cmd, "vkao_cmd_prepare",
+                                          VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, view, &constants);
     if (result == VKAO_SUCCESS)
-        record_prepare(frame, cmd, &constants, view);
+        record_prepare(frame, cmd, &constants);
     return result;
 }

@@ -3,8 +3,11 @@
  * What the stages share when they record, and the whole line in one call. */
 #include "internal.h"
 
-vkao_result frame_view_check(const vkao_frame *frame, VkCommandBuffer cmd, const char *call, vkao_stage_flags stages,
-                             const vkao_view *view, struct view_constants *out)
+#include <string.h>
+
+vkao_result frame_view_check(const vkao_frame *frame, VkCommandBuffer cmd, const char *call,
+                             vkao_stage_flags stages, const vkao_view *view,
+                             struct view_constants *out)
 {
     if (!frame)
         return VKAO_ERROR_INVALID_ARGUMENT;
@@ -13,29 +16,60 @@ vkao_result frame_view_check(const vkao_frame *frame, VkCommandBuffer cmd, const
     if (!cmd)
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "%s: cmd is NULL", call);
     if (!(frame->stages & stages))
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "%s: the frame was created with stages 0x%x, want 0x%x",
-                           call, frame->stages, stages);
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "%s: the frame was created with stages 0x%x, want 0x%x", call,
+                           frame->stages, stages);
     vkao_result result = vkao_import(log, "view", view, &known, sizeof known);
     if (result != VKAO_SUCCESS)
         return result;
-    /* A frame that only composites needs rectangles, not a projection. */
-    if (!(frame->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR)))
-        return view_rects(log, &known, frame->extent, &out->valid, &out->rect);
-    if (known.normal_encoding != VKAO_NORMALS_FROM_DEPTH && frame->images.normals.format == VK_FORMAT_UNDEFINED)
+    if (known.normal_encoding != VKAO_NORMALS_FROM_DEPTH &&
+        frame->images.normals.format == VK_FORMAT_UNDEFINED)
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "view.normal_encoding is %d, but the frame has no images.normals",
                            (int)known.normal_encoding);
-    return view_constants_init(log, &known, frame->extent, frame->images.depth.format, out);
+    /* A frame that only composites needs no projection, unless it has specular light to occlude. */
+    bool needs_projection = (frame->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR)) ||
+                            frame->images.specular.format != VK_FORMAT_UNDEFINED;
+    if (!needs_projection)
+        return view_rects(log, &known, frame->extent, &out->valid, &out->rect);
+    result = view_constants_init(log, &known, frame->extent, frame->images.depth.format, out);
+    if (result == VKAO_SUCCESS && frame->half_resolution && ((out->valid.x0 | out->valid.y0) & 1u))
+        result = vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                             "view.valid begins at (%u,%u), want even texels at half resolution",
+                             out->valid.x0, out->valid.y0);
+    return result;
 }
 
-void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline pipeline, const void *block,
-                     size_t block_bytes, struct vkao_rect rect)
+struct view_constants frame_grid(const vkao_frame *frame, const struct view_constants *view)
+{
+    return frame->half_resolution ? view_halve(view) : *view;
+}
+
+void copy_normal_rows(const struct view_constants *view, float x[4], float y[4], float z[4])
+{
+    memcpy(x, view->normal_rows[0], sizeof view->normal_rows[0]);
+    memcpy(y, view->normal_rows[1], sizeof view->normal_rows[1]);
+    memcpy(z, view->normal_rows[2], sizeof view->normal_rows[2]);
+}
+
+bool frame_has_bent_normals(const vkao_frame *frame)
+{
+    return (frame->stages & VKAO_STAGE_BLUR) &&
+           frame->images.bent_normals.format != VK_FORMAT_UNDEFINED;
+}
+
+void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline pipeline,
+                     const void *block, size_t block_bytes, struct vkao_rect rect)
 {
     const vkao_context *ctx = frame->ctx;
-    ctx->vk.CmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, ctx->pipelines[pipeline]);
-    ctx->vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, ctx->pipeline_layout, 0, 1, &frame->set, 0,
-                                  NULL);
-    ctx->vk.CmdPushConstants(cmd, ctx->pipeline_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, (uint32_t)block_bytes, block);
+    ctx->vk.CmdBindPipeline(
+        cmd, VK_PIPELINE_BIND_POINT_COMPUTE,
+        ctx->pipelines[pipeline]
+                      [frame_has_bent_normals(frame) && ctx->pipelines[pipeline][1] ? 1 : 0]);
+    ctx->vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, ctx->pipeline_layout, 0, 1,
+                                  &frame->set, 0, NULL);
+    ctx->vk.CmdPushConstants(cmd, ctx->pipeline_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
+                             (uint32_t)block_bytes, block);
     ctx->vk.CmdDispatch(cmd, (rect.x1 - rect.x0 + VKAO_GROUP_WIDTH - 1) / VKAO_GROUP_WIDTH,
                         (rect.y1 - rect.y0 + VKAO_GROUP_HEIGHT - 1) / VKAO_GROUP_HEIGHT, 1);
 }
@@ -47,17 +81,19 @@ void record_barrier(const vkao_frame *frame, VkCommandBuffer cmd)
         .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
         .dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
     };
-    frame->ctx->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                                      0, 1, &barrier, 0, NULL, 0, NULL);
+    frame->ctx->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                                      VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1, &barrier, 0, NULL,
+                                      0, NULL);
 }
 
 void record_label_begin(const vkao_frame *frame, VkCommandBuffer cmd, const char *name)
 {
     if (frame->ctx->vk.CmdBeginDebugUtilsLabelEXT)
-        frame->ctx->vk.CmdBeginDebugUtilsLabelEXT(cmd, &(VkDebugUtilsLabelEXT){
-            .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
-            .pLabelName = name,
-        });
+        frame->ctx->vk.CmdBeginDebugUtilsLabelEXT(
+            cmd, &(VkDebugUtilsLabelEXT){
+                     .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT,
+                     .pLabelName = name,
+                 });
 }
 
 void record_label_end(const vkao_frame *frame, VkCommandBuffer cmd)
@@ -67,7 +103,8 @@ void record_label_end(const vkao_frame *frame, VkCommandBuffer cmd)
 }
 
 /* Params of absent stages must be NULL: whoever passes them believes in a stage that will not run. */
-static vkao_result check_presence(const vkao_frame *frame, const void *ssao, const void *blur, const void *composite)
+static vkao_result check_presence(const vkao_frame *frame, const void *ssao, const void *blur,
+                                  const void *composite)
 {
     const struct {
         const char *name;
@@ -81,7 +118,8 @@ static vkao_result check_presence(const vkao_frame *frame, const void *ssao, con
     for (size_t i = 0; i < sizeof stages / sizeof stages[0]; ++i) {
         if (stages[i].params && !(frame->stages & stages[i].stage))
             return vkao_refuse(&frame->ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                               "vkao_cmd_all: %s is not NULL, but the frame has no such stage", stages[i].name);
+                               "vkao_cmd_all: %s is not NULL, but the frame has no such stage",
+                               stages[i].name);
     }
     return VKAO_SUCCESS;
 }
@@ -94,11 +132,12 @@ vkao_result vkao_cmd_all(const vkao_frame *frame, VkCommandBuffer cmd, const vka
     vkao_ssao_params ssao_known;
     vkao_blur_params blur_known = {0};
     vkao_composite_params composite_known;
-    vkao_result result = frame_view_check(frame, cmd, "vkao_cmd_all", VKAO_STAGE_ALL, view, &constants);
+    vkao_result result =
+        frame_view_check(frame, cmd, "vkao_cmd_all", VKAO_STAGE_ALL, view, &constants);
     if (result == VKAO_SUCCESS)
         result = check_presence(frame, ssao, blur, composite);
     if (result == VKAO_SUCCESS && (frame->stages & VKAO_STAGE_SSAO))
-        result = ssao_params_check(frame->ctx, ssao, &ssao_known);
+        result = ssao_params_check(frame, ssao, &ssao_known);
     if (result == VKAO_SUCCESS && (frame->stages & VKAO_STAGE_BLUR))
         result = blur_params_check(&frame->ctx->log, blur, &blur_known);
     if (result == VKAO_SUCCESS && (frame->stages & VKAO_STAGE_COMPOSITE))
@@ -107,14 +146,11 @@ vkao_result vkao_cmd_all(const vkao_frame *frame, VkCommandBuffer cmd, const vka
         return result;
 
     if (frame->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR))
-        record_prepare(frame, cmd, &constants, view);
-    if (frame->stages & VKAO_STAGE_SSAO) {
-        struct view_constants grown = constants;
-        grown.rect = rect_grow(constants.rect, blur_known.radius, blur_known.radius, constants.valid);
-        record_ssao(frame, cmd, &grown, view, &ssao_known);
-    }
+        record_prepare(frame, cmd, &constants);
+    if (frame->stages & VKAO_STAGE_SSAO)
+        record_ssao(frame, cmd, &constants, &ssao_known, blur_known.radius);
     if (frame->stages & VKAO_STAGE_BLUR)
-        record_blur(frame, cmd, &constants, view, &blur_known);
+        record_blur(frame, cmd, &constants, &blur_known);
     if (frame->stages & VKAO_STAGE_COMPOSITE)
         record_composite(frame, cmd, &constants, &composite_known);
     return VKAO_SUCCESS;

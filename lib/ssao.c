@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static_assert(sizeof(struct vkao_ssao_block) == 112, "as shaders/ssao.glsl lays it out");
+static_assert(sizeof(struct vkao_ssao_block) == 120, "as shaders/ssao.glsl lays it out");
 static_assert(sizeof(struct vkao_ssao_block) <= VKAO_PUSH_BYTES, "push constants of every device");
 static_assert(VKAO_GLSL_FALLOFF_SMOOTH == (int)VKAO_FALLOFF_SMOOTH &&
                   VKAO_GLSL_SPHERE_RESCALED == (int)VKAO_SPHERE_RESCALED &&
@@ -15,27 +15,35 @@ static_assert(VKAO_GLSL_FALLOFF_SMOOTH == (int)VKAO_FALLOFF_SMOOTH &&
               "params.h repeats public enums");
 
 void record_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
-                 const vkao_view *encodings, const vkao_ssao_params *params)
+                 const vkao_ssao_params *params, uint32_t border)
 {
-    const float(*n)[3] = view->normal_rows;
+    const struct view_constants grid = frame_grid(frame, view);
+    const struct vkao_rect rect = rect_grow(grid.rect, border, border, grid.valid);
     struct vkao_ssao_block block = {
-        .normal_x = {n[0][0], n[0][1], n[0][2], params->radius},
-        .normal_y = {n[1][0], n[1][1], n[1][2], params->bias * params->radius},
-        .normal_z = {n[2][0], n[2][1], n[2][2], params->blocking_scale},
+        .normal_x[3] = params->radius,
+        .normal_y[3] = params->bias * params->radius,
+        .normal_z[3] =
+            params->method == VKAO_SSAO_SPHERE ? params->blocking_scale : params->thickness,
         .depth_error = {view->depth_error[0], view->depth_error[1]},
-        .normal_encoding = (uint32_t)encodings->normal_encoding,
+        .normal_encoding = view->encodings & 0xffu,
         .orthographic = view->orthographic,
         .sample_count = params->sample_count,
         .noise_index = params->noise_index,
         .falloff = (uint32_t)params->falloff,
         .sphere_form = (uint32_t)params->sphere_form,
+        .slices_and_steps = params->slice_count | params->step_count << 16,
+        .grid_shift = grid.grid_shift,
     };
-    memcpy(block.unproject, view->unproject, sizeof block.unproject);
-    rect_pack(view->valid, block.valid);
-    rect_pack(view->rect, block.rect);
+    memcpy(block.unproject, grid.unproject, sizeof block.unproject);
+    copy_normal_rows(view, block.normal_x, block.normal_y, block.normal_z);
+    rect_pack(grid.valid, block.valid);
+    rect_pack(rect, block.rect);
     record_label_begin(frame, cmd, "vkao ssao");
-    record_barrier(frame, cmd); /* prepare wrote view z; the last blur or composite may still read what we write */
-    record_dispatch(frame, cmd, (enum pipeline)(PIPELINE_SSAO + (int)params->method), &block, sizeof block, view->rect);
+    record_barrier(
+        frame,
+        cmd); /* prepare wrote view z; the last blur or composite may still read what we write */
+    record_dispatch(frame, cmd, (enum pipeline)(PIPELINE_SSAO + (int)params->method), &block,
+                    sizeof block, rect);
     record_label_end(frame, cmd);
 }
 
@@ -44,10 +52,11 @@ vkao_result vkao_cmd_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const vk
 {
     struct view_constants constants = {0};
     vkao_ssao_params known;
-    vkao_result result = frame_view_check(frame, cmd, "vkao_cmd_ssao", VKAO_STAGE_SSAO, view, &constants);
+    vkao_result result =
+        frame_view_check(frame, cmd, "vkao_cmd_ssao", VKAO_STAGE_SSAO, view, &constants);
     if (result == VKAO_SUCCESS)
-        result = ssao_params_check(frame->ctx, params, &known);
+        result = ssao_params_check(frame, params, &known);
     if (result == VKAO_SUCCESS)
-        record_ssao(frame, cmd, &constants, view, &known);
+        record_ssao(frame, cmd, &constants, &known, 0);
     return result;
 }

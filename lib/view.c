@@ -15,12 +15,14 @@ struct projection {
     bool orthographic;
 };
 
-static vkao_result check_finite(const struct vkao_logger *log, const char *name, const float *values, int count)
+static vkao_result check_finite(const struct vkao_logger *log, const char *name,
+                                const float *values, int count)
 {
     for (int i = 0; i < count; ++i) {
         if (!isfinite(values[i]))
-            return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.%s[%d] is %g, want a finite number",
-                               name, i, (double)values[i]);
+            return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                               "view.%s[%d] is %g, want a finite number", name, i,
+                               (double)values[i]);
     }
     return VKAO_SUCCESS;
 }
@@ -52,14 +54,16 @@ static vkao_result read_projection(const struct vkao_logger *log, const vkao_vie
         return result;
     for (size_t i = 0; i < sizeof zero / sizeof zero[0]; ++i) {
         if (m[zero[i]] != 0.0f)
-            return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                               "view.projection[%d] is %g, want 0: sheared or rotated projections are "
-                               "not supported",
-                               zero[i], (double)m[zero[i]]);
+            return vkao_refuse(
+                log, VKAO_ERROR_INVALID_ARGUMENT,
+                "view.projection[%d] is %g, want 0: sheared or rotated projections are "
+                "not supported",
+                zero[i], (double)m[zero[i]]);
     }
-    bool perspective = m[11] != 0.0f && m[15] == 0.0f, orthographic = m[11] == 0.0f && m[15] != 0.0f;
-    if ((!perspective && !orthographic) || m[0] == 0.0f || m[5] == 0.0f || (orthographic && m[10] == 0.0f) ||
-        (perspective && m[14] == 0.0f))
+    bool perspective = m[11] != 0.0f && m[15] == 0.0f,
+         orthographic = m[11] == 0.0f && m[15] != 0.0f;
+    if ((!perspective && !orthographic) || m[0] == 0.0f || m[5] == 0.0f ||
+        (orthographic && m[10] == 0.0f) || (perspective && m[14] == 0.0f))
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "view.projection is neither a perspective nor an orthographic matrix "
                            "(column-major, [0] %g [5] %g [10] %g [11] %g [14] %g [15] %g)",
@@ -68,17 +72,23 @@ static vkao_result read_projection(const struct vkao_logger *log, const vkao_vie
     /* Scale so that w is distance along the axis, or 1. */
     double w = perspective ? fabs((double)m[11]) : (double)m[15];
     *p = (struct projection){
-        .x_scale = m[0] / w, .x_z = m[8] / w, .x_1 = m[12] / w,
-        .y_scale = m[5] / w, .y_z = m[9] / w, .y_1 = m[13] / w,
-        .z_z = m[10] / w,    .z_1 = m[14] / w,
+        .x_scale = m[0] / w,
+        .x_z = m[8] / w,
+        .x_1 = m[12] / w,
+        .y_scale = m[5] / w,
+        .y_z = m[9] / w,
+        .y_1 = m[13] / w,
+        .z_z = m[10] / w,
+        .z_1 = m[14] / w,
         .orthographic = orthographic,
         .forward = m[11] > 0.0f ? 1.0 : -1.0,
     };
     if (perspective && (m[12] != 0.0f || m[13] != 0.0f))
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "view.projection[12], [13] are %g, %g, want 0 in a perspective matrix: an "
-                           "off-centre frustum has its offset in [8], [9]",
-                           (double)m[12], (double)m[13]);
+        return vkao_refuse(
+            log, VKAO_ERROR_INVALID_ARGUMENT,
+            "view.projection[12], [13] are %g, %g, want 0 in a perspective matrix: an "
+            "off-centre frustum has its offset in [8], [9]",
+            (double)m[12], (double)m[13]);
     if (orthographic && (m[8] != 0.0f || m[9] != 0.0f))
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "view.projection[8], [9] are %g, %g, want 0 in an orthographic matrix: "
@@ -93,26 +103,30 @@ static vkao_result resolve_rect(const struct vkao_logger *log, const char *name,
     *out = bounds;
     if (given.extent.width == 0 && given.extent.height == 0)
         return VKAO_SUCCESS;
-    int64_t x1 = (int64_t)given.offset.x + given.extent.width, y1 = (int64_t)given.offset.y + given.extent.height;
-    if (given.extent.width == 0 || given.extent.height == 0 || given.offset.x < (int64_t)bounds.x0 ||
-        given.offset.y < (int64_t)bounds.y0 || x1 > (int64_t)bounds.x1 || y1 > (int64_t)bounds.y1)
+    int64_t x1 = (int64_t)given.offset.x + given.extent.width,
+            y1 = (int64_t)given.offset.y + given.extent.height;
+    if (given.extent.width == 0 || given.extent.height == 0 ||
+        given.offset.x < (int64_t)bounds.x0 || given.offset.y < (int64_t)bounds.y0 ||
+        x1 > (int64_t)bounds.x1 || y1 > (int64_t)bounds.y1)
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "view.%s is %ux%u at (%d,%d), want a rectangle inside (%u,%u)..(%u,%u)", name,
-                           given.extent.width, given.extent.height, given.offset.x, given.offset.y,
-                           bounds.x0, bounds.y0, bounds.x1, bounds.y1);
-    *out = (struct vkao_rect){(uint32_t)given.offset.x, (uint32_t)given.offset.y, (uint32_t)x1, (uint32_t)y1};
+                           "view.%s is %ux%u at (%d,%d), want a rectangle inside (%u,%u)..(%u,%u)",
+                           name, given.extent.width, given.extent.height, given.offset.x,
+                           given.offset.y, bounds.x0, bounds.y0, bounds.x1, bounds.y1);
+    *out = (struct vkao_rect){(uint32_t)given.offset.x, (uint32_t)given.offset.y, (uint32_t)x1,
+                              (uint32_t)y1};
     return VKAO_SUCCESS;
 }
 
-static vkao_result resolve_rects(const struct vkao_logger *log, const vkao_view *view, VkExtent2D extent,
-                                 struct vkao_rect *valid, struct vkao_rect *rect)
+static vkao_result resolve_rects(const struct vkao_logger *log, const vkao_view *view,
+                                 VkExtent2D extent, struct vkao_rect *valid, struct vkao_rect *rect)
 {
     struct vkao_rect image = {0, 0, extent.width, extent.height};
     vkao_result result = resolve_rect(log, "valid", view->valid, image, valid);
     return result == VKAO_SUCCESS ? resolve_rect(log, "rect", view->rect, *valid, rect) : result;
 }
 
-static void read_unproject(const struct projection *p, const vkao_view *view, struct view_constants *out)
+static void read_unproject(const struct projection *p, const vkao_view *view,
+                           struct view_constants *out)
 {
     double vx = out->valid.x0, vy = out->valid.y0;
     double vw = out->valid.x1 - out->valid.x0, vh = out->valid.y1 - out->valid.y0;
@@ -165,7 +179,8 @@ static void read_depth(const struct projection *p, const vkao_view *view, VkForm
             out->far_z = far_limit(near, far);
     } else {
         double add = p->z_z * p->forward, mul = -p->z_1; /* z = mul / (add - depth) */
-        double at_one = add == 1.0 ? INFINITY : mul / (add - 1.0), at_zero = add == 0.0 ? INFINITY : mul / add;
+        double at_one = add == 1.0 ? INFINITY : mul / (add - 1.0),
+               at_zero = add == 0.0 ? INFINITY : mul / add;
         bool one_is_far = at_one < 0.0 || (at_zero > 0.0 && at_one > at_zero);
         double far = one_is_far ? at_one : at_zero;
         out->far_depth = one_is_far ? 1.0f : 0.0f;
@@ -186,19 +201,26 @@ static void read_depth(const struct projection *p, const vkao_view *view, VkForm
 static vkao_result check_enums(const struct vkao_logger *log, const vkao_view *view)
 {
     if ((uint32_t)view->depth_encoding > VKAO_DEPTH_INVERSE_Z)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.depth_encoding is %d, want 0..%d",
-                           (int)view->depth_encoding, (int)VKAO_DEPTH_INVERSE_Z);
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.depth_encoding is %d, want 0..%d", (int)view->depth_encoding,
+                           (int)VKAO_DEPTH_INVERSE_Z);
     if ((uint32_t)view->normal_encoding > VKAO_NORMALS_OCT_UNORM)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.normal_encoding is %d, want 0..%d",
-                           (int)view->normal_encoding, (int)VKAO_NORMALS_OCT_UNORM);
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.normal_encoding is %d, want 0..%d", (int)view->normal_encoding,
+                           (int)VKAO_NORMALS_OCT_UNORM);
     if ((uint32_t)view->axis > VKAO_VIEW_AXIS_POSITIVE_Z)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.axis is %d, want 0..%d", (int)view->axis,
-                           (int)VKAO_VIEW_AXIS_POSITIVE_Z);
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.axis is %d, want 0..%d",
+                           (int)view->axis, (int)VKAO_VIEW_AXIS_POSITIVE_Z);
     if ((view->viewport.extent.width == 0) != (view->viewport.extent.height == 0))
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.viewport is %ux%u, want both 0 or none",
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.viewport is %ux%u, want both 0 or none",
                            view->viewport.extent.width, view->viewport.extent.height);
-    if (view->reserved)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.reserved is %u, want 0", view->reserved);
+    if (view->reserved || view->reserved_too)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.reserved is %u, want 0",
+                           view->reserved | view->reserved_too);
+    if ((uint32_t)view->bent_encoding > VKAO_NORMALS_OCT_UNORM)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.bent_encoding is %d, want 0..%d",
+                           (int)view->bent_encoding, (int)VKAO_NORMALS_OCT_UNORM);
     return VKAO_SUCCESS;
 }
 
@@ -209,8 +231,9 @@ vkao_result view_rects(const struct vkao_logger *log, const vkao_view *view, VkE
     return result == VKAO_SUCCESS ? resolve_rects(log, view, extent, valid, rect) : result;
 }
 
-vkao_result view_constants_init(const struct vkao_logger *log, const vkao_view *view, VkExtent2D extent,
-                                VkFormat depth_format, struct view_constants *out)
+vkao_result view_constants_init(const struct vkao_logger *log, const vkao_view *view,
+                                VkExtent2D extent, VkFormat depth_format,
+                                struct view_constants *out)
 {
     struct projection p = {0};
     vkao_result result = check_enums(log, view);
@@ -220,10 +243,16 @@ vkao_result view_constants_init(const struct vkao_logger *log, const vkao_view *
         result = read_projection(log, view, &p);
     if (result != VKAO_SUCCESS)
         return result;
-    *out = (struct view_constants){.orthographic = p.orthographic};
+    *out = (struct view_constants){
+        .orthographic = p.orthographic,
+        .depth_encoding = (uint32_t)view->depth_encoding,
+    };
     result = resolve_rects(log, view, extent, &out->valid, &out->rect);
     if (result != VKAO_SUCCESS)
         return result;
+    vkao_normal_encoding bent = view->bent_encoding ? view->bent_encoding : view->normal_encoding;
+    out->encodings =
+        (uint32_t)view->normal_encoding | (uint32_t)(bent ? bent : VKAO_NORMALS_XYZ_SNORM) << 8;
     read_unproject(&p, view, out);
     read_depth(&p, view, depth_format, out);
     for (int row = 0; row < 3; ++row) {
@@ -233,6 +262,23 @@ vkao_result view_constants_init(const struct vkao_logger *log, const vkao_view *
         }
     }
     return VKAO_SUCCESS;
+}
+
+struct view_constants view_halve(const struct view_constants *view)
+{
+    struct view_constants half = *view;
+    half.grid_shift = 1;
+    half.unproject[0] *= 2.0f;
+    half.unproject[1] *= 2.0f;
+    half.valid = (struct vkao_rect){view->valid.x0 / 2, view->valid.y0 / 2,
+                                    (view->valid.x1 + 1) / 2, (view->valid.y1 + 1) / 2};
+    /* upsample.comp reads from one half-resolution texel before to two behind. */
+    const uint32_t x1 = (view->rect.x1 - 1) / 2 + 2, y1 = (view->rect.y1 - 1) / 2 + 2;
+    half.rect = (struct vkao_rect){view->rect.x0 / 2, view->rect.y0 / 2,
+                                   x1 < half.valid.x1 ? x1 : half.valid.x1,
+                                   y1 < half.valid.y1 ? y1 : half.valid.y1};
+    half.rect = rect_grow(half.rect, 1, 1, half.valid);
+    return half;
 }
 
 struct vkao_rect rect_grow(struct vkao_rect rect, uint32_t x, uint32_t y, struct vkao_rect bounds)

@@ -3,7 +3,8 @@
  * One direction of the separable cross-bilateral blur (Petschnigg et al. 2004; Eisemann and Durand 2004). The weight
  * of tap k is a Gaussian, times max(0, 1 - sharpness * |z_k - z - slope k| / z), slope being the smaller of the two
  * neighbour differences, times max(0, n.n_k)^normal_power. Continuing the slope keeps tilted walls in one piece where
- * a plain depth difference would cut them up. The second, vertical direction ends with intensity and power. */
+ * a plain depth difference would cut them up. AO is not clamped on the way: one slice per texel often sees more than
+ * its share, and a clamp would turn that noise into bias. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -11,19 +12,22 @@
 #include "params.h"
 
 layout(constant_id = VKAO_CONSTANT_BLUR_VERTICAL) const bool VERTICAL = false;
+layout(constant_id = VKAO_CONSTANT_BENT_NORMALS) const bool BENT_NORMALS = false;
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_blur_block params; };
 layout(binding = VKAO_BINDING_NOISY_READ) uniform texture2D noisy_image;
+layout(binding = VKAO_BINDING_NOISY_WRITE) uniform writeonly image2D noisy_out;
 layout(binding = VKAO_BINDING_HALFWAY_READ) uniform texture2D halfway_image;
 layout(binding = VKAO_BINDING_HALFWAY_WRITE) uniform writeonly image2D halfway_out;
-layout(binding = VKAO_BINDING_AO_WRITE) uniform writeonly image2D ao_out;
 #include "view.glsl"
+#include "finish.glsl"
 
 const ivec2 AXIS = VERTICAL ? ivec2(0, 1) : ivec2(1, 0);
 
-float load_ao(ivec2 texel)
+vec4 load_noisy(ivec2 texel)
 {
-    return VERTICAL ? texelFetch(halfway_image, texel, 0).x : texelFetch(noisy_image, texel, 0).x;
+    vec4 v = VERTICAL ? texelFetch(halfway_image, texel, 0) : texelFetch(noisy_image, texel, 0);
+    return BENT_NORMALS ? v : v.xxxx;
 }
 
 float local_slope(ivec2 texel, float z)
@@ -36,21 +40,22 @@ float local_slope(ivec2 texel, float z)
 
 float normal_weight(vec3 normal, ivec2 texel)
 {
-    vec3 other = decode_normal(texel, params.normal_encoding);
+    vec3 other = decode_normal(texel << params.grid_shift, params.encodings & 0xffu);
     if (normal == vec3(0.0) || other == vec3(0.0))
         return 1.0;
     return pow(max(dot(normal, other), 1.0e-6), params.normal_power);
 }
 
-float blurred(ivec2 texel, float z)
+vec4 blurred(ivec2 texel, float z)
 {
     float slope = local_slope(texel, z);
     float edge = params.sharpness / (params.reference_z > 0.0 ? params.reference_z : z);
     bool use_normals = params.normal_power > 0.0;
-    vec3 normal = use_normals ? decode_normal(texel, params.normal_encoding) : vec3(0.0);
+    vec3 normal = use_normals ? decode_normal(texel << params.grid_shift, params.encodings & 0xffu) : vec3(0.0);
     /* The outermost tap keeps exp(-2) of the centre's weight. */
     float fall = -2.0 / float(max(1u, params.radius * params.radius));
-    float sum = load_ao(texel), weights = 1.0;
+    vec4 sum = load_noisy(texel);
+    float weights = 1.0;
     for (int k = -int(params.radius); k <= int(params.radius); ++k) {
         ivec2 at = texel + k * AXIS;
         float tap_z = k == 0 ? 0.0 : load_view_z(at);
@@ -58,7 +63,7 @@ float blurred(ivec2 texel, float z)
             float w = exp(fall * float(k * k)) * max(0.0, 1.0 - edge * abs(tap_z - z - slope * float(k)));
             if (use_normals)
                 w *= normal_weight(normal, at);
-            sum += w * load_ao(at);
+            sum += w * load_noisy(at);
             weights += w;
         }
     }
@@ -71,11 +76,12 @@ void main()
     if (any(greaterThanEqual(texel, unpack_texel(params.rect.y))))
         return;
     float z = load_view_z(texel);
-    float ao = z > 0.0 ? blurred(texel, z) : 1.0;
-    if (VERTICAL) {
-        ao = clamp(1.0 - params.intensity * (1.0 - ao), 0.0, 1.0);
-        imageStore(ao_out, texel, vec4(params.power == 1.0 ? ao : pow(ao, params.power)));
-    } else {
-        imageStore(halfway_out, texel, vec4(ao));
-    }
+    vec4 result = z > 0.0 ? blurred(texel, z) : vec4(0.0, 0.0, 0.0, 1.0);
+    vec4 stored = BENT_NORMALS ? result : result.wwww;
+    if (!VERTICAL)
+        imageStore(halfway_out, texel, stored);
+    else if (params.grid_shift > 0)
+        imageStore(noisy_out, texel, stored); /* upsample finishes */
+    else
+        finish(texel, result, z == 0.0);
 }

@@ -1,6 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * AO onto colour. Linear light throughout; alpha is passed on. */
+ * AO onto colour, in linear light; alpha is passed on. AO belongs on indirect light; multiplying all of it is the
+ * approximation for pictures that come in one piece.
+ *
+ * Multi-bounce (Jimenez et al. 2016): light that leaves an occluded place by further bounces, by albedo p per channel,
+ *     max(ao, ((a ao + b) ao + c) ao), a = 2.0404 p - 0.3324, b = -4.7951 p + 0.6417, c = 2.7552 p + 0.6903.
+ * Specular occlusion, either from AO and roughness r (Lagarde and de Rousiers, 'Moving Frostbite to PBR', 2014),
+ *     saturate((n.v + ao)^exp2(-16 r - 1) - 1 + ao),
+ * or from the cone around the bent normal that AO opens, cut by the cone of the specular lobe (Oat and Sander,
+ * 'Ambient Aperture Lighting', 2007). */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -12,21 +20,72 @@ layout(push_constant) uniform Block { vkao_composite_block params; };
 layout(binding = VKAO_BINDING_AO_READ) uniform texture2D ao_image;
 layout(binding = VKAO_BINDING_COLOR) uniform texture2D color_image;
 layout(binding = VKAO_BINDING_DIRECT) uniform texture2D direct_image;
+layout(binding = VKAO_BINDING_ALBEDO) uniform texture2D albedo_image;
+layout(binding = VKAO_BINDING_SPECULAR) uniform texture2D specular_image;
+layout(binding = VKAO_BINDING_BENT_READ) uniform texture2D bent_image;
 layout(binding = VKAO_BINDING_OUTPUT) uniform writeonly image2D output_image;
+#define VKAO_UNPROJECT
+#define VKAO_NORMAL_ENCODING (params.encodings & 0xffu)
+#include "view.glsl"
+
+vec3 multi_bounce(float ao, vec3 albedo)
+{
+    vec3 a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417, c = 2.7552 * albedo + 0.6903;
+    return max(vec3(ao), ((a * ao + b) * ao + c) * ao);
+}
+
+/* Solid angle of two cones' intersection over that of the second, by the sine-free approximation of Oat and Sander. */
+float cone_overlap(float cos_open, float cos_lobe, float cos_between)
+{
+    float open = acos(cos_open), lobe = acos(cos_lobe), between = acos(clamp(cos_between, -1.0, 1.0));
+    float smaller = 1.0 - max(cos_open, cos_lobe), difference = abs(open - lobe);
+    float x = 1.0 - clamp((between - difference) / max(open + lobe - difference, 1.0e-4), 0.0, 1.0);
+    return smaller * x * x * (3.0 - 2.0 * x) / max(1.0 - cos_lobe, 1.0e-6);
+}
+
+float specular_occlusion(ivec2 texel, float ao, float roughness)
+{
+    vec3 n = to_view(decode_normal(texel, params.encodings & 0xffu));
+    vec3 v = direction_to_eye(view_position(vec2(texel) / float(1 << params.grid_shift), 1.0));
+    if (n == vec3(0.0))
+        return ao; /* background, or a normal that is not to be trusted */
+    if (params.specular_occlusion == VKAO_GLSL_SPECULAR_FROM_AO) {
+        float exponent = exp2(-16.0 * roughness - 1.0);
+        return clamp(pow(max(dot(n, v), 0.0) + ao, exponent) - 1.0 + ao, 0.0, 1.0);
+    }
+    vec3 bent = to_view(decode_direction(texelFetch(bent_image, texel, 0).xyz, (params.encodings >> 8) & 0xffu));
+    if (bent == vec3(0.0))
+        return ao;
+    /* AO is 1 - cos^2 of the cone that is open; the lobe holds most of a GGX lobe's energy. */
+    float cos_lobe = min(exp2(-3.32193 * roughness * roughness), 0.9999); /* a mirror's cone has no solid angle */
+    return clamp(cone_overlap(sqrt(max(0.0, 1.0 - ao)), cos_lobe, dot(bent, reflect(-v, n))), 0.0, 1.0);
+}
+
+vec4 lit(ivec2 texel, vec3 factor, float ao)
+{
+    vec4 color = texelFetch(color_image, texel, 0);
+    vec3 rgb = color.rgb * factor;
+    if (params.mode == VKAO_GLSL_COMPOSITE_INDIRECT)
+        rgb += texelFetch(direct_image, texel, 0).rgb;
+    if (params.specular_occlusion != VKAO_GLSL_SPECULAR_NONE) {
+        vec4 specular = texelFetch(specular_image, texel, 0);
+        rgb += specular.rgb * mix(1.0, specular_occlusion(texel, ao, specular.a), params.tint.w);
+    }
+    return vec4(rgb, color.a);
+}
 
 void main()
 {
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + ivec2(params.rect.x & 0xffffu, params.rect.x >> 16);
-    if (texel.x >= int(params.rect.y & 0xffffu) || texel.y >= int(params.rect.y >> 16))
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(params.rect.x);
+    if (any(greaterThanEqual(texel, unpack_texel(params.rect.y))))
         return;
-    float ao = mix(1.0, texelFetch(ao_image, texel, 0).x, params.tint.w);
-    vec3 factor = mix(params.tint.rgb, vec3(1.0), ao);
+    float ao = texelFetch(ao_image, texel, 0).x;
+    vec3 open = vec3(mix(1.0, ao, params.tint.w));
+    if (params.multi_bounce != 0u)
+        open = mix(vec3(1.0), multi_bounce(ao, texelFetch(albedo_image, texel, 0).rgb), params.tint.w);
+    vec3 factor = mix(params.tint.rgb, vec3(1.0), open);
     vec4 result = vec4(factor, 1.0);
-    if (params.mode != VKAO_GLSL_COMPOSITE_AO_ONLY) {
-        vec4 color = texelFetch(color_image, texel, 0);
-        result = vec4(color.rgb * factor, color.a);
-    }
-    if (params.mode == VKAO_GLSL_COMPOSITE_INDIRECT)
-        result.rgb += texelFetch(direct_image, texel, 0).rgb;
+    if (params.mode != VKAO_GLSL_COMPOSITE_AO_ONLY)
+        result = lit(texel, factor, ao);
     imageStore(output_image, texel, result);
 }

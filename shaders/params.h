@@ -36,10 +36,15 @@
 #define VKAO_BINDING_COLOR 9
 #define VKAO_BINDING_DIRECT 10
 #define VKAO_BINDING_OUTPUT 11
-#define VKAO_BINDING_COUNT 12
+#define VKAO_BINDING_BENT_WRITE 12
+#define VKAO_BINDING_BENT_READ 13
+#define VKAO_BINDING_ALBEDO 14
+#define VKAO_BINDING_SPECULAR 15
+#define VKAO_BINDING_COUNT 16
 
 /* Specialization constants */
 #define VKAO_CONSTANT_BLUR_VERTICAL 0
+#define VKAO_CONSTANT_BENT_NORMALS 1
 
 /* Values of the public enums that shaders test; lib/internal.h asserts that they are equal. */
 #define VKAO_GLSL_DEPTH_PROJECTED 0
@@ -56,6 +61,24 @@
 #define VKAO_GLSL_COMPOSITE_MULTIPLY 0
 #define VKAO_GLSL_COMPOSITE_INDIRECT 1
 #define VKAO_GLSL_COMPOSITE_AO_ONLY 2
+#define VKAO_GLSL_COMPOSITE_NOISY_AO 3
+#define VKAO_GLSL_COMPOSITE_NORMALS 4
+#define VKAO_GLSL_COMPOSITE_BENT_NORMALS 5
+#define VKAO_GLSL_COMPOSITE_VIEW_Z 6
+#define VKAO_GLSL_SPECULAR_NONE 0
+#define VKAO_GLSL_SPECULAR_FROM_AO 1
+
+/* What vbao guesses of the scene between its samples and behind them, and where it samples; lengths are fractions of
+ * the radius, cosines those of the angle to the eye. Found by coordinate search on solid and thin scenes together. */
+#define VKAO_VBAO_REACH_SMOOTH 0.80    /* how far the last step goes: the smooth falloff hides what lies beyond */
+#define VKAO_VBAO_REACH_THRESHOLD 1.0
+#define VKAO_STEP_LINEAR 0.50          /* distance of step t is q (LINEAR + (1 - LINEAR) q), q = (t + jitter) / steps */
+#define VKAO_THICKNESS_BASE 0.12       /* thickness of what is seen */
+#define VKAO_THICKNESS_SLOPE 0.60      /* and what it gains per distance to the side */
+#define VKAO_VBAO_JOIN 1.4             /* rise over the tangent plane, per run, up to which two samples are one surface */
+#define VKAO_VBAO_GAP_FRONT 0.55        /* share of the gap by which the front of a separate surface moves in */
+#define VKAO_VBAO_GAP_BACK 0.7         /* share of the gap by which its back moves out */
+#define VKAO_VBAO_ROUND 0.9            /* added before a sector bound is cut to an integer */
 
 /* Rectangles are half open and packed two 16-bit texel coordinates to a word, x low: [0] = min, [1] = max.
  * unproject: view xy = texel * unproject.xy + unproject.zw, times view z in perspective. Texel centres are integers
@@ -70,13 +93,14 @@ struct vkao_prepare_block {
     VKAO_UVEC2(valid);
     VKAO_UINT(depth_encoding);
     VKAO_UINT(orthographic);
+    VKAO_UINT(grid_shift); /* 1 = half resolution: texel << 1 is the image's */
 };
 
 struct vkao_ssao_block {
     VKAO_VEC4(unproject);
     VKAO_UVEC2(valid);
     VKAO_UVEC2(rect);
-    /* rows of normal_to_view; .w holds radius, bias (scene units), blocking_scale */
+    /* rows of normal_to_view; .w holds radius, bias (scene units), and blocking_scale (SPHERE) or thickness */
     VKAO_VEC4(normal_x);
     VKAO_VEC4(normal_y);
     VKAO_VEC4(normal_z);
@@ -88,24 +112,58 @@ struct vkao_ssao_block {
     VKAO_UINT(noise_index);
     VKAO_UINT(falloff);
     VKAO_UINT(sphere_form);
+    VKAO_UINT(slices_and_steps); /* 16 bits each, slices low */
+    VKAO_UINT(grid_shift);
 };
 
 struct vkao_blur_block {
+    VKAO_VEC4(normal_x); /* rows of normal_to_view, for bent normals */
+    VKAO_VEC4(normal_y);
+    VKAO_VEC4(normal_z);
     VKAO_UVEC2(valid);
     VKAO_UVEC2(rect);
     VKAO_UINT(radius);
     VKAO_FLOAT(sharpness);
     VKAO_FLOAT(normal_power);
-    VKAO_UINT(normal_encoding);
+    VKAO_UINT(encodings); /* of normals, and << 8 of bent normals */
     VKAO_FLOAT(intensity);
     VKAO_FLOAT(power);
     VKAO_FLOAT(reference_z); /* what sharpness is relative to in orthographic views; 0 = the texel's own z */
+    VKAO_UINT(grid_shift);
+};
+
+/* valid is the half-resolution one, which load_view_z checks. */
+struct vkao_upsample_block {
+    VKAO_VEC4(normal_x); /* .w = sharpness */
+    VKAO_VEC4(normal_y); /* .w = normal_power */
+    VKAO_VEC4(normal_z); /* .w = reference_z */
+    VKAO_VEC4(unproject);
+    VKAO_VEC2(linearize);
+    VKAO_UVEC2(valid);
+    VKAO_UVEC2(full_valid);
+    VKAO_UVEC2(rect);
+    VKAO_FLOAT(far_depth);
+    VKAO_FLOAT(far_z);
+    VKAO_FLOAT(intensity);
+    VKAO_FLOAT(power);
+    VKAO_UINT(encodings); /* of normals, << 8 of bent normals, << 16 of depth */
+    VKAO_UINT(orthographic);
 };
 
 struct vkao_composite_block {
     VKAO_VEC4(tint); /* .w = strength */
+    VKAO_VEC4(normal_x); /* rows of normal_to_view; .w = what VIEW_Z divides by */
+    VKAO_VEC4(normal_y);
+    VKAO_VEC4(normal_z);
+    VKAO_VEC4(unproject);
+    VKAO_UVEC2(valid); /* of the grid that the stages ran on */
     VKAO_UVEC2(rect);
     VKAO_UINT(mode);
+    VKAO_UINT(multi_bounce);
+    VKAO_UINT(specular_occlusion);
+    VKAO_UINT(encodings);
+    VKAO_UINT(orthographic);
+    VKAO_UINT(grid_shift);
 };
 
 #endif

@@ -1,18 +1,31 @@
 /* SPDX-License-Identifier: MIT
  *
  * The frame of every SSAO method: one invocation per texel of the rect, background exactly 1. The includer defines
- *     float visibility(ivec2 texel, vec3 position, vec3 normal) */
+ *     vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
+ * whose w is visibility and whose xyz, if BENT_NORMALS, is the mean visible direction, of any length. */
 #ifndef VKAO_SSAO_GLSL_
 #define VKAO_SSAO_GLSL_
 
+layout(constant_id = VKAO_CONSTANT_BENT_NORMALS) const bool BENT_NORMALS = false;
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_ssao_block params; };
 layout(binding = VKAO_BINDING_NOISY_WRITE) uniform writeonly image2D noisy_image;
 #define VKAO_UNPROJECT
+#define VKAO_NORMAL_ENCODING params.normal_encoding
 #include "view.glsl"
 #include "noise.glsl"
 
-float visibility(ivec2 texel, vec3 position, vec3 normal);
+vec4 visibility(ivec2 texel, vec3 position, vec3 normal);
+
+/* Any two unit vectors that make an orthonormal basis with n (Duff et al., JCGT 6(1), 2017). */
+void tangents(vec3 n, out vec3 t, out vec3 b)
+{
+    float s = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (s + n.z);
+    float c = n.x * n.y * a;
+    t = vec3(1.0 + s * n.x * n.x * a, s * c, -s * n.x);
+    b = vec3(c, s + n.y * n.y * a, -n.y);
+}
 
 /* How far a view z may be off through the precision of the depth that it came from. */
 float depth_error(float z)
@@ -50,12 +63,12 @@ void main()
     if (any(greaterThanEqual(texel, unpack_texel(params.rect.y))))
         return;
     float z = load_view_z(texel);
-    float ao = 1.0;
+    vec4 result = vec4(0.0, 0.0, 0.0, 1.0);
     if (z > 0.0) {
         vec3 position = view_position(vec2(texel), z);
-        ao = visibility(texel, position, view_normal(texel, position));
+        result = visibility(texel, position, view_normal(texel, position));
     }
-    imageStore(noisy_image, texel, vec4(ao));
+    imageStore(noisy_image, texel, BENT_NORMALS ? result : result.wwww);
 }
 
 #endif

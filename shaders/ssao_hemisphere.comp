@@ -13,17 +13,7 @@
 #include "params.h"
 #include "ssao.glsl"
 
-/* Any two unit vectors that make an orthonormal basis with n (Duff et al., JCGT 6(1), 2017). */
-void tangents(vec3 n, out vec3 t, out vec3 b)
-{
-    float s = n.z >= 0.0 ? 1.0 : -1.0;
-    float a = -1.0 / (s + n.z);
-    float c = n.x * n.y * a;
-    t = vec3(1.0 + s * n.x * n.x * a, s * c, -s * n.x);
-    b = vec3(c, s + n.y * n.y * a, -n.y);
-}
-
-float visibility(ivec2 texel, vec3 position, vec3 normal)
+vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
 {
     float radius = params.normal_x.w, bias = params.normal_y.w + depth_error(position.z);
     vec3 t, b;
@@ -43,5 +33,5 @@ float visibility(ivec2 texel, vec3 position, vec3 normal)
         bool hit = scene_z > 0.0 && stands_in_front(occluder, position, normal, len * sqrt(1.0 - r2) + bias);
         blocked += hit ? range_weight(scene_z - position.z, radius) : 0.0;
     }
-    return 1.0 - blocked / float(params.sample_count);
+    return vec4(vec3(0.0), 1.0 - blocked / float(params.sample_count));
 }

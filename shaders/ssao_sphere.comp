@@ -78,9 +78,9 @@ float rescaled_blocking(ivec2 texel, vec3 position, vec3 normal)
     return blocked / float(2u * pairs);
 }
 
-float visibility(ivec2 texel, vec3 position, vec3 normal)
+vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
 {
     if (params.sphere_form == VKAO_GLSL_SPHERE_RESCALED)
-        return min(1.0, 2.0 * (1.0 - rescaled_blocking(texel, position, normal)));
-    return 1.0 - literal_blocking(texel, position);
+        return vec4(vec3(0.0), min(1.0, 2.0 * (1.0 - rescaled_blocking(texel, position, normal))));
+    return vec4(vec3(0.0), 1.0 - literal_blocking(texel, position));
 }

@@ -32,19 +32,24 @@ vec3 decode_octahedral(vec2 e)
     return n;
 }
 
-/* The stored normal in its own space, unit length; zero if there is none to trust: none given, not finite, or
+/* A stored direction in its own space, unit length; zero if there is none to trust: none given, not finite, or
  * shorter than 0.5, which is what averaging over an edge leaves. */
-vec3 decode_normal(ivec2 texel, uint encoding)
+vec3 decode_direction(vec3 n, uint encoding)
 {
-    if (encoding == VKAO_GLSL_NORMALS_FROM_DEPTH)
-        return vec3(0.0);
-    vec3 n = texelFetch(normals_image, texel, 0).xyz;
     if (encoding == VKAO_GLSL_NORMALS_XYZ_UNORM || encoding == VKAO_GLSL_NORMALS_OCT_UNORM)
         n = n * 2.0 - 1.0;
     if (encoding >= VKAO_GLSL_NORMALS_OCT_SNORM)
         n = decode_octahedral(n.xy);
     float length2 = dot(n, n);
     return length2 >= 0.25 && length2 < 3.0e38 ? n * inversesqrt(length2) : vec3(0.0);
+}
+
+/* texel is the image's, also where the grid is coarser. */
+vec3 decode_normal(ivec2 texel, uint encoding)
+{
+    if (encoding == VKAO_GLSL_NORMALS_FROM_DEPTH)
+        return vec3(0.0);
+    return decode_direction(texelFetch(normals_image, texel, 0).xyz, encoding);
 }
 
 #ifdef VKAO_UNPROJECT
@@ -93,11 +98,17 @@ vec3 normal_from_depth(ivec2 texel, vec3 center)
     return normalize(n);
 }
 
-/* Unit view-space normal that faces the eye. */
+/* Stored directions to view space. */
+vec3 to_view(vec3 stored)
+{
+    return vec3(dot(params.normal_x.xyz, stored), dot(params.normal_y.xyz, stored), dot(params.normal_z.xyz, stored));
+}
+
+/* Unit view-space normal that faces the eye, of a texel of the grid. */
 vec3 view_normal(ivec2 texel, vec3 center)
 {
-    vec3 stored = decode_normal(texel, params.normal_encoding);
-    vec3 n = vec3(dot(params.normal_x.xyz, stored), dot(params.normal_y.xyz, stored), dot(params.normal_z.xyz, stored));
+    vec3 stored = decode_normal(texel << params.grid_shift, VKAO_NORMAL_ENCODING);
+    vec3 n = to_view(stored);
     if (stored == vec3(0.0))
         n = normal_from_depth(texel, center);
     return dot(n, direction_to_eye(center)) < 0.0 ? -n : n;

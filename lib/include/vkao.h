@@ -92,6 +92,15 @@ typedef enum vkao_ssao_method {
     VKAO_SSAO_SPHERE = 0,
     /* Cosine-distributed points in the normal-oriented hemisphere (Filion and McNaughton 2008). */
     VKAO_SSAO_HEMISPHERE = 1,
+    /* Horizons, true-horizon form (Bavoil et al. 2008). */
+    VKAO_SSAO_HBAO = 2,
+    /* Cosine-weighted horizons (Jimenez et al. 2016), normalised so that an open wall is exactly 1. */
+    VKAO_SSAO_GTAO = 3,
+    /* Visibility bitmask (Therrien et al. 2023) with cosine-correct sectors, first hits and thickness: the closest
+     * to ray-traced AO for its time. */
+    VKAO_SSAO_VBAO = 4,
+    /* Cosine-distributed rays marched through the depth image: slow, the yardstick of the others. */
+    VKAO_SSAO_RAYMARCH = 5,
     VKAO_SSAO_METHOD_MAX_ENUM = 0x7fffffff
 } vkao_ssao_method;
 
@@ -173,6 +182,11 @@ typedef struct vkao_images {
     vkao_image color;    /* lit colour or indirect light, any float or unorm format; optional for AO_ONLY */
     vkao_image direct;   /* direct light, required by VKAO_COMPOSITE_INDIRECT only; as color */
     vkao_image output;   /* storage-capable colour format; may be color's image if both are GENERAL */
+    /* Mean unoccluded direction, written by BLUR after GTAO, VBAO or RAYMARCH, in the space of the normals and the
+     * encoding view.bent_encoding; zero on background. Input if only COMPOSITE. ao_noisy must then be unused. */
+    vkao_image bent_normals;
+    vkao_image albedo;   /* diffuse reflectance in rgb, for composite.multi_bounce; as color */
+    vkao_image specular; /* indirect specular light in rgb, roughness in alpha, for composite.specular; as color */
 } vkao_images;
 
 static inline vkao_images vkao_images_default(void)
@@ -196,6 +210,11 @@ typedef struct vkao_frame_info {
      * destroy. Frames on one queue may share it, and you may alias it outside vkao recordings. */
     VkDeviceMemory scratch_memory; /* VK_NULL_HANDLE = the library allocates exactly one block */
     VkDeviceSize scratch_offset;   /* bytes; multiple of the queried alignment */
+    /* VK_TRUE: SSAO and BLUR run on every second texel of every second row, and BLUR ends with a depth- and
+     * normal-aware upsampling: a fourth of the work and of the scratch. Lengths keep their meaning; blur.radius counts
+     * half-resolution texels. Needs both stages, and no ao_noisy. view.valid must begin at even texels. */
+    VkBool32 half_resolution;
+    uint32_t reserved; /* zero */
 } vkao_frame_info;
 
 /* Exact device memory for this info: the one allocation that vkao_frame_create would make. size 0 = none.
@@ -266,6 +285,9 @@ typedef struct vkao_view {
      * shorter than 0.5 or not finite are replaced by the one reconstructed from depth. */
     float normal_to_view[9];
     uint32_t reserved; /* zero */
+    /* Of images.bent_normals. 0 = as normal_encoding, or XYZ_SNORM if that is FROM_DEPTH. */
+    vkao_normal_encoding bent_encoding;
+    uint32_t reserved_too; /* zero */
 } vkao_view;
 
 static inline vkao_view vkao_view_default(void)
@@ -305,10 +327,16 @@ typedef struct vkao_ssao_params {
     uint32_t noise_index;  /* any; 0 = the static pattern; a frame counter if something temporal follows */
     float radius;          /* (0,inf) scene units that an occluder reaches. Default 0.5 */
     /* [0,1] fraction of radius by which the scene must stand in front of a point to block it; hides acne from
-     * coarse depth or interpolated normals. Default 0.01 */
+     * coarse depth or interpolated normals. Default 0.005 */
     float bias;
     float blocking_scale; /* (0,inf) 1 / scene units; the constant 50 of SPHERE_LITERAL. Default 50 */
     uint32_t reserved;    /* zero */
+    uint32_t slice_count; /* [1,64] HBAO, GTAO, VBAO: directions, each marched to both sides; 0 = 1. Default 1 */
+    uint32_t step_count;  /* [1,256] samples on each side of a slice, or on each ray of RAYMARCH; 0 = 10. Default 10 */
+    /* [0,8] VBAO, RAYMARCH: how thick the scene is behind what is seen, relative to the measured default, which grows
+     * from .12 radius by .60 of the distance to the side. 0 = 1. Default 1 */
+    float thickness;
+    uint32_t reserved_too; /* zero */
 } vkao_ssao_params;
 
 static inline vkao_ssao_params vkao_ssao_params_default(void)
@@ -316,11 +344,14 @@ static inline vkao_ssao_params vkao_ssao_params_default(void)
     vkao_ssao_params p;
     memset(&p, 0, sizeof p);
     p.struct_size = (uint32_t)sizeof p;
-    p.method = VKAO_SSAO_HEMISPHERE;
+    p.method = VKAO_SSAO_VBAO;
     p.sample_count = 16;
     p.radius = 0.5f;
-    p.bias = 0.01f;
+    p.bias = 0.005f;
     p.blocking_scale = 50.0f;
+    p.slice_count = 1;
+    p.step_count = 10;
+    p.thickness = 1.0f;
     return p;
 }
 
@@ -359,16 +390,33 @@ typedef enum vkao_composite_mode {
     VKAO_COMPOSITE_MULTIPLY = 0, /* rgb = color * mix(tint, 1, a), a = mix(1, ao, strength) */
     VKAO_COMPOSITE_INDIRECT = 1, /* rgb = direct + color * mix(tint, 1, a): AO on indirect light only */
     VKAO_COMPOSITE_AO_ONLY = 2,  /* rgb = mix(tint, 1, a), alpha 1; color is not read */
+    /* To look at what the stages saw, at their own resolution; alpha 1. For frames with SSAO. */
+    VKAO_COMPOSITE_NOISY_AO = 3,     /* before the blur; needs BLUR at full resolution, and no bent normals */
+    VKAO_COMPOSITE_NORMALS = 4,      /* view space, * 0.5 + 0.5, blue towards the eye */
+    VKAO_COMPOSITE_BENT_NORMALS = 5, /* the same of images.bent_normals */
+    VKAO_COMPOSITE_VIEW_Z = 6,       /* view z / debug_distance */
     VKAO_COMPOSITE_MODE_MAX_ENUM = 0x7fffffff
 } vkao_composite_mode;
 
 /* Alpha is color's (MULTIPLY, INDIRECT). */
+/* Occlusion of indirect specular light: images.specular is added times it. */
+typedef enum vkao_specular {
+    VKAO_SPECULAR_NONE = 0,      /* images.specular is not read */
+    VKAO_SPECULAR_FROM_AO = 1,   /* from AO and roughness (Lagarde and de Rousiers 2014) */
+    VKAO_SPECULAR_FROM_BENT = 2, /* from the cone around the bent normal (Oat and Sander 2007) */
+    VKAO_SPECULAR_MAX_ENUM = 0x7fffffff
+} vkao_specular;
+
 typedef struct vkao_composite_params {
     uint32_t struct_size;
     vkao_composite_mode mode;
     float strength;    /* [0,1] 0 = as if open everywhere. Default 1 */
     float tint[3];     /* [0,1] linear colour of full occlusion. Default black */
     uint32_t reserved; /* zero */
+    /* VK_TRUE: brighten AO per channel by the light that bounces on, from images.albedo (Jimenez et al. 2016). */
+    VkBool32 multi_bounce;
+    vkao_specular specular; /* MULTIPLY and INDIRECT; needs images.specular and images.normals. Default NONE */
+    float debug_distance;   /* (0,inf) scene units that VIEW_Z shows as 1; 0 = 100. Default 100 */
 } vkao_composite_params;
 
 static inline vkao_composite_params vkao_composite_params_default(void)
@@ -377,8 +425,25 @@ static inline vkao_composite_params vkao_composite_params_default(void)
     memset(&p, 0, sizeof p);
     p.struct_size = (uint32_t)sizeof p;
     p.strength = 1.0f;
+    p.debug_distance = 100.0f;
     return p;
 }
+
+/* --- Presets: one setting for every scene --- */
+
+typedef enum vkao_quality {
+    VKAO_QUALITY_FAST = 0, /* half resolution */
+    VKAO_QUALITY_DEFAULT = 1,
+    VKAO_QUALITY_HIGH = 2,
+    VKAO_QUALITY_BEST = 3,
+    VKAO_QUALITY_MAX_ENUM = 0x7fffffff
+} vkao_quality;
+
+/* Sets what a preset decides and leaves the rest (radius, falloff, intensity ...) alone: half_resolution of the frame;
+ * method, slice_count, step_count, bias, thickness; blur radius, sharpness, normal_power. Each pointer may be NULL; the
+ * structs come from the *_default() functions. Errors: INVALID_ARGUMENT for an unknown quality. */
+VKAO_API vkao_result vkao_preset(vkao_quality quality, vkao_frame_info *frame, vkao_ssao_params *ssao,
+                                 vkao_blur_params *blur);
 
 /* Record one stage. The frame must have been built for it. Arguments are read before the call returns.
  * Errors: INVALID_ARGUMENT; then nothing was recorded.

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the stages saw, at their own resolution, as pictures: the composite modes to debug with. */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#define VKAO_GLSL
+#include "params.h"
+
+layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
+layout(push_constant) uniform Block { vkao_composite_block params; };
+layout(binding = VKAO_BINDING_NOISY_READ) uniform texture2D noisy_image;
+layout(binding = VKAO_BINDING_BENT_READ) uniform texture2D bent_image;
+layout(binding = VKAO_BINDING_OUTPUT) uniform writeonly image2D output_image;
+#define VKAO_UNPROJECT
+#define VKAO_NORMAL_ENCODING (params.encodings & 0xffu)
+#include "view.glsl"
+
+vec4 debug_view(ivec2 texel)
+{
+    ivec2 at = texel >> params.grid_shift;
+    float z = load_view_z(at);
+    if (params.mode == VKAO_GLSL_COMPOSITE_VIEW_Z)
+        return vec4(vec3(z / params.normal_x.w), 1.0);
+    if (params.mode == VKAO_GLSL_COMPOSITE_NOISY_AO)
+        return vec4(vec3(z > 0.0 ? texelFetch(noisy_image, at, 0).x : 1.0), 1.0);
+    vec3 n = vec3(0.0);
+    if (z > 0.0 && params.mode == VKAO_GLSL_COMPOSITE_NORMALS)
+        n = view_normal(at, view_position(vec2(at), z));
+    if (params.mode == VKAO_GLSL_COMPOSITE_BENT_NORMALS)
+        n = to_view(decode_direction(texelFetch(bent_image, texel, 0).xyz, (params.encodings >> 8) & 0xffu));
+    n.z = -n.z; /* towards the eye is what pictures of normals show as blue */
+    return vec4(n * 0.5 + 0.5, 1.0);
+}
+
+void main()
+{
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(params.rect.x);
+    if (any(greaterThanEqual(texel, unpack_texel(params.rect.y))))
+        return;
+    imageStore(output_image, texel, debug_view(texel));
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The end of the line, whichever stage it falls to: intensity and power, bent normals in the caller's space and
+ * encoding. They come after the blur because they are not linear: noise would turn into bias. The includer's params
+ * have intensity, power, encodings and the rows of normal_to_view. */
+#ifndef VKAO_FINISH_GLSL_
+#define VKAO_FINISH_GLSL_
+
+layout(binding = VKAO_BINDING_AO_WRITE) uniform writeonly image2D ao_out;
+layout(binding = VKAO_BINDING_BENT_WRITE) uniform writeonly image2D bent_out;
+
+vec2 encode_octahedral(vec3 n)
+{
+    vec2 e = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    vec2 side = vec2(e.x >= 0.0 ? 1.0 : -1.0, e.y >= 0.0 ? 1.0 : -1.0);
+    return n.z >= 0.0 ? e : (1.0 - abs(e.yx)) * side;
+}
+
+vec4 encode_normal(vec3 n, uint encoding)
+{
+    vec3 e = encoding >= VKAO_GLSL_NORMALS_OCT_SNORM ? vec3(encode_octahedral(n), 0.0) : n;
+    bool unorm = encoding == VKAO_GLSL_NORMALS_XYZ_UNORM || encoding == VKAO_GLSL_NORMALS_OCT_UNORM;
+    return vec4(unorm ? e * 0.5 + 0.5 : e, 0.0);
+}
+
+/* result.w: visibility; result.xyz: mean visible direction in view space, of any length. background is seen nothing of:
+ * it is open, and its bent normal is zero, as its normal is. */
+void finish(ivec2 texel, vec4 result, bool background)
+{
+    float ao = clamp(1.0 - params.intensity * (1.0 - result.w), 0.0, 1.0);
+    ao = params.power == 1.0 ? ao : pow(ao, params.power);
+    imageStore(ao_out, texel, vec4(background ? 1.0 : ao));
+    if (BENT_NORMALS) {
+        vec3 n = params.normal_x.xyz * result.x + params.normal_y.xyz * result.y + params.normal_z.xyz * result.z;
+        float length2 = dot(n, n);
+        vec4 zero = encode_normal(vec3(0.0, 0.0, 0.0), (params.encodings >> 8) & 0xffu);
+        vec4 code = encode_normal(n * inversesqrt(max(length2, 1.0e-30)), (params.encodings >> 8) & 0xffu);
+        imageStore(bent_out, texel, background || length2 == 0.0 ? zero : code);
+    }
+}
+
+#endif

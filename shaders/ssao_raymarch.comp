@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The ray cast with a threshold distance, inside the depth image: cosine-distributed rays from the shaded point, marched
+ * in equal steps to the radius, hit where the ray is behind the surface by less than the surface is thick. Unbiased for
+ * its model of the scene, and slow: what the other methods are measured against. Rays are stratified by the golden ratio
+ * and the noise; noise_index gives another set. */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#define VKAO_GLSL
+#include "params.h"
+#include "ssao.glsl"
+#include "horizon.glsl"
+
+/* Weight of the first hit, 0 if there is none. */
+float first_hit(vec3 position, vec3 normal, vec3 direction, float jitter)
+{
+    float radius = params.normal_x.w;
+    float bias = params.normal_y.w + depth_error(position.z);
+    vec3 to_eye = direction_to_eye(position);
+    for (uint t = 0u; t < step_count(); ++t) {
+        float d = radius * (float(t) + jitter) / float(step_count());
+        vec3 point = position + d * direction;
+        if (point.z <= 0.0)
+            return 0.0;
+        ivec2 at = ivec2(floor(project_to_texel(point) + 0.5));
+        float z = load_view_z(at);
+        if (z <= 0.0)
+            continue;
+        vec3 surface = view_position(vec2(at), z);
+        vec3 v = surface - position;
+        float lateral = length(v - dot(v, to_eye) * to_eye);
+        float behind = dot(to_eye, surface - point);
+        float depth = params.normal_z.w * (VKAO_THICKNESS_BASE * radius + VKAO_THICKNESS_SLOPE * min(lateral, radius));
+        if (dot(normal, surface - point) > bias &&
+            behind > 0.0 && behind < depth)
+            return falloff_weight(d * d, radius);
+    }
+    return 0.0;
+}
+
+vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
+{
+    vec2 noise = slice_noise(texel);
+    vec3 t, b;
+    tangents(normal, t, b);
+    vec3 bent = vec3(0.0);
+    float lost = 0.0;
+    for (uint k = 0u; k < params.sample_count; ++k) {
+        float r2 = (float(k) + noise.y) / float(params.sample_count);
+        float angle = float(k) * GOLDEN_ANGLE + TWO_PI * noise.x;
+        vec3 direction = sqrt(r2) * (cos(angle) * t + sin(angle) * b) + sqrt(1.0 - r2) * normal;
+        float hit = first_hit(position, normal, direction, fract(golden_sequence(k) + noise.y));
+        lost += hit;
+        bent += (1.0 - hit) * direction;
+    }
+    return vec4(bent, 1.0 - lost / float(params.sample_count));
+}
