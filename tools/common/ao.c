@@ -2,18 +2,29 @@
 #include "ao.h"
 
 #include <stdlib.h>
+#include <time.h>
 #include <vulkan/vulkan.h>
 
 /* The caller's images, in the order of vkao_images. */
-enum job_image { IMAGE_DEPTH, IMAGE_NORMALS, IMAGE_COLOR, IMAGE_AO, IMAGE_OUTPUT, IMAGE_COUNT };
+enum job_image {
+    IMAGE_DEPTH,
+    IMAGE_NORMALS,
+    IMAGE_COLOR,
+    IMAGE_AO,
+    IMAGE_OUTPUT,
+    IMAGE_BENT,
+    IMAGE_COUNT
+};
 
 struct ao_session {
     struct gpu *gpu;
     vkao_context *ctx;
     vkao_frame *frame;
-    struct gpu_image images[IMAGE_COUNT]; /* of the last job; kept while the next one has the same shape */
+    struct gpu_image
+        images[IMAGE_COUNT]; /* of the last job; kept while the next one has the same shape */
     VkExtent2D extent;
-    bool has_normals, has_color;
+    bool has_normals, has_color, half_resolution, has_bent;
+    VkQueryPool timestamps; /* two, around the stages; VK_NULL_HANDLE if the queue has none */
 };
 
 static bool library_failed(struct tool_error *err, const char *call, vkao_result result)
@@ -26,6 +37,23 @@ static bool library_failed(struct tool_error *err, const char *call, vkao_result
     return fail(err, code, "%s: %s", call, vkao_result_string(result));
 }
 
+static bool create_timestamps(struct ao_session *session, struct tool_error *err)
+{
+    if (session->gpu->timestamp_bits == 0)
+        return true;
+    VkResult result = vkCreateQueryPool(session->gpu->device,
+                                        &(VkQueryPoolCreateInfo){
+                                            .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                            .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                            .queryCount = 2,
+                                        },
+                                        NULL, &session->timestamps);
+    if (result == VK_SUCCESS)
+        return true;
+    session->timestamps = VK_NULL_HANDLE;
+    return fail(err, EXIT_MEMORY, "vkCreateQueryPool failed with VkResult %d", (int)result);
+}
+
 struct ao_session *ao_session_create(struct gpu *gpu, uint32_t method_mask, struct tool_error *err)
 {
     struct ao_session *session = calloc(1, sizeof *session);
@@ -35,9 +63,9 @@ struct ao_session *ao_session_create(struct gpu *gpu, uint32_t method_mask, stru
     }
     session->gpu = gpu;
     session->ctx = gpu_context(gpu, method_mask, err);
-    if (session->ctx)
+    if (session->ctx && create_timestamps(session, err))
         return session;
-    free(session);
+    ao_session_destroy(session);
     return NULL;
 }
 
@@ -55,10 +83,12 @@ void ao_session_destroy(struct ao_session *session)
         return;
     drop_frame(session);
     vkao_context_destroy(session->ctx);
+    vkDestroyQueryPool(session->gpu->device, session->timestamps, NULL);
     free(session);
 }
 
-static bool create_frame(struct ao_session *session, const struct ao_job *job, struct tool_error *err)
+static bool create_frame(struct ao_session *session, const struct ao_job *job,
+                         struct tool_error *err)
 {
     const struct {
         bool used;
@@ -66,16 +96,22 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job, s
         VkImageUsageFlags usage;
     } plan[IMAGE_COUNT] = {
         [IMAGE_DEPTH] = {true, VK_FORMAT_R32_SFLOAT, VK_IMAGE_USAGE_SAMPLED_BIT},
-        [IMAGE_NORMALS] = {job->normals != NULL, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_SAMPLED_BIT},
-        [IMAGE_COLOR] = {job->color != NULL, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_SAMPLED_BIT},
-        [IMAGE_AO] = {true, VK_FORMAT_R32_SFLOAT, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
-        [IMAGE_OUTPUT] = {job->color != NULL, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT},
+        [IMAGE_NORMALS] = {job->normals != NULL, VK_FORMAT_R32G32B32A32_SFLOAT,
+                           VK_IMAGE_USAGE_SAMPLED_BIT},
+        [IMAGE_COLOR] = {job->color != NULL, VK_FORMAT_R32G32B32A32_SFLOAT,
+                         VK_IMAGE_USAGE_SAMPLED_BIT},
+        [IMAGE_AO] = {true, VK_FORMAT_R32_SFLOAT,
+                      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
+        [IMAGE_OUTPUT] = {job->color != NULL, VK_FORMAT_R32G32B32A32_SFLOAT,
+                          VK_IMAGE_USAGE_STORAGE_BIT},
+        [IMAGE_BENT] = {job->bent_normals, VK_FORMAT_R32G32B32A32_SFLOAT,
+                        VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
     };
     VkExtent2D extent = {job->width, job->height};
     drop_frame(session);
     for (int i = 0; i < IMAGE_COUNT; ++i) {
-        if (plan[i].used &&
-            !gpu_image_create(session->gpu, plan[i].format, extent, plan[i].usage, &session->images[i], err))
+        if (plan[i].used && !gpu_image_create(session->gpu, plan[i].format, extent, plan[i].usage,
+                                              &session->images[i], err))
             return false;
     }
     vkao_images images = vkao_images_default();
@@ -87,46 +123,91 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job, s
         images.color = gpu_image_slot(&session->images[IMAGE_COLOR]);
         images.output = gpu_image_slot(&session->images[IMAGE_OUTPUT]);
     }
-    vkao_stage_flags stages = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (job->color ? VKAO_STAGE_COMPOSITE : 0u);
-    vkao_result result = vkao_frame_create(session->ctx, &(vkao_frame_info){
-        .struct_size = sizeof(vkao_frame_info),
-        .stages = stages,
-        .extent = extent,
-        .images = &images,
-    }, &session->frame);
+    if (job->bent_normals)
+        images.bent_normals = gpu_image_slot(&session->images[IMAGE_BENT]);
+    vkao_stage_flags stages =
+        VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (job->color ? VKAO_STAGE_COMPOSITE : 0u);
+    vkao_result result = vkao_frame_create(session->ctx,
+                                           &(vkao_frame_info){
+                                               .struct_size = sizeof(vkao_frame_info),
+                                               .stages = stages,
+                                               .extent = extent,
+                                               .images = &images,
+                                               .half_resolution = job->half_resolution,
+                                           },
+                                           &session->frame);
     if (result != VKAO_SUCCESS)
         return library_failed(err, "vkao_frame_create", result);
     session->extent = extent;
     session->has_normals = job->normals != NULL;
     session->has_color = job->color != NULL;
+    session->half_resolution = job->half_resolution;
+    session->has_bent = job->bent_normals;
     return true;
 }
 
-static bool upload(struct ao_session *session, enum job_image which, const float *data, uint64_t texels,
-                   struct tool_error *err)
+static bool upload(struct ao_session *session, enum job_image which, const float *data,
+                   uint64_t texels, struct tool_error *err)
 {
     struct gpu_image *image = &session->images[which];
-    return !data || gpu_image_upload(session->gpu, image, data, texels * gpu_format_bytes(image->format), err);
+    return !data || gpu_image_upload(session->gpu, image, data,
+                                     texels * gpu_format_bytes(image->format), err);
 }
 
-static bool record_and_run(struct ao_session *session, const struct ao_job *job, struct tool_error *err)
+static double now_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
+}
+
+static bool read_timestamps(struct ao_session *session, double *ms, struct tool_error *err)
+{
+    const struct gpu *gpu = session->gpu;
+    uint64_t ticks[2],
+        mask = gpu->timestamp_bits < 64 ? (UINT64_C(1) << gpu->timestamp_bits) - 1 : UINT64_MAX;
+    VkResult result =
+        vkGetQueryPoolResults(gpu->device, session->timestamps, 0, 2, sizeof ticks, ticks,
+                              sizeof ticks[0], VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
+    if (result != VK_SUCCESS)
+        return fail(err, EXIT_DEVICE, "vkGetQueryPoolResults failed with VkResult %d", (int)result);
+    /* Masked after the subtraction: the counter may have wrapped in between. */
+    *ms = (double)((ticks[1] - ticks[0]) & mask) * (double)gpu->properties.limits.timestampPeriod *
+          1e-6;
+    return true;
+}
+
+static bool record_and_run(struct ao_session *session, const struct ao_job *job, double *gpu_ms,
+                           struct tool_error *err)
 {
     VkCommandBuffer cmd = gpu_begin(session->gpu, err);
     if (!cmd)
         return false;
+    if (session->timestamps) {
+        vkCmdResetQueryPool(cmd, session->timestamps, 0, 2);
+        vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, session->timestamps, 0);
+    }
     vkao_result result = vkao_cmd_all(session->frame, cmd, &job->view, &job->ssao, &job->blur,
                                       job->color ? &job->composite : NULL);
+    if (session->timestamps)
+        vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, session->timestamps, 1);
+    double start = now_ms();
     bool submitted = gpu_submit(session->gpu, cmd, err);
-    return result == VKAO_SUCCESS ? submitted : library_failed(err, "vkao_cmd_all", result);
+    *gpu_ms = now_ms() - start;
+    if (result != VKAO_SUCCESS)
+        return library_failed(err, "vkao_cmd_all", result);
+    return submitted && (!session->timestamps || read_timestamps(session, gpu_ms, err));
 }
 
-static float *download(struct ao_session *session, enum job_image which, uint64_t texels, struct tool_error *err)
+static float *download(struct ao_session *session, enum job_image which, uint64_t texels,
+                       struct tool_error *err)
 {
     struct gpu_image *image = &session->images[which];
     uint64_t bytes = texels * gpu_format_bytes(image->format);
     float *data = malloc((size_t)bytes);
     if (!data) {
-        fail(err, EXIT_MEMORY, "out of memory for %ux%u texels", image->extent.width, image->extent.height);
+        fail(err, EXIT_MEMORY, "out of memory for %ux%u texels", image->extent.width,
+             image->extent.height);
         return NULL;
     }
     if (gpu_image_download(session->gpu, image, data, bytes, err))
@@ -135,20 +216,28 @@ static float *download(struct ao_session *session, enum job_image which, uint64_
     return NULL;
 }
 
-bool ao_run(struct ao_session *session, const struct ao_job *job, struct ao_result *result, struct tool_error *err)
+bool ao_run(struct ao_session *session, const struct ao_job *job, struct ao_result *result,
+            struct tool_error *err)
 {
     uint64_t texels = (uint64_t)job->width * job->height;
-    bool same = session->frame && session->extent.width == job->width && session->extent.height == job->height &&
-                session->has_normals == (job->normals != NULL) && session->has_color == (job->color != NULL);
+    bool same =
+        session->frame && session->extent.width == job->width &&
+        session->extent.height == job->height && session->has_normals == (job->normals != NULL) &&
+        session->has_color == (job->color != NULL) &&
+        session->half_resolution == job->half_resolution && session->has_bent == job->bent_normals;
     *result = (struct ao_result){0};
-    if ((!same && !create_frame(session, job, err)) || !upload(session, IMAGE_DEPTH, job->depth, texels, err) ||
+    if ((!same && !create_frame(session, job, err)) ||
+        !upload(session, IMAGE_DEPTH, job->depth, texels, err) ||
         !upload(session, IMAGE_NORMALS, job->normals, texels, err) ||
-        !upload(session, IMAGE_COLOR, job->color, texels, err) || !record_and_run(session, job, err))
+        !upload(session, IMAGE_COLOR, job->color, texels, err) ||
+        !record_and_run(session, job, &result->gpu_ms, err))
         return false;
     result->ao = download(session, IMAGE_AO, texels, err);
     if (result->ao && job->color)
         result->output = download(session, IMAGE_OUTPUT, texels, err);
-    if (result->ao && (result->output || !job->color))
+    if (result->ao && job->bent_normals)
+        result->bent = download(session, IMAGE_BENT, texels, err);
+    if (result->ao && (result->output || !job->color) && (result->bent || !job->bent_normals))
         return true;
     ao_result_free(result);
     return false;
@@ -158,5 +247,6 @@ void ao_result_free(struct ao_result *result)
 {
     free(result->ao);
     free(result->output);
+    free(result->bent);
     *result = (struct ao_result){0};
 }

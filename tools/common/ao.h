@@ -18,11 +18,15 @@ struct ao_job {
     vkao_ssao_params ssao;
     vkao_blur_params blur;
     vkao_composite_params composite; /* used if color is given */
+    bool half_resolution;            /* as vkao_frame_info.half_resolution */
+    bool bent_normals;               /* compute result.bent */
 };
 
 struct ao_result {
     float *ao;     /* width * height visibility in [0,1] */
+    float *bent;   /* width * height * 4: mean open direction and padding, NULL if not asked for */
     float *output; /* width * height * 4 RGBA of the composite, NULL without color */
+    double gpu_ms; /* device time of all stages, by timestamps; of the whole submit where the queue has none */
 };
 
 /* A session keeps device objects from one frame to the next: create once, run per frame of the same or of another

@@ -11,12 +11,14 @@ static const char validation_layer[] = "VK_LAYER_KHRONOS_validation";
 static bool vk_failed(struct tool_error *err, const char *call, VkResult result)
 {
     bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    return fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "%s failed with VkResult %d", call, (int)result);
+    return fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "%s failed with VkResult %d", call,
+                (int)result);
 }
 
 static VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                                  VkDebugUtilsMessageTypeFlagsEXT types,
-                                                 const VkDebugUtilsMessengerCallbackDataEXT *data, void *user)
+                                                 const VkDebugUtilsMessengerCallbackDataEXT *data,
+                                                 void *user)
 {
     struct gpu *gpu = user;
     (void)severity;
@@ -45,7 +47,8 @@ static bool create_instance(struct gpu *gpu, bool validation, struct tool_error 
 {
     const VkDebugUtilsMessengerCreateInfoEXT messenger = {
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
-        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+        .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
+                           VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
         /* Performance advice would only say that GENERAL is not the best layout to copy from. */
         .messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT,
         .pfnUserCallback = on_message,
@@ -53,7 +56,8 @@ static bool create_instance(struct gpu *gpu, bool validation, struct tool_error 
     };
     /* Core checks are on by default. Queue-submit synchronization has no enumerator in these headers; the layer reads
      * it from the environment only. */
-    const VkValidationFeatureEnableEXT enables[] = {VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+    const VkValidationFeatureEnableEXT enables[] = {
+        VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     const VkValidationFeaturesEXT features = {
         .sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
         .pNext = &messenger,
@@ -69,35 +73,43 @@ static bool create_instance(struct gpu *gpu, bool validation, struct tool_error 
     if (validation)
         setenv("VK_LAYER_ENABLES",
                "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT", 0);
-    VkResult result = vkCreateInstance(&(VkInstanceCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-        .pNext = validation ? &features : NULL,
-        .pApplicationInfo = &(VkApplicationInfo){
-            .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
-            .pApplicationName = "vkao",
-            .apiVersion = VKAO_MIN_API_VERSION,
+    VkResult result = vkCreateInstance(
+        &(VkInstanceCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+            .pNext = validation ? &features : NULL,
+            .pApplicationInfo =
+                &(VkApplicationInfo){
+                    .sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                    .pApplicationName = "vkao",
+                    .apiVersion = VKAO_MIN_API_VERSION,
+                },
+            .enabledLayerCount = validation ? 1 : 0,
+            .ppEnabledLayerNames = layers,
+            .enabledExtensionCount = validation ? 1 : 0,
+            .ppEnabledExtensionNames = extensions,
         },
-        .enabledLayerCount = validation ? 1 : 0,
-        .ppEnabledLayerNames = layers,
-        .enabledExtensionCount = validation ? 1 : 0,
-        .ppEnabledExtensionNames = extensions,
-    }, NULL, &gpu->instance);
+        NULL, &gpu->instance);
     if (result != VK_SUCCESS) {
         gpu->instance = VK_NULL_HANDLE;
-        fail(err, EXIT_DEVICE, "no Vulkan driver could be loaded (vkCreateInstance: VkResult %d)", (int)result);
-        return fail_hint(err, "install mesa-vulkan-drivers to compute on the CPU (lavapipe), or a GPU driver");
+        fail(err, EXIT_DEVICE, "no Vulkan driver could be loaded (vkCreateInstance: VkResult %d)",
+             (int)result);
+        return fail_hint(
+            err, "install mesa-vulkan-drivers to compute on the CPU (lavapipe), or a GPU driver");
     }
     if (!validation)
         return true;
     PFN_vkCreateDebugUtilsMessengerEXT create =
-        (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(gpu->instance, "vkCreateDebugUtilsMessengerEXT");
-    result = create ? create(gpu->instance, &messenger, NULL, &gpu->messenger) : VK_ERROR_EXTENSION_NOT_PRESENT;
+        (PFN_vkCreateDebugUtilsMessengerEXT)vkGetInstanceProcAddr(gpu->instance,
+                                                                  "vkCreateDebugUtilsMessengerEXT");
+    result = create ? create(gpu->instance, &messenger, NULL, &gpu->messenger)
+                    : VK_ERROR_EXTENSION_NOT_PRESENT;
     return result == VK_SUCCESS || vk_failed(err, "vkCreateDebugUtilsMessengerEXT", result);
 }
 
 const char *gpu_device_type_name(VkPhysicalDeviceType type)
 {
-    static const char *const names[] = {"other", "integrated GPU", "discrete GPU", "virtual GPU", "CPU"};
+    static const char *const names[] = {"other", "integrated GPU", "discrete GPU", "virtual GPU",
+                                        "CPU"};
     return (unsigned)type < sizeof names / sizeof names[0] ? names[type] : names[0];
 }
 
@@ -127,7 +139,8 @@ static int device_fits(const char *wanted, uint32_t i, const VkPhysicalDevicePro
 static VkPhysicalDevice *list_devices(VkInstance instance, uint32_t *count, struct tool_error *err)
 {
     VkResult result = vkEnumeratePhysicalDevices(instance, count, NULL);
-    VkPhysicalDevice *devices = result == VK_SUCCESS && *count ? calloc(*count, sizeof *devices) : NULL;
+    VkPhysicalDevice *devices =
+        result == VK_SUCCESS && *count ? calloc(*count, sizeof *devices) : NULL;
     if (devices)
         result = vkEnumeratePhysicalDevices(instance, count, devices);
     if (devices && result == VK_SUCCESS && *count)
@@ -174,33 +187,41 @@ static bool create_device(struct gpu *gpu, struct tool_error *err)
     }
     if (gpu->queue_family == UINT32_MAX)
         return fail(err, EXIT_DEVICE, "%s has no compute queue", gpu->properties.deviceName);
+    gpu->timestamp_bits = families[gpu->queue_family].timestampValidBits;
     vkGetPhysicalDeviceMemoryProperties(gpu->physical_device, &gpu->memory);
     vkao_add_required_features(&gpu->features);
     VkPhysicalDeviceFeatures supported;
     vkGetPhysicalDeviceFeatures(gpu->physical_device, &supported);
     if (!supported.shaderStorageImageWriteWithoutFormat)
-        return fail(err, EXIT_DEVICE, "%s lacks shaderStorageImageWriteWithoutFormat", gpu->properties.deviceName);
-    VkResult result = vkCreateDevice(gpu->physical_device, &(VkDeviceCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-        .queueCreateInfoCount = 1,
-        .pQueueCreateInfos = &(VkDeviceQueueCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-            .queueFamilyIndex = gpu->queue_family,
-            .queueCount = 1,
-            .pQueuePriorities = &(float){1.0f},
-        },
-        .pEnabledFeatures = &gpu->features,
-    }, NULL, &gpu->device);
+        return fail(err, EXIT_DEVICE, "%s lacks shaderStorageImageWriteWithoutFormat",
+                    gpu->properties.deviceName);
+    VkResult result =
+        vkCreateDevice(gpu->physical_device,
+                       &(VkDeviceCreateInfo){
+                           .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                           .queueCreateInfoCount = 1,
+                           .pQueueCreateInfos =
+                               &(VkDeviceQueueCreateInfo){
+                                   .sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                   .queueFamilyIndex = gpu->queue_family,
+                                   .queueCount = 1,
+                                   .pQueuePriorities = &(float){1.0f},
+                               },
+                           .pEnabledFeatures = &gpu->features,
+                       },
+                       NULL, &gpu->device);
     if (result != VK_SUCCESS) {
         gpu->device = VK_NULL_HANDLE;
         return vk_failed(err, "vkCreateDevice", result);
     }
     vkGetDeviceQueue(gpu->device, gpu->queue_family, 0, &gpu->queue);
-    result = vkCreateCommandPool(gpu->device, &(VkCommandPoolCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-        .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
-        .queueFamilyIndex = gpu->queue_family,
-    }, NULL, &gpu->command_pool);
+    result = vkCreateCommandPool(gpu->device,
+                                 &(VkCommandPoolCreateInfo){
+                                     .sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
+                                     .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
+                                     .queueFamilyIndex = gpu->queue_family,
+                                 },
+                                 NULL, &gpu->command_pool);
     return result == VK_SUCCESS || vk_failed(err, "vkCreateCommandPool", result);
 }
 
@@ -221,8 +242,9 @@ void gpu_destroy(struct gpu *gpu)
     if (gpu->device)
         vkDestroyDevice(gpu->device, NULL);
     if (gpu->messenger) {
-        PFN_vkDestroyDebugUtilsMessengerEXT destroy = (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
-            gpu->instance, "vkDestroyDebugUtilsMessengerEXT");
+        PFN_vkDestroyDebugUtilsMessengerEXT destroy =
+            (PFN_vkDestroyDebugUtilsMessengerEXT)vkGetInstanceProcAddr(
+                gpu->instance, "vkDestroyDebugUtilsMessengerEXT");
         if (destroy)
             destroy(gpu->instance, gpu->messenger, NULL);
     }
@@ -298,21 +320,25 @@ static void print_log(void *user_data, vkao_log_level level, const char *message
 vkao_context *gpu_context(struct gpu *gpu, uint32_t method_mask, struct tool_error *err)
 {
     vkao_context *ctx = NULL;
-    vkao_result result = vkao_context_create(&(vkao_context_info){
-        .struct_size = sizeof(vkao_context_info),
-        .method_mask = method_mask,
-        .instance = gpu->instance,
-        .physical_device = gpu->physical_device,
-        .device = gpu->device,
-        .get_instance_proc_addr = vkGetInstanceProcAddr,
-        .get_device_proc_addr = vkGetDeviceProcAddr,
-        .enabled_features = &gpu->features,
-        .log = print_log,
-        .debug_labels = gpu->messenger != VK_NULL_HANDLE,
-    }, &ctx);
+    vkao_result result = vkao_context_create(
+        &(vkao_context_info){
+            .struct_size = sizeof(vkao_context_info),
+            .method_mask = method_mask,
+            .instance = gpu->instance,
+            .physical_device = gpu->physical_device,
+            .device = gpu->device,
+            .get_instance_proc_addr = vkGetInstanceProcAddr,
+            .get_device_proc_addr = vkGetDeviceProcAddr,
+            .enabled_features = &gpu->features,
+            .log = print_log,
+            .debug_labels = gpu->messenger != VK_NULL_HANDLE,
+        },
+        &ctx);
     if (result == VKAO_SUCCESS)
         return ctx;
-    bool memory = result == VKAO_ERROR_OUT_OF_DEVICE_MEMORY || result == VKAO_ERROR_OUT_OF_HOST_MEMORY;
-    fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "vkao_context_create: %s", vkao_result_string(result));
+    bool memory =
+        result == VKAO_ERROR_OUT_OF_DEVICE_MEMORY || result == VKAO_ERROR_OUT_OF_HOST_MEMORY;
+    fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "vkao_context_create: %s",
+         vkao_result_string(result));
     return NULL;
 }

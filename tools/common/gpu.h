@@ -17,6 +17,7 @@ struct gpu {
     VkDevice device;
     VkQueue queue;
     uint32_t queue_family;
+    uint32_t timestamp_bits; /* of the queue's timestamps that count; 0 = it has none */
     VkCommandPool command_pool;
     VkDebugUtilsMessengerEXT messenger;
     VkPhysicalDeviceProperties properties;

@@ -11,7 +11,8 @@ static bool vk_ok(struct tool_error *err, const char *call, VkResult result)
     if (result == VK_SUCCESS)
         return true;
     bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    return fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "%s failed with VkResult %d", call, (int)result);
+    return fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "%s failed with VkResult %d", call,
+                (int)result);
 }
 
 static bool allocate(struct gpu *gpu, const VkMemoryRequirements *need, VkMemoryPropertyFlags flags,
@@ -24,11 +25,13 @@ static bool allocate(struct gpu *gpu, const VkMemoryRequirements *need, VkMemory
         ++type;
     if (type == gpu->memory.memoryTypeCount)
         return fail(err, EXIT_DEVICE, "the device has no memory type with flags 0x%x", flags);
-    VkResult result = vkAllocateMemory(gpu->device, &(VkMemoryAllocateInfo){
-        .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-        .allocationSize = need->size,
-        .memoryTypeIndex = type,
-    }, NULL, memory);
+    VkResult result = vkAllocateMemory(gpu->device,
+                                       &(VkMemoryAllocateInfo){
+                                           .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                           .allocationSize = need->size,
+                                           .memoryTypeIndex = type,
+                                       },
+                                       NULL, memory);
     if (result != VK_SUCCESS)
         *memory = VK_NULL_HANDLE;
     return vk_ok(err, "vkAllocateMemory", result);
@@ -41,25 +44,29 @@ static bool is_depth(VkFormat format)
 
 static VkImageSubresourceRange whole(VkFormat format)
 {
-    VkImageAspectFlags aspect = is_depth(format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
+    VkImageAspectFlags aspect =
+        is_depth(format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
     return (VkImageSubresourceRange){aspect, 0, 1, 0, 1};
 }
 
 VkCommandBuffer gpu_begin(struct gpu *gpu, struct tool_error *err)
 {
     VkCommandBuffer cmd = VK_NULL_HANDLE;
-    VkResult result = vkAllocateCommandBuffers(gpu->device, &(VkCommandBufferAllocateInfo){
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-        .commandPool = gpu->command_pool,
-        .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-        .commandBufferCount = 1,
-    }, &cmd);
+    VkResult result =
+        vkAllocateCommandBuffers(gpu->device,
+                                 &(VkCommandBufferAllocateInfo){
+                                     .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                     .commandPool = gpu->command_pool,
+                                     .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                     .commandBufferCount = 1,
+                                 },
+                                 &cmd);
     if (!vk_ok(err, "vkAllocateCommandBuffers", result))
         return VK_NULL_HANDLE;
     result = vkBeginCommandBuffer(cmd, &(VkCommandBufferBeginInfo){
-        .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
-    });
+                                           .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
+                                           .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
+                                       });
     if (vk_ok(err, "vkBeginCommandBuffer", result))
         return cmd;
     vkFreeCommandBuffers(gpu->device, gpu->command_pool, 1, &cmd);
@@ -69,11 +76,14 @@ VkCommandBuffer gpu_begin(struct gpu *gpu, struct tool_error *err)
 bool gpu_submit(struct gpu *gpu, VkCommandBuffer cmd, struct tool_error *err)
 {
     bool ok = vk_ok(err, "vkEndCommandBuffer", vkEndCommandBuffer(cmd)) &&
-              vk_ok(err, "vkQueueSubmit", vkQueueSubmit(gpu->queue, 1, &(VkSubmitInfo){
-                  .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-                  .commandBufferCount = 1,
-                  .pCommandBuffers = &cmd,
-              }, VK_NULL_HANDLE)) &&
+              vk_ok(err, "vkQueueSubmit",
+                    vkQueueSubmit(gpu->queue, 1,
+                                  &(VkSubmitInfo){
+                                      .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                                      .commandBufferCount = 1,
+                                      .pCommandBuffers = &cmd,
+                                  },
+                                  VK_NULL_HANDLE)) &&
               vk_ok(err, "vkQueueWaitIdle", vkQueueWaitIdle(gpu->queue));
     vkFreeCommandBuffers(gpu->device, gpu->command_pool, 1, &cmd);
     return ok;
@@ -81,13 +91,14 @@ bool gpu_submit(struct gpu *gpu, VkCommandBuffer cmd, struct tool_error *err)
 
 void gpu_full_barrier(VkCommandBuffer cmd)
 {
-    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1,
-                         &(VkMemoryBarrier){
-                             .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                             .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
-                             .dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
-                         },
-                         0, NULL, 0, NULL);
+    vkCmdPipelineBarrier(
+        cmd, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1,
+        &(VkMemoryBarrier){
+            .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+            .srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT,
+            .dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
+        },
+        0, NULL, 0, NULL);
 }
 
 static bool to_general(struct gpu *gpu, struct gpu_image *image, struct tool_error *err)
@@ -95,17 +106,19 @@ static bool to_general(struct gpu *gpu, struct gpu_image *image, struct tool_err
     VkCommandBuffer cmd = gpu_begin(gpu, err);
     if (!cmd)
         return false;
-    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0,
-                         NULL, 1, &(VkImageMemoryBarrier){
-                             .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-                             .dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
-                             .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
-                             .newLayout = VK_IMAGE_LAYOUT_GENERAL,
-                             .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                             .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-                             .image = image->image,
-                             .subresourceRange = whole(image->format),
-                         });
+    vkCmdPipelineBarrier(
+        cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 0, NULL, 0,
+        NULL, 1,
+        &(VkImageMemoryBarrier){
+            .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+            .dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT,
+            .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+            .newLayout = VK_IMAGE_LAYOUT_GENERAL,
+            .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+            .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+            .image = image->image,
+            .subresourceRange = whole(image->format),
+        });
     return gpu_submit(gpu, cmd, err);
 }
 
@@ -114,34 +127,40 @@ bool gpu_image_create(struct gpu *gpu, VkFormat format, VkExtent2D extent, VkIma
 {
     VkMemoryRequirements need;
     *image = (struct gpu_image){.format = format, .extent = extent};
-    VkResult result = vkCreateImage(gpu->device, &(VkImageCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-        .imageType = VK_IMAGE_TYPE_2D,
-        .format = format,
-        .extent = {extent.width, extent.height, 1},
-        .mipLevels = 1,
-        .arrayLayers = 1,
-        .samples = VK_SAMPLE_COUNT_1_BIT,
-        .tiling = VK_IMAGE_TILING_OPTIMAL,
-        .usage = usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
-        .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
-    }, NULL, &image->image);
+    VkResult result = vkCreateImage(
+        gpu->device,
+        &(VkImageCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+            .imageType = VK_IMAGE_TYPE_2D,
+            .format = format,
+            .extent = {extent.width, extent.height, 1},
+            .mipLevels = 1,
+            .arrayLayers = 1,
+            .samples = VK_SAMPLE_COUNT_1_BIT,
+            .tiling = VK_IMAGE_TILING_OPTIMAL,
+            .usage = usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+            .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+            .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+        },
+        NULL, &image->image);
     if (result != VK_SUCCESS) {
         image->image = VK_NULL_HANDLE;
         return vk_ok(err, "vkCreateImage", result);
     }
     vkGetImageMemoryRequirements(gpu->device, image->image, &need);
     bool ok = allocate(gpu, &need, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, &image->memory, err) &&
-              vk_ok(err, "vkBindImageMemory", vkBindImageMemory(gpu->device, image->image, image->memory, 0));
+              vk_ok(err, "vkBindImageMemory",
+                    vkBindImageMemory(gpu->device, image->image, image->memory, 0));
     if (ok) {
-        result = vkCreateImageView(gpu->device, &(VkImageViewCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-            .image = image->image,
-            .viewType = VK_IMAGE_VIEW_TYPE_2D,
-            .format = format,
-            .subresourceRange = whole(format),
-        }, NULL, &image->view);
+        result = vkCreateImageView(gpu->device,
+                                   &(VkImageViewCreateInfo){
+                                       .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                       .image = image->image,
+                                       .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                                       .format = format,
+                                       .subresourceRange = whole(format),
+                                   },
+                                   NULL, &image->view);
         if (result != VK_SUCCESS)
             image->view = VK_NULL_HANDLE;
         ok = vk_ok(err, "vkCreateImageView", result);
@@ -182,26 +201,31 @@ static void staging_destroy(struct gpu *gpu, struct staging *s)
         vkFreeMemory(gpu->device, s->memory, NULL);
 }
 
-static bool staging_create(struct gpu *gpu, uint64_t bytes, VkBufferUsageFlags usage, struct staging *s,
-                           struct tool_error *err)
+static bool staging_create(struct gpu *gpu, uint64_t bytes, VkBufferUsageFlags usage,
+                           struct staging *s, struct tool_error *err)
 {
     VkMemoryRequirements need;
     *s = (struct staging){0};
-    VkResult result = vkCreateBuffer(gpu->device, &(VkBufferCreateInfo){
-        .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-        .size = bytes,
-        .usage = usage,
-        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
-    }, NULL, &s->buffer);
+    VkResult result = vkCreateBuffer(gpu->device,
+                                     &(VkBufferCreateInfo){
+                                         .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                         .size = bytes,
+                                         .usage = usage,
+                                         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+                                     },
+                                     NULL, &s->buffer);
     if (result != VK_SUCCESS) {
         s->buffer = VK_NULL_HANDLE;
         return vk_ok(err, "vkCreateBuffer", result);
     }
     vkGetBufferMemoryRequirements(gpu->device, s->buffer, &need);
-    if (allocate(gpu, &need, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT, &s->memory,
-                 err) &&
-        vk_ok(err, "vkBindBufferMemory", vkBindBufferMemory(gpu->device, s->buffer, s->memory, 0)) &&
-        vk_ok(err, "vkMapMemory", vkMapMemory(gpu->device, s->memory, 0, VK_WHOLE_SIZE, 0, &s->mapped)))
+    if (allocate(gpu, &need,
+                 VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+                 &s->memory, err) &&
+        vk_ok(err, "vkBindBufferMemory",
+              vkBindBufferMemory(gpu->device, s->buffer, s->memory, 0)) &&
+        vk_ok(err, "vkMapMemory",
+              vkMapMemory(gpu->device, s->memory, 0, VK_WHOLE_SIZE, 0, &s->mapped)))
         return true;
     staging_destroy(gpu, s);
     return false;
@@ -218,9 +242,10 @@ static VkBufferImageCopy copy_region(const struct gpu_image *image)
 
 static bool check_bytes(const struct gpu_image *image, uint64_t bytes, struct tool_error *err)
 {
-    uint64_t want = (uint64_t)image->extent.width * image->extent.height * gpu_format_bytes(image->format);
-    return bytes == want || fail(err, EXIT_BUG, "image transfer of %llu bytes, want %llu", (unsigned long long)bytes,
-                                 (unsigned long long)want);
+    uint64_t want =
+        (uint64_t)image->extent.width * image->extent.height * gpu_format_bytes(image->format);
+    return bytes == want || fail(err, EXIT_BUG, "image transfer of %llu bytes, want %llu",
+                                 (unsigned long long)bytes, (unsigned long long)want);
 }
 
 bool gpu_image_upload(struct gpu *gpu, struct gpu_image *image, const void *data, uint64_t bytes,
@@ -235,7 +260,8 @@ bool gpu_image_upload(struct gpu *gpu, struct gpu_image *image, const void *data
     if (cmd) {
         VkBufferImageCopy region = copy_region(image);
         gpu_full_barrier(cmd);
-        vkCmdCopyBufferToImage(cmd, staging.buffer, image->image, VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+        vkCmdCopyBufferToImage(cmd, staging.buffer, image->image, VK_IMAGE_LAYOUT_GENERAL, 1,
+                               &region);
         gpu_full_barrier(cmd);
     }
     bool ok = cmd && gpu_submit(gpu, cmd, err);
@@ -243,7 +269,8 @@ bool gpu_image_upload(struct gpu *gpu, struct gpu_image *image, const void *data
     return ok;
 }
 
-bool gpu_image_download(struct gpu *gpu, struct gpu_image *image, void *data, uint64_t bytes, struct tool_error *err)
+bool gpu_image_download(struct gpu *gpu, struct gpu_image *image, void *data, uint64_t bytes,
+                        struct tool_error *err)
 {
     struct staging staging;
     if (!check_bytes(image, bytes, err) ||
@@ -253,7 +280,8 @@ bool gpu_image_download(struct gpu *gpu, struct gpu_image *image, void *data, ui
     if (cmd) {
         VkBufferImageCopy region = copy_region(image);
         gpu_full_barrier(cmd);
-        vkCmdCopyImageToBuffer(cmd, image->image, VK_IMAGE_LAYOUT_GENERAL, staging.buffer, 1, &region);
+        vkCmdCopyImageToBuffer(cmd, image->image, VK_IMAGE_LAYOUT_GENERAL, staging.buffer, 1,
+                               &region);
         vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
                              &(VkMemoryBarrier){
                                  .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,

@@ -155,6 +155,8 @@ static bool apply_defaults(struct options *options, struct tool_error *err)
     *options = (struct options){.command = COMMAND_RENDER,
                                 .ssao = vkao_ssao_params_default(),
                                 .blur = vkao_blur_params_default()};
+    /* What --quality fills unless it is given. */
+    options->ssao.slice_count = options->ssao.step_count = 0;
     for (size_t i = 0; i < option_table_count; i++) {
         const struct option_row *row = &option_table[i];
         if (row->fallback && !row->apply(options, row, row->fallback, err))
@@ -200,6 +202,23 @@ static bool fail_positional(const char *first, const char *second, struct tool_e
     return fail(err, EXIT_USAGE, "one INPUT at a time, got '%s' and '%s'", first, second);
 }
 
+/* The preset fills what was not given. Only vbao was chosen with it; the other methods take their samples as they are. */
+static void apply_quality(struct options *o)
+{
+    vkao_frame_info frame = {.struct_size = sizeof frame};
+    vkao_ssao_params ssao = o->ssao;
+    vkao_blur_params blur = o->blur;
+    /* The table knows no other quality. */
+    (void)vkao_preset((vkao_quality)o->quality, &frame, &ssao, &blur);
+    o->half_resolution = frame.half_resolution;
+    if (!o->ssao.slice_count)
+        o->ssao.slice_count = ssao.slice_count;
+    if (!o->ssao.step_count)
+        o->ssao.step_count = ssao.step_count;
+    if (o->blur.radius == BLUR_BY_QUALITY)
+        o->blur.radius = blur.radius;
+}
+
 static bool check_together(const struct options *o, struct tool_error *err)
 {
     if (o->command != COMMAND_DEVICES && !o->input) {
@@ -212,6 +231,9 @@ static bool check_together(const struct options *o, struct tool_error *err)
         fail_hint(err, "%s", example);
         return fail(err, EXIT_USAGE, "no output given: -o FILE");
     }
+    if (o->bent_normals && o->ssao.method != VKAO_SSAO_VBAO && o->ssao.method != VKAO_SSAO_GTAO &&
+        o->ssao.method != VKAO_SSAO_RAYMARCH)
+        return fail(err, EXIT_USAGE, "--bent-normals needs --method vbao, gtao or raymarch");
     if (o->gbuffer.camera.fov_deg > 0 && o->gbuffer.camera.ortho_width > 0)
         return fail(err, EXIT_USAGE, "--fov and --ortho exclude each other");
     return true;
@@ -240,5 +262,6 @@ bool options_parse(int argc, char **argv, struct options *options, struct tool_e
     if (optind < argc)
         return fail_positional(options->input, argv[optind], err);
     options->gbuffer.want_color = options->mode == OUTPUT_COMP;
+    apply_quality(options);
     return check_together(options, err);
 }

@@ -17,6 +17,9 @@
 #include <stdint.h>
 
 enum command { COMMAND_RENDER = 1, COMMAND_INSPECT = 2, COMMAND_DEVICES = 4 };
+/* In blur.radius until the preset fills it. */
+#define BLUR_BY_QUALITY UINT32_MAX
+
 enum output_mode { OUTPUT_AO, OUTPUT_APPEND, OUTPUT_COMP };
 
 /* Strings point into argv. */
@@ -38,7 +41,9 @@ struct options {
     struct gbuffer_options gbuffer;
 
     bool radius_is_auto, bias_is_given;
-    vkao_ssao_params ssao;
+    int quality; /* vkao_quality */
+    bool half_resolution, bent_normals;
+    vkao_ssao_params ssao; /* slice_count and step_count 0 until the preset fills them */
     vkao_blur_params blur;
 
     const char *device;

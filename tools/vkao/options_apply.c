@@ -128,6 +128,10 @@ bool apply_bias(struct options *options, const struct option_row *row, const cha
 bool apply_blur(struct options *options, const struct option_row *row, const char *argument,
                 struct tool_error *err)
 {
+    if (strcmp(argument, "auto") == 0) {
+        *(uint32_t *)member(options, row) = BLUR_BY_QUALITY;
+        return true;
+    }
     return apply_uint(options, row, strcmp(argument, "off") == 0 ? "0" : argument, err);
 }
 

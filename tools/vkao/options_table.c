@@ -38,7 +38,15 @@ static const struct option_word encodings[] = {{"auto", NORMAL_ENCODING_AUTO},
                                                {"unsigned", NORMAL_ENCODING_UNSIGNED},
                                                {0}};
 static const struct option_word methods[] = {
-    {"sphere", VKAO_SSAO_SPHERE}, {"hemisphere", VKAO_SSAO_HEMISPHERE}, {0}};
+    {"sphere", VKAO_SSAO_SPHERE}, {"hemisphere", VKAO_SSAO_HEMISPHERE},
+    {"hbao", VKAO_SSAO_HBAO},     {"gtao", VKAO_SSAO_GTAO},
+    {"vbao", VKAO_SSAO_VBAO},     {"raymarch", VKAO_SSAO_RAYMARCH},
+    {0}};
+static const struct option_word qualities[] = {{"fast", VKAO_QUALITY_FAST},
+                                               {"default", VKAO_QUALITY_DEFAULT},
+                                               {"high", VKAO_QUALITY_HIGH},
+                                               {"best", VKAO_QUALITY_BEST},
+                                               {0}};
 static const struct option_word forms[] = {
     {"rescaled", VKAO_SPHERE_RESCALED}, {"literal", VKAO_SPHERE_LITERAL}, {0}};
 static const struct option_word falloffs[] = {
@@ -126,9 +134,30 @@ const struct option_row option_table[] = {
      .commands = RENDER | INSPECT, .apply = apply_double, .offset = AT(gbuffer.camera.far_plane),
      .range = {.low = 0, .high = INFINITY, .low_is_excluded = true, .infinity_is_allowed = true}},
     {.heading = "Ambient occlusion",
-     .name = "method", .letter = 'm', .argument = "NAME", .fallback = "hemisphere",
-     .help = "hemisphere or sphere",
+     .name = "method", .letter = 'm', .argument = "NAME", .fallback = "vbao",
+     .help = "vbao, gtao, hbao, hemisphere, sphere or raymarch",
      .commands = RENDER, .apply = apply_word, .offset = AT(ssao.method), .words = methods},
+    {.name = "quality", .argument = "NAME", .fallback = "default",
+     .help = "fast (half resolution), default, high or best: slices, steps and blur at once",
+     .commands = RENDER, .apply = apply_word, .offset = AT(quality), .words = qualities},
+    {.name = "slices", .argument = "N",
+     .help = "directions per texel of vbao, gtao and hbao, 1 to 64. Default: by --quality",
+     .commands = RENDER, .apply = apply_uint, .offset = AT(ssao.slice_count),
+     .range = FROM_TO(1, 64)},
+    {.name = "steps", .argument = "N",
+     .help = "samples on each side of a slice, or on each ray of raymarch, 1 to 256. Default: by "
+             "--quality",
+     .commands = RENDER, .apply = apply_uint, .offset = AT(ssao.step_count),
+     .range = FROM_TO(1, 256)},
+    {.name = "thickness", .argument = "X", .fallback = "1",
+     .help = "vbao and raymarch: how thick the scene is behind what is seen, above 0 to 8, relative "
+             "to the measured default",
+     .commands = RENDER, .apply = apply_float, .offset = AT(ssao.thickness),
+     .range = {.low = 0, .high = 8, .low_is_excluded = true}},
+    {.name = "bent-normals",
+     .help = "write the mean open direction too, as channels bent.X, .Y, .Z in the space of the "
+             "normals (vbao, gtao, raymarch)",
+     .commands = RENDER, .apply = apply_flag, .offset = AT(bent_normals)},
     {.name = "sphere-form", .argument = "FORM", .fallback = "rescaled",
      .help = "rescaled: a flat wall is open; literal: the textbook's, which greys it",
      .commands = RENDER, .apply = apply_word, .offset = AT(ssao.sphere_form), .words = forms},
@@ -140,10 +169,10 @@ const struct option_row option_table[] = {
      .help = "smooth (weight 1 - (t/R)^2) or threshold",
      .commands = RENDER, .apply = apply_word, .offset = AT(ssao.falloff), .words = falloffs},
     {.name = "samples", .letter = 's', .argument = "N", .fallback = "16",
-     .help = "points per texel, 1 to 64",
+     .help = "points per texel of hemisphere and sphere, rays of raymarch, 1 to 1024",
      .commands = RENDER, .apply = apply_uint, .offset = AT(ssao.sample_count),
-     .range = FROM_TO(1, 64)},
-    {.name = "bias", .argument = "B", .fallback = "0.01",
+     .range = FROM_TO(1, 1024)},
+    {.name = "bias", .argument = "B", .fallback = "0.005",
      .help = "share of the radius, 0 to 1, by which an occluder must stand in front; raised for "
              "half depth if not given",
      .commands = RENDER, .apply = apply_bias, .offset = AT(ssao.bias), .range = FROM_TO(0, 1)},
@@ -163,8 +192,8 @@ const struct option_row option_table[] = {
      .help = "exponent on visibility, above 0 to 8; 1 is physical",
      .commands = RENDER, .apply = apply_float, .offset = AT(blur.power),
      .range = {.low = 0, .high = 8, .low_is_excluded = true}},
-    {.name = "blur", .letter = 'b', .argument = "N", .fallback = "4",
-     .help = "edge-aware blur, 0 to 16 texels on each side; off = 0",
+    {.name = "blur", .letter = 'b', .argument = "N", .fallback = "auto",
+     .help = "edge-aware blur, 0 to 16 texels on each side; off = 0; auto: by --quality",
      .commands = RENDER, .apply = apply_blur, .offset = AT(blur.radius), .range = FROM_TO(0, 16)},
     {.name = "blur-sharpness", .argument = "X", .fallback = "200",
      .help = "0 (plain Gaussian) to 10000: how strictly it stops at edges",

@@ -14,7 +14,7 @@ enum { NAME_BYTES = 512, STRINGS = 3 };
 /* What exr_new_part points into. */
 struct part_storage {
     char name[NAME_BYTES];
-    struct exr_write channels[4];
+    struct exr_write channels[7];
     struct exr_string strings[STRINGS];
     char *params;
 };
@@ -110,17 +110,22 @@ static void restore_alpha(const struct rendered_view *view)
 }
 
 static size_t fill_channels(const struct options *o, const struct rendered_view *view,
-                            struct exr_write channels[4])
+                            struct exr_write channels[7])
 {
     static const char *const names[] = {"R", "G", "B", "A"};
-    if (o->mode != OUTPUT_COMP) {
-        channels[0] = (struct exr_write){"AO", o->pixel_type, view->result.ao, 1};
-        return 1;
+    static const char *const bent[] = {"bent.X", "bent.Y", "bent.Z"};
+    size_t count = 0;
+    if (o->mode == OUTPUT_COMP) {
+        restore_alpha(view);
+        size_t colors = view->gbuffer.color_has_alpha ? 4 : 3;
+        for (; count < colors; count++)
+            channels[count] =
+                (struct exr_write){names[count], o->pixel_type, view->result.output + count, 4};
+    } else {
+        channels[count++] = (struct exr_write){"AO", o->pixel_type, view->result.ao, 1};
     }
-    restore_alpha(view);
-    size_t count = view->gbuffer.color_has_alpha ? 4 : 3;
-    for (size_t i = 0; i < count; i++)
-        channels[i] = (struct exr_write){names[i], o->pixel_type, view->result.output + i, 4};
+    for (size_t i = 0; view->result.bent && i < 3; i++)
+        channels[count++] = (struct exr_write){bent[i], o->pixel_type, view->result.bent + i, 4};
     return count;
 }
 

@@ -6,7 +6,8 @@
 
 static const char *method_name(const struct options *o)
 {
-    return o->ssao.method == VKAO_SSAO_SPHERE ? "sphere" : "hemisphere";
+    static const char *const names[] = {"sphere", "hemisphere", "hbao", "gtao", "vbao", "raymarch"};
+    return names[o->ssao.method];
 }
 
 /* Floats as the user wrote them: 0.6, not 0.60000002384185791. */
@@ -42,7 +43,14 @@ char *output_params_json(const struct options *o, const struct rendered_view *vi
     add_number(root, "radius", view->ssao.radius);
     cJSON_AddStringToObject(root, "falloff",
                             o->ssao.falloff == VKAO_FALLOFF_SMOOTH ? "smooth" : "threshold");
-    cJSON_AddNumberToObject(root, "samples", o->ssao.sample_count);
+    if (o->ssao.method <= VKAO_SSAO_HEMISPHERE || o->ssao.method == VKAO_SSAO_RAYMARCH)
+        cJSON_AddNumberToObject(root, "samples", o->ssao.sample_count);
+    if (o->ssao.method > VKAO_SSAO_HEMISPHERE) {
+        cJSON_AddNumberToObject(root, "slices", o->ssao.slice_count);
+        cJSON_AddNumberToObject(root, "steps", o->ssao.step_count);
+        add_number(root, "thickness", o->ssao.thickness);
+    }
+    cJSON_AddBoolToObject(root, "half_resolution", o->half_resolution);
     add_number(root, "bias", view->ssao.bias);
     add_number(root, "intensity", o->blur.intensity);
     add_number(root, "power", o->blur.power);

@@ -71,5 +71,6 @@ void placement_crop(const struct placement *placement, struct gbuffer *gbuffer,
         return;
     crop(result->ao, gbuffer, placement, 1);
     crop(result->output, gbuffer, placement, 4);
+    crop(result->bent, gbuffer, placement, 4);
     crop(gbuffer->color, gbuffer, placement, 4);
 }

@@ -161,6 +161,8 @@ static bool compute(struct session *s, struct rendered_view *view, struct tool_e
         .ssao = view->ssao,
         .blur = s->options->blur,
         .composite = vkao_composite_params_default(),
+        .half_resolution = s->options->half_resolution,
+        .bent_normals = s->options->bent_normals,
     };
     if (!ao_run(s->ao, &job, &view->result, err))
         return false;

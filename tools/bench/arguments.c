@@ -1,0 +1,136 @@
+/* SPDX-License-Identifier: MIT */
+#include "arguments.h"
+
+#include <getopt.h>
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+enum { MAX_ARGUMENTS = 32, COLUMNS = 80, HELP_COLUMN = 26 };
+
+static void add_wrapped(struct text *text, const char *help)
+{
+    size_t column = HELP_COLUMN;
+    while (*help) {
+        size_t word = strcspn(help, " ");
+        if (column + 1 + word > COLUMNS) {
+            text_add(text, "\n%*s", HELP_COLUMN, "");
+            column = HELP_COLUMN;
+        }
+        text_add(text, "%s%.*s", column > HELP_COLUMN ? " " : "", (int)word, help);
+        column += word + (column > HELP_COLUMN);
+        help += word + strspn(help + word, " ");
+    }
+    text_add(text, "\n");
+}
+
+void arguments_help(const struct argument_list *list, struct text *text)
+{
+    for (size_t i = 0; i < list->count; i++) {
+        const struct argument *row = &list->rows[i];
+        struct text left = {0};
+        text_add(&left, "  --%s%s%s", row->name, row->value ? " " : "",
+                 row->value ? row->value : "");
+        text_add(text, "%-*s", HELP_COLUMN, left.data ? left.data : "");
+        if (left.length >= HELP_COLUMN)
+            text_add(text, "\n%*s", HELP_COLUMN, "");
+        text_free(&left);
+        add_wrapped(text, row->help);
+    }
+}
+
+static bool apply_word(const struct argument *row, const char *value, void *member,
+                       struct tool_error *err)
+{
+    struct text wanted = {0};
+    for (const struct argument_word *w = row->words; w->word; w++) {
+        if (strcmp(w->word, value) == 0) {
+            memcpy(member, &w->value, sizeof w->value);
+            text_free(&wanted);
+            return true;
+        }
+        text_add(&wanted, "%s%s", w == row->words ? "" : w[1].word ? ", " : " or ", w->word);
+    }
+    fail(err, EXIT_USAGE, "--%s is '%s', want %s", row->name, value,
+         wanted.data ? wanted.data : "another word");
+    text_free(&wanted);
+    return false;
+}
+
+static bool apply_count(const struct argument *row, const char *value, void *member,
+                        struct tool_error *err)
+{
+    int64_t count;
+    if (!text_to_integer(value, &count) || (double)count < row->low || (double)count > row->high)
+        return fail(err, EXIT_USAGE, "--%s is %s, want a whole number from %g to %g", row->name,
+                    value, row->low, row->high);
+    *(unsigned *)member = (unsigned)count;
+    return true;
+}
+
+static bool apply_number(const struct argument *row, const char *value, void *member,
+                         struct tool_error *err)
+{
+    double number;
+    if (!text_to_number(value, &number) || !((double)(float)number > row->low) ||
+        !isfinite((float)number))
+        return fail(err, EXIT_USAGE, "--%s is %s, want a finite number > %g", row->name, value,
+                    row->low);
+    *(float *)member = (float)number;
+    return true;
+}
+
+static bool apply(const struct argument *row, const char *value, void *target,
+                  struct tool_error *err)
+{
+    void *member = (char *)target + row->offset;
+    switch (row->kind) {
+    case ARGUMENT_FLAG:
+        *(bool *)member = true;
+        return true;
+    case ARGUMENT_WORD:
+        return apply_word(row, value, member, err);
+    case ARGUMENT_COUNT:
+        return apply_count(row, value, member, err);
+    case ARGUMENT_NUMBER:
+        return apply_number(row, value, member, err);
+    default:
+        break;
+    }
+    if (!*value)
+        return fail(err, EXIT_USAGE, "--%s is empty", row->name);
+    *(const char **)member = value;
+    return true;
+}
+
+bool arguments_parse(const struct argument_list *list, int argc, char **argv, void *target,
+                     const char **positional, struct tool_error *err)
+{
+    struct option longs[MAX_ARGUMENTS + 1] = {0};
+    int code;
+    *positional = NULL;
+    if (list->count > MAX_ARGUMENTS)
+        return fail(err, EXIT_BUG, "too many options");
+    for (size_t i = 0; i < list->count; i++)
+        longs[i] = (struct option){
+            .name = list->rows[i].name,
+            .has_arg = list->rows[i].value ? required_argument : no_argument,
+            .val = 256 + (int)i,
+        };
+    optind = 0; /* glibc and musl: start afresh */
+    opterr = 0;
+    while ((code = getopt_long(argc, argv, ":", longs, NULL)) != -1) {
+        if (code == ':')
+            return fail(err, EXIT_USAGE, "option '%s' needs an argument", argv[optind - 1]);
+        if (code < 256)
+            return fail(err, EXIT_USAGE, "unknown option '%s'", argv[optind - 1]);
+        if (!apply(&list->rows[code - 256], optarg, target, err))
+            return false;
+    }
+    if (optind < argc)
+        *positional = argv[optind++];
+    if (optind < argc)
+        return fail(err, EXIT_USAGE, "one FOLDER at a time, got '%s' and '%s'", *positional,
+                    argv[optind]);
+    return true;
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What is measured: methods with their settings, and the presets of the library. Everything else
+ * is as the library's *_default() functions have it: intensity 1, power 1, the default blur. */
+#ifndef VKAO_BENCH_CONFIGS_H_
+#define VKAO_BENCH_CONFIGS_H_
+
+#include "ao.h"
+#include "error.h"
+#include "vkao.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { MAX_CONFIGS = 40 };
+
+struct config {
+    char name[32]; /* "vbao-default", "gtao-3x6", "sphere-48" */
+    vkao_ssao_method method;
+    bool is_preset; /* quality says the rest */
+    vkao_quality quality;
+    uint32_t samples;       /* sphere, hemisphere; rays of raymarch */
+    uint32_t slices, steps; /* hbao, gtao, vbao; raymarch has steps only */
+    bool is_yardstick;      /* averaged over passes, unblurred: the converged raymarch */
+};
+
+struct config_list {
+    struct config rows[MAX_CONFIGS];
+    size_t count;
+};
+
+/* names: comma-separated, each a row of the default set, a method (all its rows of that set), or
+ * any setting: METHOD-SAMPLES, METHOD-SLICESxSTEPS, raymarch-RAYSxSTEPS. NULL = the default set.
+ * Errors: EXIT_USAGE. */
+bool configs_choose(const char *names, struct config_list *list, struct tool_error *err);
+/* Rays that converge when averaged over noise patterns. */
+struct config config_yardstick(void);
+uint32_t configs_method_mask(const struct config_list *list);
+
+/* Fills ssao, blur and half_resolution; radius and falloff are the caller's to set after it. */
+void config_apply(const struct config *config, struct ao_job *job);
+const char *config_method_name(const struct config *config);
+/* "vbao 1 x 8, half resolution" */
+void config_describe(const struct config *config, char *text, size_t size);
+
+#endif
