@@ -246,7 +246,13 @@ def lens_shift_moves_the_view(scratch, axis):
 # --- Every option does something ---
 
 OPTIONS = [
-    ('--samples', ('--samples', 8), ()),
+    ('--samples', ('--samples', 8), ('--method', 'hemisphere')),
+    ('--samples of raymarch', ('--samples', 8), ('--method', 'raymarch')),
+    ('--quality', ('--quality', 'fast'), ()),
+    ('--slices', ('--slices', 2), ()),
+    ('--steps', ('--steps', 5), ()),
+    ('--thickness', ('--thickness', 0.5), ()),
+    ('--thickness of raymarch', ('--thickness', 0.5), ('--method', 'raymarch')),
     ('--radius', ('--radius', 0.3), ()),
     ('--radius auto', ('--radius', 'auto'), ()),
     ('--falloff', ('--falloff', 'threshold'), ()),

@@ -37,6 +37,11 @@ def result(scratch, name, *options):
 
 # --- What the result is ---
 
+# The most that AO may be where the ball touches the floor. Horizons alone see least of it.
+METHODS = {'sphere': 0.75, 'hemisphere': 0.75, 'hbao': 0.85, 'gtao': 0.75, 'vbao': 0.75,
+           'raymarch': 0.75}
+
+
 @case
 def contact_is_dark_and_open_floor_is_not(scratch):
     place = np.stack([SCENE.x, SCENE.y, -np.ones_like(SCENE.x)], axis=-1) * SCENE.z[..., None]
@@ -44,17 +49,17 @@ def contact_is_dark_and_open_floor_is_not(scratch):
     touch = np.linalg.norm(place - (BALL - [0, BALL_RADIUS, 0]), axis=-1)
     contact, bare = floor & (touch < 0.25), floor & (touch > 1.5) & (SCENE.z < 4.5)
     check(contact.sum() > 20 and bare.sum() > 500, f'{contact.sum()} and {bare.sum()} texels')
-    for method in ('hemisphere', 'sphere'):
+    for method, limit in METHODS.items():
         ao = reference(scratch, '--overwrite', 'always', '--method', method, '--samples', 64)
         check_ao(ao, method)
         check(ao[bare].mean() > 0.97, f'{method}: open floor is {ao[bare].mean()}')
-        check(ao[contact].mean() < 0.75, f'{method}: contact is {ao[contact].mean()}')
+        check(ao[contact].mean() < limit, f'{method}: contact is {ao[contact].mean()}')
 
 
 @case
-def sky_is_exactly_one_for_both_methods_and_pixel_types(scratch):
+def sky_is_exactly_one_for_all_methods_and_pixel_types(scratch):
     write_exr(scratch.path('in.exr'), gbuffer())
-    for method in ('hemisphere', 'sphere'):
+    for method in METHODS:
         for pixel in ('half', 'float'):
             scratch.render('in.exr', '-o', 'ao.exr', '--overwrite', 'always', '--method', method,
                            '--pixel-type', pixel, '--power', 3, '--blur', 16, *VIEW)
@@ -127,7 +132,7 @@ def mode_ao_writes_one_half_channel_with_zip(scratch):
     equal(raw.text('vkao/source'), 'in.exr', 'vkao/source')
     parameters = json.loads(raw.text('vkao/params'))
     equal((parameters['method'], parameters['radius'], parameters['camera']['fov_x_deg']),
-          ('hemisphere', RADIUS, FOV), 'vkao/params')
+          ('vbao', RADIUS, FOV), 'vkao/params')
 
 
 @case

@@ -9,7 +9,12 @@ from scene import Scene
 EXAMPLE = 'example: vkao '
 
 WRONG_VALUES = [
-    ('--samples', ('0', '65', '-1', '1.5', 'many', '1e9', '99999999999999999999'), 'whole number'),
+    ('--slices', ('0', '65', '1.5'), '>= 1 and <= 64'),
+    ('--steps', ('0', '257', '-1'), '>= 1 and <= 256'),
+    ('--thickness', ('0', '9', 'nan'), '> 0 and <= 8'),
+    ('--quality', ('ultra', '1'), 'want fast, default, high or best'),
+    ('--samples', ('0', '1025', '-1', '1.5', 'many', '1e9', '99999999999999999999'),
+     'whole number'),
     ('--radius', ('0', '-1', 'nan', 'inf', '1e-50', '1e39', 'far', '1m'), 'finite number > 0'),
     ('--bias', ('-0.1', '1.1', 'nan', 'x'), '>= 0 and <= 1'),
     ('--blocking-scale', ('0', '-3', 'inf'), '> 0'),
@@ -32,7 +37,7 @@ WRONG_VALUES = [
     ('--depth-type', ('linear', 'z'), 'want auto, planar, radial, radial-near, inverse or device'),
     ('--normal-space', ('view', 'tangent'), 'want auto, world or camera'),
     ('--normal-encoding', ('octahedral',), 'want auto, signed or unsigned'),
-    ('--method', ('hbao', 'spheres'), 'want sphere or hemisphere'),
+    ('--method', ('ssao', 'spheres'), 'want sphere, hemisphere, hbao, gtao, vbao or raymarch'),
     ('--sphere-form', ('crytek',), 'want rescaled or literal'),
     ('--falloff', ('linear',), 'want smooth or threshold'),
 ]
@@ -127,7 +132,7 @@ def defaults_in_help(text):
 @case
 def help_tells_the_defaults_that_hold(scratch):
     defaults = defaults_in_help(scratch.run('--help').stdout)
-    for option in ('--samples', '--bias', '--blur', '--method', '--mode', '--compression'):
+    for option in ('--samples', '--bias', '--quality', '--method', '--mode', '--compression'):
         check(option in defaults, f'no default of {option} in {defaults}')
     scene = Scene(64, 36)
     write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **scene.normals()})

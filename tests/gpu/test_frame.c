@@ -162,6 +162,7 @@ static void valid_part_with_an_offset_agrees_with_the_reference(void **state)
     picture_make(&p, VKAO_STAGE_SSAO, &scene);
     p.view.valid = (VkRect2D){{17, 9}, {50, 40}};
     p.view.rect = (VkRect2D){{20, 9}, {47, 33}};
+    p.ssao.method = VKAO_SSAO_HEMISPHERE;
     picture_render_scene(&p, &scene, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
     double *expected = test_alloc(picture_texels(&p), sizeof *expected);
     memcpy(expected, p.values[SLOT_AO], picture_texels(&p) * sizeof *expected);

@@ -34,6 +34,7 @@ static void agrees_with_reference_for_every_count_falloff_and_noise(void **state
         struct picture p;
         char what[80];
         picture_make(&p, VKAO_STAGE_SSAO, &scene);
+        p.ssao = *hemisphere();
         p.ssao.sample_count = rows[i].samples;
         p.ssao.noise_index = rows[i].noise;
         p.ssao.falloff = rows[i].falloff;

@@ -15,12 +15,46 @@ static void base(struct picture *p)
     picture_fill(p, SLOT_COLOR, VK_FORMAT_R32G32B32A32_SFLOAT, 0.5);
     picture_fill(p, SLOT_DIRECT, VK_FORMAT_R32G32B32A32_SFLOAT, 0.25);
     picture_set(p, SLOT_OUTPUT, VK_FORMAT_R32G32B32A32_SFLOAT, NULL);
+    p->ssao.method = VKAO_SSAO_HEMISPHERE;
     p->composite.mode = VKAO_COMPOSITE_MULTIPLY;
 }
 
 static void sphere(struct picture *p)
 {
     p->ssao.method = VKAO_SSAO_SPHERE;
+}
+
+#define METHOD(name, value)                                                                        \
+    static void name(struct picture *p)                                                            \
+    {                                                                                              \
+        p->ssao.method = value;                                                                    \
+        p->ssao.slice_count = 2;                                                                   \
+    }
+METHOD(hbao, VKAO_SSAO_HBAO)
+METHOD(gtao, VKAO_SSAO_GTAO)
+METHOD(vbao, VKAO_SSAO_VBAO)
+METHOD(raymarch, VKAO_SSAO_RAYMARCH)
+
+/* Lit by everything that there is; AO and bent normals of VBAO. */
+static void lit(struct picture *p)
+{
+    p->ssao.method = VKAO_SSAO_VBAO;
+    p->formats[SLOT_NOISY] = VK_FORMAT_UNDEFINED;
+    picture_set(p, SLOT_BENT, VK_FORMAT_R32G32B32A32_SFLOAT, NULL);
+    picture_fill(p, SLOT_ALBEDO, VK_FORMAT_R32G32B32A32_SFLOAT, 0.75);
+    picture_fill(p, SLOT_SPECULAR, VK_FORMAT_R32G32B32A32_SFLOAT, 0.25);
+    p->composite.specular = VKAO_SPECULAR_FROM_AO;
+}
+
+static void bent(struct picture *p)
+{
+    lit(p);
+    p->composite.mode = VKAO_COMPOSITE_BENT_NORMALS;
+}
+
+static void view_z(struct picture *p)
+{
+    p->composite.mode = VKAO_COMPOSITE_VIEW_Z;
 }
 
 static void literal(struct picture *p)
@@ -57,6 +91,16 @@ CHANGE(ssao_noise_index, p->ssao.noise_index = 1)
 CHANGE(ssao_radius, p->ssao.radius = 0.6f)
 CHANGE(ssao_bias, p->ssao.bias = 0.1f)
 CHANGE(ssao_blocking_scale, p->ssao.blocking_scale = 20.0f)
+CHANGE(ssao_slice_count, p->ssao.slice_count = 3)
+CHANGE(ssao_step_count, p->ssao.step_count = 13)
+CHANGE(ssao_thickness, p->ssao.thickness = 0.25f)
+CHANGE(frame_half_resolution, p->formats[SLOT_NOISY] = VK_FORMAT_UNDEFINED; p->half_resolution = true)
+CHANGE(composite_multi_bounce, p->composite.multi_bounce = VK_TRUE)
+CHANGE(composite_no_specular, p->composite.specular = VKAO_SPECULAR_NONE)
+CHANGE(composite_bent_specular, p->composite.specular = VKAO_SPECULAR_FROM_BENT)
+CHANGE(composite_noisy, p->composite.mode = VKAO_COMPOSITE_NOISY_AO)
+CHANGE(composite_normals, p->composite.mode = VKAO_COMPOSITE_NORMALS)
+CHANGE(composite_debug_distance, p->composite.debug_distance = 50.0f)
 CHANGE(blur_radius, p->blur.radius = 3)
 CHANGE(blur_sharpness, p->blur.sharpness = 100.0f)
 CHANGE(blur_normal_power, p->blur.normal_power = 2.0f)
@@ -73,6 +117,7 @@ CHANGE(view_normal_encoding, p->view.normal_encoding = VKAO_NORMALS_FROM_DEPTH)
 CHANGE(view_normal_unorm, p->view.normal_encoding = VKAO_NORMALS_XYZ_UNORM)
 CHANGE(view_normal_oct, p->view.normal_encoding = VKAO_NORMALS_OCT_SNORM)
 CHANGE(view_normal_oct_unorm, p->view.normal_encoding = VKAO_NORMALS_OCT_UNORM)
+CHANGE(view_bent_encoding, p->view.bent_encoding = VKAO_NORMALS_OCT_UNORM)
 CHANGE(view_axis, p->view.axis = VKAO_VIEW_AXIS_POSITIVE_Z)
 CHANGE(view_valid, p->view.valid = ((VkRect2D){{0, 0}, {70, 50}}))
 CHANGE(view_viewport, p->view.viewport = ((VkRect2D){{-10, -10}, {100, 80}}))
@@ -93,6 +138,45 @@ struct row {
 
 static const struct row rows[] = {
     {"ssao.method", ssao_method, NULL},
+    {"ssao.method hbao", hbao, NULL},
+    {"ssao.method gtao", gtao, NULL},
+    {"ssao.method vbao", vbao, NULL},
+    {"ssao.method raymarch", raymarch, NULL},
+    {"ssao.falloff, hbao", ssao_falloff, hbao},
+    {"ssao.noise_index, hbao", ssao_noise_index, hbao},
+    {"ssao.radius, hbao", ssao_radius, hbao},
+    {"ssao.bias, hbao", ssao_bias, hbao},
+    {"ssao.step_count, hbao", ssao_step_count, hbao},
+    {"ssao.slice_count, hbao", ssao_slice_count, hbao},
+    {"ssao.falloff, gtao", ssao_falloff, gtao},
+    {"ssao.noise_index, gtao", ssao_noise_index, gtao},
+    {"ssao.radius, gtao", ssao_radius, gtao},
+    {"ssao.bias, gtao", ssao_bias, gtao},
+    {"ssao.step_count, gtao", ssao_step_count, gtao},
+    {"ssao.slice_count, gtao", ssao_slice_count, gtao},
+    {"ssao.falloff, vbao", ssao_falloff, vbao},
+    {"ssao.noise_index, vbao", ssao_noise_index, vbao},
+    {"ssao.radius, vbao", ssao_radius, vbao},
+    {"ssao.bias, vbao", ssao_bias, vbao},
+    {"ssao.step_count, vbao", ssao_step_count, vbao},
+    {"ssao.slice_count, vbao", ssao_slice_count, vbao},
+    {"ssao.thickness, vbao", ssao_thickness, vbao},
+    {"ssao.falloff, raymarch", ssao_falloff, raymarch},
+    {"ssao.noise_index, raymarch", ssao_noise_index, raymarch},
+    {"ssao.radius, raymarch", ssao_radius, raymarch},
+    {"ssao.bias, raymarch", ssao_bias, raymarch},
+    {"ssao.step_count, raymarch", ssao_step_count, raymarch},
+    {"ssao.sample_count, raymarch", ssao_sample_count, raymarch},
+    {"ssao.thickness, raymarch", ssao_thickness, raymarch},
+    {"frame.half_resolution", frame_half_resolution, vbao},
+    {"composite.multi_bounce", composite_multi_bounce, lit},
+    {"composite.specular none", composite_no_specular, lit},
+    {"composite.specular from bent", composite_bent_specular, lit},
+    {"composite.mode noisy ao", composite_noisy, NULL},
+    {"composite.mode normals", composite_normals, NULL},
+    {"composite.mode view z", view_z, NULL},
+    {"composite.mode bent normals", bent, lit},
+    {"composite.debug_distance", composite_debug_distance, view_z},
     {"ssao.falloff, hemisphere", ssao_falloff, NULL},
     {"ssao.falloff, sphere", ssao_falloff, sphere},
     {"ssao.sphere_form", literal, sphere},
@@ -124,6 +208,7 @@ static const struct row rows[] = {
     {"view.normal_encoding unorm", view_normal_unorm, NULL},
     {"view.normal_encoding octahedral", view_normal_oct, NULL},
     {"view.normal_encoding octahedral unorm", view_normal_oct_unorm, NULL},
+    {"view.bent_encoding", view_bent_encoding, lit},
     {"view.axis", view_axis, orthographic},
     {"view.valid", view_valid, NULL},
     {"view.viewport", view_viewport, NULL},
@@ -152,8 +237,8 @@ static void every_parameter_changes_the_picture(void **state)
         rows[i].change(&after);
         picture_run(&before);
         picture_run(&after);
-        struct difference d =
-            difference_of(before.values[SLOT_OUTPUT], after.values[SLOT_OUTPUT], 80 * 60 * 4);
+        enum picture_slot slot = rows[i].change == view_bent_encoding ? SLOT_BENT : SLOT_OUTPUT;
+        struct difference d = difference_of(before.values[slot], after.values[slot], 80 * 60 * 4);
         print_message("    %-44s mean change %.2e\n", rows[i].name, d.mean);
         if (!(d.mean > 1e-5)) {
             print_error("%s changes nothing\n", rows[i].name);

@@ -34,12 +34,11 @@ static VkMemoryRequirements requirements_of(const struct picture *p)
     VkMemoryRequirements out;
     struct picture_gpu g = {.slots = vkao_images_default()};
     picture_frame_info(p, &g, &info); /* formats are enough, views are not needed */
-    vkao_image *const slots[SLOT_COUNT] = {&g.slots.depth, &g.slots.normals, &g.slots.ao_noisy,
-                                           &g.slots.ao,    &g.slots.color,   &g.slots.direct,
-                                           &g.slots.output};
     for (int i = 0; i < SLOT_COUNT; ++i) {
-        slots[i]->format = p->formats[i];
-        slots[i]->layout = p->formats[i] ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED;
+        *picture_slot_image(&g.slots, (enum picture_slot)i) = (vkao_image){
+            .layout = p->formats[i] ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED,
+            .format = p->formats[i],
+        };
     }
     check_vkao(vkao_frame_scratch(fixture.context, &info, &out));
     return out;

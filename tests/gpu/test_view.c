@@ -17,7 +17,15 @@ struct method {
 static const struct method methods[] = {
     {"hemisphere", VKAO_SSAO_HEMISPHERE, VKAO_SPHERE_RESCALED},
     {"sphere", VKAO_SSAO_SPHERE, VKAO_SPHERE_RESCALED},
-    {"literal", VKAO_SSAO_SPHERE, VKAO_SPHERE_LITERAL},
+    {"hbao", VKAO_SSAO_HBAO, VKAO_SPHERE_RESCALED},
+    {"gtao", VKAO_SSAO_GTAO, VKAO_SPHERE_RESCALED},
+    {"vbao", VKAO_SSAO_VBAO, VKAO_SPHERE_RESCALED},
+    {"raymarch", VKAO_SSAO_RAYMARCH, VKAO_SPHERE_RESCALED},
+    {"literal", VKAO_SSAO_SPHERE, VKAO_SPHERE_LITERAL}, /* greys every wall */
+};
+enum {
+    METHODS = sizeof methods / sizeof methods[0],
+    OPEN_METHODS = METHODS - 1,
 };
 
 static void set_method(struct picture *p, const struct method *method)
@@ -25,27 +33,28 @@ static void set_method(struct picture *p, const struct method *method)
     p->ssao.method = method->method;
     p->ssao.sphere_form = method->form;
     p->ssao.blocking_scale = 10.0f;
+    p->ssao.slice_count = 2;
 }
 
 static void check_open(struct picture *p, const char *what)
 {
-    double worst = 1.0;
     picture_run(p);
-    for (size_t i = 0; i < picture_texels(p); ++i)
-        worst = p->values[SLOT_AO][i] >= worst ? worst : p->values[SLOT_AO][i];
-    if (!(worst >= 0.995))
-        fail_msg("%s: the darkest texel is %g, want at least 0.995", what, worst);
+    for (size_t i = 0; i < picture_texels(p); ++i) {
+        if (!(fabs(p->values[SLOT_AO][i] - 1.0) <= 0.002))
+            fail_msg("%s: texel %zu,%zu is %g, want 1 within 0.002", what, i % p->width,
+                     i / p->width, p->values[SLOT_AO][i]);
+    }
 }
 
 static void check_tilted_planes(bool orthographic, bool given_normals, float bias,
                                 VkFormat other_format)
 {
     const VkFormat formats[] = {VK_FORMAT_D32_SFLOAT, other_format};
-    for (int i = 0; i < 5 * 4 * 2 * 2; ++i) {
+    for (int i = 0; i < 5 * 4 * 2 * OPEN_METHODS; ++i) {
         struct picture p;
         char what[120];
-        const struct method *method = &methods[i % 2];
-        double tilt = 20.0 * (i / 4 % 5), azimuth = 25.0 + 90.0 * (i / 20);
+        const struct method *method = &methods[i / 40];
+        double tilt = 20.0 * (i / 2 % 5), azimuth = 25.0 + 90.0 * (i / 10 % 4);
         struct lens lens = orthographic ? lens_orthographic(1.6, 1.2) : lens_perspective(0.6, 0.45);
         struct scene wall = scene_tilted_plane(tilt, azimuth);
         if (given_normals) {
@@ -59,14 +68,14 @@ static void check_tilted_planes(bool orthographic, bool given_normals, float bia
         p.view.normal_encoding = given_normals ? VKAO_NORMALS_XYZ_SNORM : VKAO_NORMALS_FROM_DEPTH;
         VkFormat normals =
             bias > 0.0f ? VK_FORMAT_R16G16B16A16_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT;
-        picture_render_scene(&p, &wall, &lens, formats[i / 2 % 2],
+        picture_render_scene(&p, &wall, &lens, formats[i % 2],
                              given_normals ? normals : VK_FORMAT_UNDEFINED);
         picture_set(&p, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
         set_method(&p, method);
         p.ssao.bias = bias;
         snprintf(what, sizeof what, "%s, %s, %s normals, format %d, %g degrees towards %g",
                  method->name, orthographic ? "orthographic" : "perspective",
-                 given_normals ? "given" : "no", (int)formats[i / 2 % 2], tilt, azimuth);
+                 given_normals ? "given" : "no", (int)formats[i % 2], tilt, azimuth);
         check_open(&p, what);
         picture_free(&p);
     }
@@ -104,22 +113,23 @@ static void tilted_planes_are_open_without_a_bias(void **state)
 static void walls_of_half_precision_depth_are_open_without_a_bias(void **state)
 {
     (void)state;
-    for (int i = 0; i < 2 * 4; ++i) {
+    for (int i = 0; i < OPEN_METHODS * 4; ++i) {
         struct picture p;
         char what[80];
+        const struct method *method = &methods[i % OPEN_METHODS];
         struct lens lens = lens_perspective(0.05, 0.0375);
-        struct scene wall = scene_tilted_plane(20.0 * (i / 2), 25.0);
+        struct scene wall = scene_tilted_plane(20.0 * (i / OPEN_METHODS), 25.0);
         wall.shapes[0].center[2] = 4.0;
         picture_init(&p, 64, 48, VKAO_STAGE_SSAO);
         p.view.depth_encoding = VKAO_DEPTH_VIEW_Z;
         p.view.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
         picture_render_scene(&p, &wall, &lens, VK_FORMAT_R16_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
         picture_set(&p, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
-        set_method(&p, &methods[i % 2]);
+        set_method(&p, method);
         p.ssao.bias = 0.0f;
         p.ssao.radius = 0.05f;
         p.ssao.sample_count = 64;
-        snprintf(what, sizeof what, "%s, %g degrees", methods[i % 2].name, 20.0 * (i / 2));
+        snprintf(what, sizeof what, "%s, %g degrees", method->name, 20.0 * (i / OPEN_METHODS));
         check_open(&p, what);
         picture_free(&p);
     }
@@ -171,21 +181,22 @@ static void render(struct picture *p, const struct lens *base, const struct conv
     picture_set(p, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
     set_method(p, m);
     p->ssao.sample_count = 32;
+    p->ssao.radius = 0.8f;
     picture_run(p);
 }
 
 static void check_conventions(const struct lens *lens)
 {
     const size_t count = sizeof conventions / sizeof conventions[0];
-    for (size_t i = 0; i < 3 * 2; ++i) {
+    for (size_t i = 0; i < METHODS * 2; ++i) {
         struct picture first, p;
         char what[120];
-        bool given_normals = i / 3;
-        render(&first, lens, &conventions[8], &methods[i % 3], given_normals);
+        bool given_normals = i / METHODS;
+        render(&first, lens, &conventions[8], &methods[i % METHODS], given_normals);
         assert_true(mean_of(first.values[SLOT_AO], picture_texels(&first)) < 0.98);
         for (size_t c = 0; c < count; ++c) {
-            render(&p, lens, &conventions[c], &methods[i % 3], given_normals);
-            snprintf(what, sizeof what, "%s %s, %s", methods[i % 3].name,
+            render(&p, lens, &conventions[c], &methods[i % METHODS], given_normals);
+            snprintf(what, sizeof what, "%s %s, %s", methods[i % METHODS].name,
                      given_normals ? "normals" : "depth only", conventions[c].name);
             check_close(what, p.values[SLOT_AO], first.values[SLOT_AO], picture_texels(&p), 1e-4,
                         1e-4);
@@ -214,7 +225,7 @@ static void every_orthographic_convention_gives_the_same_ao(void **state)
 static void y_flip_mirrors_the_picture(void **state)
 {
     (void)state;
-    for (size_t m = 0; m < 3; ++m) {
+    for (size_t m = 0; m < METHODS; ++m) {
         struct picture up, down;
         struct lens lens = lens_perspective(0.6, 0.45);
         double blocks[2][16 * 12] = {{0.0}};
@@ -249,7 +260,7 @@ static void y_flip_mirrors_the_picture(void **state)
 static void viewport_with_overscan_agrees_where_both_see_the_neighbourhood(void **state)
 {
     (void)state;
-    for (size_t m = 0; m < 3; ++m) {
+    for (size_t m = 0; m < METHODS; ++m) {
         struct picture small, large;
         const struct scene scene = scene_corner();
         struct lens lens = lens_perspective(0.6, 0.45);
@@ -277,7 +288,7 @@ static void viewport_with_overscan_agrees_where_both_see_the_neighbourhood(void 
                 agreeing += a < 0.999;
             }
         }
-        assert_true(agreeing > 200);
+        assert_true(agreeing > 100);
         picture_free(&small);
         picture_free(&large);
     }
@@ -290,9 +301,9 @@ static void viewport_equals_the_off_centre_projection_of_the_same_window(void **
     (void)state;
     const VkRect2D viewports[] = {
         {{-16, -9}, {112, 78}}, {{16, 12}, {40, 30}}, {{-40, 5}, {80, 60}}};
-    for (size_t i = 0; i < 3 * 3; ++i) {
+    for (size_t i = 0; i < 3 * METHODS; ++i) {
         struct picture by_viewport, off_centre;
-        VkRect2D viewport = viewports[i / 3];
+        VkRect2D viewport = viewports[i / METHODS];
         const struct scene scene = scene_corner();
         struct lens lens = lens_perspective(0.6, 0.45), window = lens;
         double dx = 1.2 / viewport.extent.width, dy = 0.9 / viewport.extent.height;
@@ -307,8 +318,8 @@ static void viewport_equals_the_off_centre_projection_of_the_same_window(void **
                              VK_FORMAT_R32G32B32A32_SFLOAT);
         picture_render_scene(&off_centre, &scene, &window, VK_FORMAT_R32_SFLOAT,
                              VK_FORMAT_R32G32B32A32_SFLOAT);
-        set_method(&by_viewport, &methods[i % 3]);
-        set_method(&off_centre, &methods[i % 3]);
+        set_method(&by_viewport, &methods[i % METHODS]);
+        set_method(&off_centre, &methods[i % METHODS]);
         picture_run(&by_viewport);
         picture_run(&off_centre);
         check_close("viewport and off-centre window", by_viewport.values[SLOT_AO],

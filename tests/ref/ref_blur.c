@@ -68,8 +68,14 @@ static double blurred(const struct blur *blur, const double *ao, int x, int y, i
     return sum / weights;
 }
 
-void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params,
-              vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao)
+double ref_blur_finish(const vkao_blur_params *params, double visibility)
+{
+    double v = fmin(1.0, fmax(0.0, 1.0 - (double)params->intensity * (1.0 - visibility)));
+    return pow(v, (double)params->power);
+}
+
+void ref_blur_channel(const struct ref_scene *scene, const vkao_blur_params *params, vkao_normal_encoding encoding,
+                      const double *stored, const double *noisy, double *out)
 {
     double left[3], right[3];
     const double *viewport = scene->view.viewport;
@@ -86,10 +92,21 @@ void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params,
     }
     for (int y = rect->offset.y; y < rect->offset.y + (int)rect->extent.height; ++y) {
         for (int x = rect->offset.x; x < rect->offset.x + (int)rect->extent.width; ++x) {
-            double v = blurred(&blur, halfway, x, y, 0, 1);
-            v = fmin(1.0, fmax(0.0, 1.0 - (double)params->intensity * (1.0 - v)));
-            ao[texel_index(&blur, x, y)] = pow(v, (double)params->power);
+            out[texel_index(&blur, x, y)] = blurred(&blur, halfway, x, y, 0, 1);
         }
     }
     free(halfway);
+}
+
+void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params, vkao_normal_encoding encoding,
+              const double *stored, const double *noisy, double *ao)
+{
+    const VkRect2D *rect = &scene->view.rect;
+    ref_blur_channel(scene, params, encoding, stored, noisy, ao);
+    for (int y = rect->offset.y; y < rect->offset.y + (int)rect->extent.height; ++y) {
+        for (int x = rect->offset.x; x < rect->offset.x + (int)rect->extent.width; ++x) {
+            size_t i = (size_t)y * scene->width + (size_t)x;
+            ao[i] = ref_blur_finish(params, ao[i]);
+        }
+    }
 }

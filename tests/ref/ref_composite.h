@@ -10,4 +10,13 @@
 void ref_composite(const vkao_composite_params *params, double ao, const double color[4],
                    const double direct[4], double out[4]);
 
+/* Visibility with the light that bounces on, for one channel (Jimenez et al. 2016). */
+double ref_multi_bounce(double ao, double albedo);
+/* Share of the specular light that arrives: from AO (Lagarde and de Rousiers 2014), n and v being
+ * unit. */
+double ref_specular_from_ao(double ao, double roughness, const double n[3], const double v[3]);
+/* From the cone around the bent normal, cut with the cone of the lobe (Oat and Sander 2007). */
+double ref_specular_from_bent(double ao, double roughness, const double n[3], const double v[3],
+                              const double bent[3]);
+
 #endif

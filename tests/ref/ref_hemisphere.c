@@ -7,30 +7,15 @@
 
 #include <math.h>
 
-/* The basis of Duff et al. 2017, here by Rodrigues' formula: (0, 0, s), the nearer of +z and -z, is
- * rotated onto n by the shortest way, and the x and y axes with it; b is turned so that t, b, n are
- * right-handed. */
-static void basis(const double n[3], double t[3], double b[3])
-{
-    double s = n[2] >= 0.0 ? 1.0 : -1.0;
-    /* (0, 0, s) x n is the axis times the sine */
-    double axis[3] = {-s * n[1], s * n[0], 0.0}, cosine = s * n[2], k = 1.0 / (1.0 + cosine);
-    const double cross_x[3] = {0.0, axis[2], -axis[1]}, cross_y[3] = {-axis[2], 0.0, axis[0]};
-    for (int i = 0; i < 3; ++i) {
-        t[i] = (i == 0 ? cosine : 0.0) + cross_x[i] + k * axis[i] * axis[0];
-        b[i] = s * ((i == 1 ? cosine : 0.0) + cross_y[i] + k * axis[i] * axis[1]);
-    }
-}
-
-static double visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x,
-                         int y, const double p[3], const double n[3])
+static double visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
+                         const double p[3], const double n[3])
 {
     const double golden_angle = 2.39996322972865332, two_pi = 6.28318530717958647692;
     double turn = two_pi * ref_gradient_noise((uint32_t)x, (uint32_t)y, params->noise_index);
     double shift = ref_r2_noise((uint32_t)x, (uint32_t)y, params->noise_index);
     double bias = ref_guard(scene, params, p[2]), blocked = 0.0;
     double t[3], b[3];
-    basis(n, t, b);
+    ref_basis(n, t, b);
     for (uint32_t k = 0; k < params->sample_count; ++k) {
         /* Point k of the Fibonacci disk, lifted onto the hemisphere: directions follow the cosine.
          */

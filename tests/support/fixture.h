@@ -57,6 +57,9 @@ enum picture_slot {
     SLOT_COLOR,
     SLOT_DIRECT,
     SLOT_OUTPUT,
+    SLOT_BENT,
+    SLOT_ALBEDO,
+    SLOT_SPECULAR,
     SLOT_COUNT
 };
 
@@ -67,6 +70,7 @@ struct picture {
     double *values[SLOT_COUNT];    /* as the image holds them: depth, ao_noisy, ao 1 a texel, the
                                       others 4 */
     bool output_is_color;          /* composite in place */
+    bool half_resolution;
     VkDeviceMemory scratch_memory; /* null = the library's own */
     VkDeviceSize scratch_offset;
     vkao_view view;
@@ -87,6 +91,7 @@ void picture_init(struct picture *p, uint32_t width, uint32_t height, vkao_stage
 void picture_free(struct picture *p);
 uint32_t picture_channels(enum picture_slot slot);
 size_t picture_texels(const struct picture *p);
+vkao_image *picture_slot_image(vkao_images *images, enum picture_slot slot);
 /* Uses the slot, with these values rounded to the format, or with canaries if NULL. */
 void picture_set(struct picture *p, enum picture_slot slot, VkFormat format, const double *values);
 /* Every texel and channel of the slot. */

@@ -35,6 +35,17 @@ size_t picture_texels(const struct picture *p)
     return (size_t)p->width * p->height;
 }
 
+vkao_image *picture_slot_image(vkao_images *images, enum picture_slot slot)
+{
+    vkao_image *const slots[SLOT_COUNT] = {
+        [SLOT_DEPTH] = &images->depth,       [SLOT_NORMALS] = &images->normals, [SLOT_NOISY] = &images->ao_noisy,
+        [SLOT_AO] = &images->ao,             [SLOT_COLOR] = &images->color,     [SLOT_DIRECT] = &images->direct,
+        [SLOT_OUTPUT] = &images->output,     [SLOT_BENT] = &images->bent_normals, [SLOT_ALBEDO] = &images->albedo,
+        [SLOT_SPECULAR] = &images->specular,
+    };
+    return slots[slot];
+}
+
 /* Between the values of a slot and the bytes of its image. */
 static void *slot_encode(const struct picture *p, enum picture_slot slot, size_t *bytes)
 {
@@ -130,8 +141,10 @@ static bool is_written(const struct picture *p, enum picture_slot slot)
 {
     bool makes_ao = p->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
     bool makes_noisy = (p->stages & VKAO_STAGE_SSAO) && (p->stages & VKAO_STAGE_BLUR);
-    return slot == SLOT_OUTPUT || (slot == SLOT_AO && makes_ao) ||
-           (slot == SLOT_NOISY && makes_noisy) || (slot == SLOT_COLOR && p->output_is_color);
+    if (slot == SLOT_BENT)
+        return makes_noisy;
+    return slot == SLOT_OUTPUT || (slot == SLOT_AO && makes_ao) || (slot == SLOT_NOISY && makes_noisy) ||
+           (slot == SLOT_COLOR && p->output_is_color);
 }
 
 static void open_slot(const struct picture *p, enum picture_slot slot, struct gpu_image *image)
@@ -155,6 +168,7 @@ void picture_frame_info(const struct picture *p, const struct picture_gpu *g, vk
         .images = &g->slots,
         .scratch_memory = p->scratch_memory,
         .scratch_offset = p->scratch_offset,
+        .half_resolution = p->half_resolution,
     };
 }
 
@@ -162,17 +176,11 @@ void picture_open(const struct picture *p, struct picture_gpu *g)
 {
     vkao_frame_info info;
     *g = (struct picture_gpu){.slots = vkao_images_default()};
-    vkao_image *const slots[SLOT_COUNT] = {
-        [SLOT_DEPTH] = &g->slots.depth,    [SLOT_NORMALS] = &g->slots.normals,
-        [SLOT_NOISY] = &g->slots.ao_noisy, [SLOT_AO] = &g->slots.ao,
-        [SLOT_COLOR] = &g->slots.color,    [SLOT_DIRECT] = &g->slots.direct,
-        [SLOT_OUTPUT] = &g->slots.output,
-    };
     for (int i = 0; i < SLOT_COUNT; ++i) {
         if (p->formats[i] == VK_FORMAT_UNDEFINED)
             continue;
         open_slot(p, (enum picture_slot)i, &g->images[i]);
-        *slots[i] = gpu_image_slot(&g->images[i]);
+        *picture_slot_image(&g->slots, (enum picture_slot)i) = gpu_image_slot(&g->images[i]);
     }
     if (p->output_is_color)
         g->slots.output = g->slots.color;

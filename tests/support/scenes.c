@@ -45,6 +45,46 @@ struct scene scene_steps(void)
     }};
 }
 
+struct scene scene_groove(void)
+{
+    return (struct scene){{
+        {SHAPE_PLANE, {0.0, 0.0, 4.0}, {0.0, -1.0, -1.0}},
+        {SHAPE_PLANE, {0.0, 0.0, 4.0}, {0.0, 1.0, -1.0}},
+    }};
+}
+
+struct scene scene_staircase(void)
+{
+    return (struct scene){{
+        {SHAPE_BOX, {0.0, 2.0, 5.0}, {9.0, 1.0, 2.5}},
+        {SHAPE_BOX, {0.0, 1.6, 5.5}, {9.0, 1.0, 2.3}},
+        {SHAPE_BOX, {0.0, 1.2, 6.0}, {9.0, 1.0, 2.1}},
+        {SHAPE_BOX, {0.0, 0.8, 6.5}, {9.0, 1.0, 1.9}},
+        {SHAPE_PLANE, {0.0, 0.0, 7.0}, {0.0, 0.0, -1.0}},
+    }};
+}
+
+struct scene scene_board(void)
+{
+    return (struct scene){{
+        {SHAPE_PLANE, {0.0, 1.0, 4.0}, {0.0, -1.0, -0.7}},
+        {SHAPE_BOX, {0.0, 0.1, 3.8}, {0.8, 0.03, 0.5}},
+    }};
+}
+
+struct scene scene_fence(void)
+{
+    return (struct scene){{
+        {SHAPE_PLANE, {0.0, 0.0, 4.0}, {0.0, 0.2, -1.0}},
+        {SHAPE_BOX, {-1.2, 0.0, 3.5}, {0.05, 9.0, 0.05}},
+        {SHAPE_BOX, {-0.6, 0.0, 3.5}, {0.05, 9.0, 0.05}},
+        {SHAPE_BOX, {0.0, 0.0, 3.5}, {0.05, 9.0, 0.05}},
+        {SHAPE_BOX, {0.6, 0.0, 3.5}, {0.05, 9.0, 0.05}},
+        {SHAPE_BOX, {1.2, 0.0, 3.5}, {0.05, 9.0, 0.05}},
+        {SHAPE_BOX, {0.0, -0.6, 3.5}, {9.0, 0.05, 0.04}},
+    }};
+}
+
 struct scene scene_open_sky(void)
 {
     return (struct scene){{
@@ -137,4 +177,34 @@ void scene_render(const struct scene *scene, const struct lens *lens, VkRect2D v
             normals[i * 4 + 3] = 0.0;
         }
     }
+}
+
+struct scene_ambient scene_ambient(const struct scene *scene, const double point[3],
+                                   const double normal[3], double radius, unsigned rays)
+{
+    struct scene_ambient result = {1.0, 1.0, {0.0, 0.0, 0.0}};
+    double s = normal[2] >= 0.0 ? 1.0 : -1.0, a = -1.0 / (s + normal[2]), c = normal[0] * normal[1] * a;
+    const double t[3] = {1.0 + s * normal[0] * normal[0] * a, s * c, -s * normal[0]};
+    const double b[3] = {c, s + normal[1] * normal[1] * a, -normal[1]};
+    double origin[3], ray[3], ignored[3];
+    for (int i = 0; i < 3; ++i)
+        origin[i] = point[i] + 1e-6 * normal[i];
+    for (unsigned k = 0; k < rays; ++k) {
+        double r2 = (k + 0.5) / rays, angle = k * 2.39996322972865332, nearest = INFINITY;
+        for (int i = 0; i < 3; ++i)
+            ray[i] = sqrt(r2) * (cos(angle) * t[i] + sin(angle) * b[i]) + sqrt(1.0 - r2) * normal[i];
+        for (int i = 0; i < SCENE_SHAPES && scene->shapes[i].kind != SHAPE_NONE; ++i) {
+            double at = hit(&scene->shapes[i], origin, ray, ignored);
+            nearest = at > 0.0 && at < nearest ? at : nearest;
+        }
+        double x = nearest / radius, weight = x < 1.0 ? 1.0 - x * x : 0.0;
+        result.threshold -= x < 1.0 ? 1.0 / rays : 0.0;
+        result.falloff -= weight / rays;
+        for (int i = 0; i < 3; ++i)
+            result.bent[i] += (1.0 - weight) * ray[i];
+    }
+    double length = sqrt(dot(result.bent, result.bent));
+    for (int i = 0; i < 3; ++i)
+        result.bent[i] /= length;
+    return result;
 }

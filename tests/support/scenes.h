@@ -28,6 +28,14 @@ struct scene scene_corner(void);
 struct scene scene_sphere_on_plane(void);
 /* Three boxes at different depths before a wall. */
 struct scene scene_steps(void);
+/* Two walls that meet at a right angle in the plane x = any, y = 0, z = 4, and open towards the eye. */
+struct scene scene_groove(void);
+/* Four steps, going up away from the eye. */
+struct scene scene_staircase(void);
+/* A board hovering over a floor, seen from above at a slant. */
+struct scene scene_board(void);
+/* Thin bars before a wall. */
+struct scene scene_fence(void);
 /* A sphere and a box before nothing. */
 struct scene scene_open_sky(void);
 
@@ -36,5 +44,14 @@ struct scene scene_open_sky(void);
  * the eye. */
 void scene_render(const struct scene *scene, const struct lens *lens, VkRect2D viewport,
                   uint32_t width, uint32_t height, double *z, double *normals);
+
+/* Ambient visibility of a surface point, ray cast: threshold counts any hit within the radius, falloff
+ * weighs it 1 - (t / R)^2; bent is the unit mean of the directions by the falloff's visibility. */
+struct scene_ambient {
+    double threshold, falloff, bent[3];
+};
+/* rays: cosine-distributed about the unit normal, stratified, the same for every point. */
+struct scene_ambient scene_ambient(const struct scene *scene, const double point[3],
+                                   const double normal[3], double radius, unsigned rays);
 
 #endif

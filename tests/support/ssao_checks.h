@@ -9,8 +9,7 @@
 typedef void ssao_reference(const struct ref_scene *scene, const vkao_ssao_params *params,
                             double *ao);
 
-/* Single and double precision disagree about a few samples at the edge of blocking, each worth up
- * to 2/n of a texel: the tolerance is 1e-4 in the mean and 1e-3 in the 99th percentile. */
+/* Runs the picture and compares it with the reference, by the tolerance of the method. */
 void check_ssao(struct picture *p, ssao_reference *reference, const char *what);
 /* Every format and encoding that normals come in, and from depth. */
 void check_every_normal_encoding(const vkao_ssao_params *params, ssao_reference *reference);

@@ -19,14 +19,16 @@ static void keep(void *user_data, vkao_log_level level, const char *message)
 
 const char *const world_slot_names[SLOT_COUNT] = {
     "images.depth", "images.normals", "images.ao_noisy", "images.ao",
-    "images.color", "images.direct",  "images.output",
+    "images.color", "images.direct",  "images.output",   "images.bent_normals",
+    "images.albedo", "images.specular",
 };
 
 vkao_image *world_slot(vkao_images *images, size_t index)
 {
     vkao_image *const slots[SLOT_COUNT] = {
         &images->depth, &images->normals, &images->ao_noisy, &images->ao,
-        &images->color, &images->direct,  &images->output,
+        &images->color, &images->direct,  &images->output,   &images->bent_normals,
+        &images->albedo, &images->specular,
     };
     return slots[index];
 }
@@ -36,7 +38,8 @@ void world_init(struct world *w, bool with_callbacks)
     static const VkFormat formats[SLOT_COUNT] = {
         VK_FORMAT_D32_SFLOAT,      VK_FORMAT_R16G16B16A16_SNORM,      VK_FORMAT_R8_UNORM,
         VK_FORMAT_R16_UNORM,       VK_FORMAT_B10G11R11_UFLOAT_PACK32, VK_FORMAT_R16G16B16A16_SFLOAT,
-        VK_FORMAT_R8G8B8A8_UNORM,
+        VK_FORMAT_R8G8B8A8_UNORM,  VK_FORMAT_R32G32B32A32_SFLOAT,     VK_FORMAT_B8G8R8A8_SRGB,
+        VK_FORMAT_A2B10G10R10_UNORM_PACK32,
     };
     memset(w, 0, sizeof *w);
     host_calloc = (struct host_memory){0};
@@ -60,6 +63,8 @@ void world_init(struct world *w, bool with_callbacks)
     for (size_t i = 0; i < SLOT_COUNT; ++i)
         *world_slot(&w->images, i) = (vkao_image){
             fake_caller_view(&w->fake), VK_IMAGE_LAYOUT_GENERAL, formats[i]};
+    w->bent_normals = w->images.bent_normals;
+    w->images.bent_normals = (vkao_image){0};
     w->frame_info = (vkao_frame_info){
         .struct_size = sizeof w->frame_info,
         .stages = VKAO_STAGE_ALL,
@@ -90,6 +95,12 @@ void world_open_frame(struct world *w, vkao_stage_flags stages)
     assert_int_equal(vkao_frame_create(w->ctx, &w->frame_info, &w->frame), VKAO_SUCCESS);
     assert_non_null(w->frame);
     fake_forget_calls(&w->fake);
+}
+
+void world_use_bent_normals(struct world *w)
+{
+    w->images.ao_noisy = (vkao_image){0};
+    w->images.bent_normals = w->bent_normals;
 }
 
 void world_check_empty(const struct world *w)

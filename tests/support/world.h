@@ -35,8 +35,10 @@ struct world {
     vkao_context_info info;
     vkao_context *ctx;
 
-    /* Every slot used, each with its own format; the extent is 100x60. */
+    /* Every slot used but bent_normals, which shuns ao_noisy, each with its own format; the extent is
+     * 100x60. */
     vkao_images images;
+    vkao_image bent_normals; /* for world_use_bent_normals */
     vkao_frame_info frame_info;
     vkao_frame *frame;
 
@@ -52,6 +54,8 @@ void world_init(struct world *w, bool with_callbacks);
 void world_open(struct world *w);
 /* And a frame for the stages. */
 void world_open_frame(struct world *w, vkao_stage_flags stages);
+/* Bent normals instead of ao_noisy, before the frame is created. */
+void world_use_bent_normals(struct world *w);
 /* Destroys frame and context, and checks that nothing was left and the API was not misused. */
 void world_close(struct world *w);
 /* Nothing that the library made is alive, on the device or on the host. */
@@ -66,7 +70,7 @@ void expect_refused(struct world *w, vkao_result want, vkao_result got, const ch
 void expect_nothing_recorded(const struct world *w);
 
 /* The slots of vkao_images in order of declaration. */
-enum { SLOT_COUNT = 7 };
+enum { SLOT_COUNT = 10, SLOT_BENT_NORMALS = 7 };
 extern const char *const world_slot_names[SLOT_COUNT];
 vkao_image *world_slot(vkao_images *images, size_t index);
 

@@ -9,20 +9,35 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { DEPTH, NORMALS, AO_NOISY, AO, COLOR, DIRECT, OUTPUT };
+enum { DEPTH, NORMALS, AO_NOISY, AO, COLOR, DIRECT, OUTPUT, BENT_NORMALS, ALBEDO, SPECULAR };
 
-/* A letter per slot: r read, w written, b both, - not touched. */
+/* A letter per slot: r read, w written, b both, - not touched, ! refused. */
 static const struct {
     const char *access, *required;
 } combinations[VKAO_STAGE_ALL + 1] = {
-    [VKAO_STAGE_SSAO] = {"rr-w---", "x--x---"},
-    [VKAO_STAGE_BLUR] = {"rrrw---", "x-xx---"},
-    [VKAO_STAGE_SSAO | VKAO_STAGE_BLUR] = {"rrbw---", "x--x---"},
-    [VKAO_STAGE_COMPOSITE] = {"---rrrw", "---x--x"},
-    [VKAO_STAGE_SSAO | VKAO_STAGE_COMPOSITE] = {"rr-brrw", "x-----x"},
-    [VKAO_STAGE_BLUR | VKAO_STAGE_COMPOSITE] = {"rrrbrrw", "x-x---x"},
-    [VKAO_STAGE_ALL] = {"rrbbrrw", "x-----x"},
+    [VKAO_STAGE_SSAO] = {"rr-w---!--", "x--x------"},
+    [VKAO_STAGE_BLUR] = {"rrrw---!--", "x-xx------"},
+    [VKAO_STAGE_SSAO | VKAO_STAGE_BLUR] = {"rrbw---w--", "x--x------"},
+    [VKAO_STAGE_COMPOSITE] = {"-r-rrrwrrr", "---x--x---"},
+    [VKAO_STAGE_SSAO | VKAO_STAGE_COMPOSITE] = {"rr-brrw!rr", "x-----x---"},
+    [VKAO_STAGE_BLUR | VKAO_STAGE_COMPOSITE] = {"rrrbrrw!rr", "x-x---x---"},
+    [VKAO_STAGE_ALL] = {"rrbbrrwbrr", "x-----x---"},
 };
+
+/* Each stage combination twice: with ao_noisy, and with bent normals where they
+ * may be. */
+enum { CASES = (VKAO_STAGE_ALL + 1) * 2 };
+
+static bool set_case(struct world *w, unsigned i)
+{
+    const vkao_stage_flags stages = i / 2;
+    if (stages == 0 || (i % 2 && combinations[stages].access[BENT_NORMALS] == '!'))
+        return false;
+    w->frame_info.stages = stages;
+    if (i % 2)
+        world_use_bent_normals(w);
+    return true;
+}
 
 static bool writes(char access)
 {
@@ -59,39 +74,41 @@ static void expect_result(struct world *w, vkao_result want, const char *name, c
 static void slots_are_required_as_the_stages_say(void **state)
 {
     (void)state;
-    struct world w;
-    world_open(&w);
-    for (vkao_stage_flags stages = 1; stages <= VKAO_STAGE_ALL; ++stages) {
-        for (size_t slot = 0; slot < SLOT_COUNT; ++slot) {
+    for (unsigned i = 0; i < CASES; ++i) {
+        struct world w;
+        world_open(&w);
+        for (size_t slot = 0; slot < SLOT_COUNT && set_case(&w, i); ++slot) {
             const vkao_image was = *world_slot(&w.images, slot);
-            w.frame_info.stages = stages;
+            if (was.format == VK_FORMAT_UNDEFINED)
+                continue;
             *world_slot(&w.images, slot) = (vkao_image){0};
-            bool required = combinations[stages].required[slot] == 'x';
+            bool required = combinations[i / 2].required[slot] == 'x';
             expect_result(&w, required ? VKAO_ERROR_INVALID_ARGUMENT : VKAO_SUCCESS,
                           world_slot_names[slot], required ? "required" : "");
             *world_slot(&w.images, slot) = was;
         }
+        world_close(&w);
     }
-    world_close(&w);
 }
 
 static void used_slots_need_views(void **state)
 {
     (void)state;
-    struct world w;
-    world_open(&w);
-    for (vkao_stage_flags stages = 1; stages <= VKAO_STAGE_ALL; ++stages) {
-        for (size_t slot = 0; slot < SLOT_COUNT; ++slot) {
+    for (unsigned i = 0; i < CASES; ++i) {
+        struct world w;
+        world_open(&w);
+        for (size_t slot = 0; slot < SLOT_COUNT && set_case(&w, i); ++slot) {
             const VkImageView was = world_slot(&w.images, slot)->view;
-            w.frame_info.stages = stages;
+            if (!was)
+                continue;
             world_slot(&w.images, slot)->view = VK_NULL_HANDLE;
-            bool used = combinations[stages].access[slot] != '-';
+            bool used = combinations[i / 2].access[slot] != '-';
             expect_result(&w, used ? VKAO_ERROR_INVALID_ARGUMENT : VKAO_SUCCESS,
                           world_slot_names[slot], used ? "view" : "");
             world_slot(&w.images, slot)->view = was;
         }
+        world_close(&w);
     }
-    world_close(&w);
 }
 
 static void layouts_fit_what_is_done(void **state)
@@ -113,18 +130,19 @@ static void layouts_fit_what_is_done(void **state)
         {VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, false, false},
         {VK_IMAGE_LAYOUT_PREINITIALIZED, false, false},
     };
-    for (vkao_stage_flags stages = 1; stages <= VKAO_STAGE_ALL; ++stages) {
+    for (unsigned c = 0; c < CASES; ++c) {
         struct world w;
         world_open(&w);
-        for (size_t i = 0; i < SLOT_COUNT * COUNT(layouts); ++i) {
+        for (size_t i = 0; i < SLOT_COUNT * COUNT(layouts) && set_case(&w, c); ++i) {
             const size_t slot = i / COUNT(layouts), l = i % COUNT(layouts);
-            const char access = combinations[stages].access[slot];
+            const char access = combinations[c / 2].access[slot];
+            if (world_slot(&w.images, slot)->format == VK_FORMAT_UNDEFINED)
+                continue;
             bool fits =
                 (!reads(access) || layouts[l].read) && (!writes(access) || layouts[l].written);
             char name[64], value[32];
             snprintf(name, sizeof name, "%s.layout", world_slot_names[slot]);
             snprintf(value, sizeof value, "%d", (int)layouts[l].layout);
-            w.frame_info.stages = stages;
             world_slot(&w.images, slot)->layout = layouts[l].layout;
             expect_result(&w, fits ? VKAO_SUCCESS : VKAO_ERROR_INVALID_ARGUMENT, name, value);
             world_slot(&w.images, slot)->layout = VK_IMAGE_LAYOUT_GENERAL;
@@ -141,18 +159,19 @@ static void device_abilities_decide_about_formats(void **state)
     const VkFormatFeatureFlags abilities[][2] = {
         {0, 0}, {sampled, 0}, {storage, 0}, {sampled | storage, 0}, {0, sampled | storage},
     };
-    for (vkao_stage_flags stages = 1; stages <= VKAO_STAGE_ALL; ++stages) {
+    for (unsigned c = 0; c < CASES; ++c) {
         struct world w;
         world_open(&w);
-        for (size_t i = 0; i < SLOT_COUNT * COUNT(abilities); ++i) {
+        for (size_t i = 0; i < SLOT_COUNT * COUNT(abilities) && set_case(&w, c); ++i) {
             const size_t slot = i / COUNT(abilities), a = i % COUNT(abilities);
-            const char access = combinations[stages].access[slot];
+            const char access = combinations[c / 2].access[slot];
+            if (world_slot(&w.images, slot)->format == VK_FORMAT_UNDEFINED)
+                continue;
             const VkFormatFeatureFlags either = abilities[a][0] | abilities[a][1];
             bool can =
                 (!reads(access) || (either & sampled)) && (!writes(access) || (either & storage));
             char value[32];
             snprintf(value, sizeof value, "%d", (int)world_slot(&w.images, slot)->format);
-            w.frame_info.stages = stages;
             w.fake.format_count = 0; /* the scratch formats stay able: no slot has them */
             fake_limit_format(&w.fake, world_slot(&w.images, slot)->format, abilities[a][0],
                               abilities[a][1]);
@@ -176,6 +195,8 @@ static void expect_formats(const VkFormat *formats, size_t count, size_t slot, b
 {
     struct world w;
     world_open(&w);
+    if (slot == BENT_NORMALS)
+        world_use_bent_normals(&w);
     const VkFormat was = world_slot(&w.images, slot)->format;
     for (size_t i = 0; i < count; ++i) {
         char name[64], value[32];
@@ -234,6 +255,9 @@ static void formats_fit_their_slots(void **state)
     expect_formats(colors, COUNT(colors), COLOR, true);
     expect_formats(colors, COUNT(colors), DIRECT, true);
     expect_formats(colors, COUNT(colors), OUTPUT, true);
+    expect_formats(colors, COUNT(colors), BENT_NORMALS, true);
+    expect_formats(colors, COUNT(colors), ALBEDO, true);
+    expect_formats(colors, COUNT(colors), SPECULAR, true);
 }
 
 static void view_without_format_is_refused(void **state)
@@ -242,10 +266,11 @@ static void view_without_format_is_refused(void **state)
     struct world w;
     world_open(&w);
     for (size_t slot = 0; slot < SLOT_COUNT; ++slot) {
-        const VkFormat was = world_slot(&w.images, slot)->format;
+        const vkao_image was = *world_slot(&w.images, slot);
         world_slot(&w.images, slot)->format = VK_FORMAT_UNDEFINED;
+        world_slot(&w.images, slot)->view = w.bent_normals.view; /* any */
         expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, world_slot_names[slot], "format");
-        world_slot(&w.images, slot)->format = was;
+        *world_slot(&w.images, slot) = was;
     }
     world_close(&w);
 }
@@ -285,27 +310,52 @@ static const struct {
     {AO_NOISY, VKAO_BINDING_NOISY_WRITE}, {AO_NOISY, VKAO_BINDING_NOISY_READ},
     {AO, VKAO_BINDING_AO_WRITE},          {AO, VKAO_BINDING_AO_READ},
     {COLOR, VKAO_BINDING_COLOR},          {DIRECT, VKAO_BINDING_DIRECT},
-    {OUTPUT, VKAO_BINDING_OUTPUT},
+    {OUTPUT, VKAO_BINDING_OUTPUT},        {BENT_NORMALS, VKAO_BINDING_BENT_WRITE},
+    {ALBEDO, VKAO_BINDING_ALBEDO},        {BENT_NORMALS, VKAO_BINDING_BENT_READ},
+    {SPECULAR, VKAO_BINDING_SPECULAR},
 };
+
+/* Opens a frame with every stage, i = 1 with bent normals instead of ao_noisy. */
+static void open_case(struct world *w, int i)
+{
+    world_open(w);
+    if (i == 1)
+        world_use_bent_normals(w);
+    w->images.depth.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+    fake_forget_calls(&w->fake);
+    assert_int_equal(vkao_frame_create(w->ctx, &w->frame_info, &w->frame), VKAO_SUCCESS);
+}
+
+/* Bindings of slots that the images leave unused hold what they like. */
+static void check_bindings(const struct world *w, vkao_images images)
+{
+    size_t checked = 0;
+    for (size_t i = 0; i < COUNT(bindings); ++i) {
+        const vkao_image *image = world_slot(&images, bindings[i].slot);
+        if (image->format == VK_FORMAT_UNDEFINED)
+            continue;
+        assert_int_equal(bound_view(w, bindings[i].binding), (uint64_t)image->view);
+        ++checked;
+    }
+    assert_int_equal(checked, COUNT(bindings) - 2);
+}
 
 static void each_binding_holds_its_slot(void **state)
 {
     (void)state;
-    struct world w;
-    world_open(&w);
-    w.images.depth.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-    fake_forget_calls(&w.fake);
-    assert_int_equal(vkao_frame_create(w.ctx, &w.frame_info, &w.frame), VKAO_SUCCESS);
-    const struct fake_call *call = fake_nth(&w.fake, "vkUpdateDescriptorSets", 0);
-    for (size_t i = 0; i < COUNT(bindings); ++i) {
-        const vkao_image *image = world_slot(&w.images, bindings[i].slot);
-        assert_int_equal(bound_view(&w, bindings[i].binding), (uint64_t)image->view);
-        for (uint32_t k = 0; k < call->write_count; ++k) {
-            if (call->writes[k].binding == bindings[i].binding)
+    for (int bent = 0; bent < 2; ++bent) {
+        struct world w;
+        open_case(&w, bent);
+        check_bindings(&w, w.images);
+        const struct fake_call *call = fake_nth(&w.fake, "vkUpdateDescriptorSets", 0);
+        for (size_t i = 0; i < COUNT(bindings) * call->write_count; ++i) {
+            const size_t b = i / call->write_count, k = i % call->write_count;
+            const vkao_image *image = world_slot(&w.images, bindings[b].slot);
+            if (image->format && call->writes[k].binding == bindings[b].binding)
                 assert_int_equal(call->writes[k].layout, image->layout);
         }
+        world_close(&w);
     }
-    world_close(&w);
 }
 
 static void without_blur_ssao_writes_ao_itself(void **state)
@@ -317,36 +367,47 @@ static void without_blur_ssao_writes_ao_itself(void **state)
     world_close(&w);
 }
 
+static void point_at_other_views(struct world *w)
+{
+    for (size_t slot = 0; slot < SLOT_COUNT; ++slot) {
+        if (world_slot(&w->images, slot)->format)
+            world_slot(&w->images, slot)->view = fake_caller_view(&w->fake);
+    }
+}
+
 static void update_points_at_other_images_without_allocation(void **state)
 {
     (void)state;
-    struct world w;
-    world_open_frame(&w, VKAO_STAGE_ALL);
-    for (size_t slot = 0; slot < SLOT_COUNT; ++slot)
-        world_slot(&w.images, slot)->view = fake_caller_view(&w.fake);
-    const unsigned host = w.host.total;
-    assert_int_equal(vkao_frame_update(w.frame, &w.images), VKAO_SUCCESS);
-    assert_int_equal(w.host.total, host);
-    assert_int_equal(fake_count(&w.fake, "vkCreate"), 0);
-    assert_int_equal(fake_count(&w.fake, "vkAllocate"), 0);
-    for (size_t i = 0; i < COUNT(bindings); ++i)
-        assert_int_equal(bound_view(&w, bindings[i].binding),
-                         (uint64_t)world_slot(&w.images, bindings[i].slot)->view);
-    world_close(&w);
+    for (int bent = 0; bent < 2; ++bent) {
+        struct world w;
+        open_case(&w, bent);
+        fake_forget_calls(&w.fake);
+        point_at_other_views(&w);
+        const unsigned host = w.host.total;
+        assert_int_equal(vkao_frame_update(w.frame, &w.images), VKAO_SUCCESS);
+        assert_int_equal(w.host.total, host);
+        assert_int_equal(fake_count(&w.fake, "vkCreate"), 0);
+        assert_int_equal(fake_count(&w.fake, "vkAllocate"), 0);
+        check_bindings(&w, w.images);
+        world_close(&w);
+    }
 }
 
 static void refused_update_leaves_the_frame(void **state)
 {
     (void)state;
-    struct world w;
-    world_open_frame(&w, VKAO_STAGE_ALL);
-    const vkao_images was = w.images;
-    for (size_t slot = 0; slot < SLOT_COUNT; ++slot) {
-        for (int wrong = 0; wrong < 4; ++wrong) {
+    for (int bent = 0; bent < 2; ++bent) {
+        struct world w;
+        open_case(&w, bent);
+        fake_forget_calls(&w.fake);
+        const vkao_images was = w.images;
+        for (size_t i = 0; i < SLOT_COUNT * 4; ++i) {
+            const size_t slot = i / 4, wrong = i % 4;
             w.images = was;
-            for (size_t i = 0; i < SLOT_COUNT; ++i)
-                world_slot(&w.images, i)->view = fake_caller_view(&w.fake);
+            point_at_other_views(&w);
             vkao_image *image = world_slot(&w.images, slot);
+            if (wrong > 0 && image->format == VK_FORMAT_UNDEFINED)
+                continue; /* nothing to take away */
             if (wrong == 0)
                 image->format = VK_FORMAT_R32_SFLOAT;
             if (wrong == 1)
@@ -359,15 +420,11 @@ static void refused_update_leaves_the_frame(void **state)
                            world_slot_names[slot], "");
             assert_int_equal(fake_count(&w.fake, "vkUpdateDescriptorSets"), 0);
         }
+        check_bindings(&w, was);
+        expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, vkao_frame_update(w.frame, NULL), "images",
+                       "NULL");
+        world_close(&w);
     }
-    for (size_t i = 0; i < COUNT(bindings); ++i) {
-        vkao_images old = was;
-        assert_int_equal(bound_view(&w, bindings[i].binding),
-                         (uint64_t)world_slot(&old, bindings[i].slot)->view);
-    }
-    expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, vkao_frame_update(w.frame, NULL), "images",
-                   "NULL");
-    world_close(&w);
 }
 
 int main(void)

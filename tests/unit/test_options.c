@@ -117,8 +117,8 @@ static void numbers_out_of_range_are_named_with_the_range(void **state)
     refuse("i.exr -o o.exr --radius 1m", "--radius is 1m, want a finite number > 0");
     refuse("i.exr -o o.exr --radius 1e-60", "--radius is 1e-60, want a finite number > 0");
     refuse("i.exr -o o.exr --radius 1e60", "--radius is 1e60, want a finite number > 0");
-    refuse("i.exr -o o.exr --samples 65", "--samples is 65, want a whole number >= 1 and <= 64");
-    refuse("i.exr -o o.exr --samples 1.5", "--samples is 1.5, want a whole number >= 1 and <= 64");
+    refuse("i.exr -o o.exr --samples 1025", "--samples is 1025, want a whole number >= 1 and <= 1024");
+    refuse("i.exr -o o.exr --samples 1.5", "--samples is 1.5, want a whole number >= 1 and <= 1024");
     refuse("i.exr -o o.exr --power 0", "--power is 0, want a finite number > 0 and <= 8");
     refuse("i.exr -o o.exr --blur 17", "--blur is 17, want a whole number >= 0 and <= 16");
     refuse("i.exr -o o.exr --fov 180",

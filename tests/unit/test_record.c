@@ -7,35 +7,42 @@
 
 #include <string.h>
 
-/* What each pipeline does with each binding, as its shader declares it. */
-static const struct {
-    enum pipeline pipeline;
+#define BIT(name) (1u << VKAO_BINDING_##name)
+
+/* What each pipeline does with each binding, as its shader declares it; SSAO stands for every method. */
+static const struct use {
     uint32_t reads, writes;
-} uses[PIPELINE_COUNT] = {
-    {PIPELINE_PREPARE, 1u << VKAO_BINDING_DEPTH, 1u << VKAO_BINDING_VIEW_Z},
-    {PIPELINE_BLUR_X,
-     1u << VKAO_BINDING_VIEW_Z | 1u << VKAO_BINDING_NORMALS | 1u << VKAO_BINDING_NOISY_READ,
-     1u << VKAO_BINDING_HALFWAY_WRITE},
-    {PIPELINE_BLUR_Y,
-     1u << VKAO_BINDING_VIEW_Z | 1u << VKAO_BINDING_NORMALS | 1u << VKAO_BINDING_HALFWAY_READ,
-     1u << VKAO_BINDING_AO_WRITE},
-    {PIPELINE_COMPOSITE,
-     1u << VKAO_BINDING_AO_READ | 1u << VKAO_BINDING_COLOR | 1u << VKAO_BINDING_DIRECT,
-     1u << VKAO_BINDING_OUTPUT},
-    {(enum pipeline)(PIPELINE_SSAO + VKAO_SSAO_SPHERE),
-     1u << VKAO_BINDING_VIEW_Z | 1u << VKAO_BINDING_NORMALS, 1u << VKAO_BINDING_NOISY_WRITE},
-    {(enum pipeline)(PIPELINE_SSAO + VKAO_SSAO_HEMISPHERE),
-     1u << VKAO_BINDING_VIEW_Z | 1u << VKAO_BINDING_NORMALS, 1u << VKAO_BINDING_NOISY_WRITE},
+} uses[PIPELINE_SSAO + 1] = {
+    [PIPELINE_PREPARE] = {BIT(DEPTH), BIT(VIEW_Z)},
+    [PIPELINE_BLUR_X] = {BIT(VIEW_Z) | BIT(NORMALS) | BIT(NOISY_READ), BIT(HALFWAY_WRITE)},
+    [PIPELINE_BLUR_Y] = {BIT(VIEW_Z) | BIT(NORMALS) | BIT(HALFWAY_READ), BIT(AO_WRITE)},
+    [PIPELINE_UPSAMPLE] = {BIT(DEPTH) | BIT(VIEW_Z) | BIT(NORMALS) | BIT(NOISY_READ),
+                           BIT(AO_WRITE)},
+    [PIPELINE_COMPOSITE] = {BIT(AO_READ) | BIT(COLOR) | BIT(DIRECT) | BIT(ALBEDO) | BIT(SPECULAR) |
+                                BIT(NORMALS) | BIT(BENT_READ),
+                            BIT(OUTPUT)},
+    [PIPELINE_DEBUG] = {BIT(VIEW_Z) | BIT(NORMALS) | BIT(NOISY_READ) | BIT(BENT_READ), BIT(OUTPUT)},
+    [PIPELINE_SSAO] = {BIT(VIEW_Z) | BIT(NORMALS), BIT(NOISY_WRITE)},
 };
 
-static size_t use_of(const struct world *w, uint64_t pipeline)
+/* With bent normals the stage that writes AO writes them too; at half resolution the blur ends where it began. */
+static struct use use_of(const struct world *w, uint64_t pipeline)
 {
-    for (size_t i = 0; i < COUNT(uses); ++i) {
-        if ((uint64_t)w->ctx->pipelines[uses[i].pipeline] == pipeline)
-            return i;
+    const bool bent = w->frame_info.images->bent_normals.format;
+    for (size_t i = 0; i < PIPELINE_COUNT * 2; ++i) {
+        if ((uint64_t)w->ctx->pipelines[i / 2][i % 2] != pipeline)
+            continue;
+        struct use use = uses[i / 2 < PIPELINE_SSAO ? i / 2 : PIPELINE_SSAO];
+        if (i / 2 == PIPELINE_BLUR_Y && w->frame_info.half_resolution)
+            use.writes = BIT(NOISY_WRITE);
+        if (i % 2 && (use.writes & BIT(AO_WRITE)))
+            use.writes |= BIT(BENT_WRITE);
+        const bool has_both = w->ctx->pipelines[i / 2][1];
+        assert_int_equal(i % 2, has_both && bent && (w->frame_info.stages & VKAO_STAGE_BLUR));
+        return use;
     }
     fail_msg("dispatch without a pipeline of the context");
-    return 0;
+    return uses[0];
 }
 
 struct views {
@@ -56,22 +63,22 @@ static bool holds(const struct views *v, uint64_t view)
 static void check_dispatch(const struct world *w, const struct fake_call *dispatch, uint64_t set,
                            struct views *read, struct views *written)
 {
-    const size_t use = use_of(w, dispatch->handle);
+    const struct use use = use_of(w, dispatch->handle);
     const struct fake_object *object = fake_find(&w->fake, set);
     assert_non_null(object);
     for (uint32_t binding = 0; binding < VKAO_BINDING_COUNT; ++binding) {
         const uint64_t view = object->views[binding];
-        if (((uses[use].reads | uses[use].writes) >> binding & 1u) && !view)
-            fail_msg("pipeline %zu uses binding %u, which holds nothing", use, binding);
-        if ((uses[use].reads >> binding & 1u) && holds(written, view))
-            fail_msg("pipeline %zu reads binding %u: no barrier after its producer", use, binding);
-        if ((uses[use].writes >> binding & 1u) && (holds(written, view) || holds(read, view)))
-            fail_msg("pipeline %zu writes binding %u: no barrier after its last use", use, binding);
+        if (((use.reads | use.writes) >> binding & 1u) && !view)
+            fail_msg("a pipeline uses binding %u, which holds nothing", binding);
+        if ((use.reads >> binding & 1u) && holds(written, view))
+            fail_msg("a pipeline reads binding %u: no barrier after its producer", binding);
+        if ((use.writes >> binding & 1u) && (holds(written, view) || holds(read, view)))
+            fail_msg("a pipeline writes binding %u: no barrier after its last use", binding);
     }
     for (uint32_t binding = 0; binding < VKAO_BINDING_COUNT; ++binding) {
-        if (uses[use].reads >> binding & 1u)
+        if (use.reads >> binding & 1u)
             read->list[read->count++] = object->views[binding];
-        if (uses[use].writes >> binding & 1u)
+        if (use.writes >> binding & 1u)
             written->list[written->count++] = object->views[binding];
     }
 }
@@ -143,6 +150,52 @@ static void barrier_stands_between_producer_and_consumer(void **state)
 }
 
 /* What ran before in another submit is unknown: the first command of every call waits for it. */
+/* Half resolution with and without bent normals, and the composites that read more. */
+static void barriers_stand_in_every_kind_of_frame(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2 * 2 * 2 * 7; ++i) {
+        const bool half = i & 1, bent = i & 2, scratch = i & 4;
+        struct world w;
+        world_open(&w);
+        w.images.ao_noisy = (vkao_image){0};
+        if (scratch)
+            w.images.ao = (vkao_image){0};
+        if (bent)
+            world_use_bent_normals(&w);
+        w.frame_info.half_resolution = half;
+        w.composite.mode = (vkao_composite_mode)(i / 8);
+        if (w.composite.mode < VKAO_COMPOSITE_AO_ONLY) {
+            w.composite.multi_bounce = VK_TRUE;
+            w.composite.specular = bent ? VKAO_SPECULAR_FROM_BENT : VKAO_SPECULAR_FROM_AO;
+        }
+        if ((w.composite.mode == VKAO_COMPOSITE_NOISY_AO && (bent || half)) ||
+            (w.composite.mode == VKAO_COMPOSITE_BENT_NORMALS && !bent))
+            w.composite.mode = VKAO_COMPOSITE_NORMALS;
+        assert_int_equal(vkao_frame_create(w.ctx, &w.frame_info, &w.frame), VKAO_SUCCESS);
+        fake_forget_calls(&w.fake);
+        assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+        assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+        assert_int_equal(check_recording(&w), 2 * (half ? 6 : 5));
+        world_close(&w);
+    }
+}
+
+/* A slot that no stage reads may hold anything: a frame that only composites has no use for depth. */
+static void unread_depth_does_not_reach_the_descriptors(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open(&w);
+    w.frame_info.stages = VKAO_STAGE_COMPOSITE;
+    w.images.normals = w.images.specular = (vkao_image){0};
+    w.images.depth.view = VK_NULL_HANDLE;
+    w.images.depth.layout = VK_IMAGE_LAYOUT_UNDEFINED;
+    assert_int_equal(vkao_frame_create(w.ctx, &w.frame_info, &w.frame), VKAO_SUCCESS);
+    assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+    world_close(&w);
+}
+
 static void every_call_begins_with_a_barrier(void **state)
 {
     (void)state;
@@ -452,6 +505,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(barrier_stands_between_producer_and_consumer),
+        cmocka_unit_test(barriers_stand_in_every_kind_of_frame),
+        cmocka_unit_test(unread_depth_does_not_reach_the_descriptors),
         cmocka_unit_test(every_call_begins_with_a_barrier),
         cmocka_unit_test(prepare_begins_each_scratch_image_anew),
         cmocka_unit_test(only_prepare_changes_layouts),

@@ -53,6 +53,8 @@ static const struct {
     {V(normal_encoding), VKAO_NORMALS_OCT_UNORM},
     {V(axis), VKAO_VIEW_AXIS_POSITIVE_Z},
     {V(reserved), 0},
+    {V(bent_encoding), VKAO_NORMALS_OCT_UNORM},
+    {"view.reserved", offsetof(vkao_view, reserved_too), 0},
 };
 
 /* The world's view, or an orthographic one, the only kind that may name an axis. */
@@ -250,7 +252,10 @@ static void composite_alone_needs_no_projection(void **state)
 {
     (void)state;
     struct world w;
-    world_open_frame(&w, VKAO_STAGE_COMPOSITE);
+    world_open(&w);
+    w.frame_info.stages = VKAO_STAGE_COMPOSITE;
+    w.images.specular = (vkao_image){0};
+    assert_int_equal(vkao_frame_create(w.ctx, &w.frame_info, &w.frame), VKAO_SUCCESS);
     w.view = vkao_view_default();
     assert_int_equal(record(&w, 3), VKAO_SUCCESS);
     assert_int_equal(record(&w, 4), VKAO_SUCCESS);
@@ -271,6 +276,21 @@ static void composite_alone_needs_no_projection(void **state)
     world_close(&w);
 }
 
+/* Specular occlusion asks from where the eye looks. */
+static void composite_with_specular_light_needs_a_projection(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open_frame(&w, VKAO_STAGE_COMPOSITE);
+    assert_int_equal(record(&w, 3), VKAO_SUCCESS);
+    w.view = vkao_view_default();
+    fake_forget_calls(&w.fake);
+    for (int call = 3; call < 5; ++call)
+        expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, record(&w, call), "view.projection", "");
+    expect_nothing_recorded(&w);
+    world_close(&w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -282,6 +302,7 @@ int main(void)
         cmocka_unit_test(rectangles_are_refused_and_named),
         cmocka_unit_test(normals_encoding_needs_a_normals_image),
         cmocka_unit_test(composite_alone_needs_no_projection),
+        cmocka_unit_test(composite_with_specular_light_needs_a_projection),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

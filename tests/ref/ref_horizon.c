@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: MIT */
+#include "ref_horizon.h"
+
+#include "params.h"
+#include "ref_noise.h"
+#include "ref_normal.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+
+static void normalize(double v[3])
+{
+    double length = sqrt(ref_dot(v, v));
+    for (int i = 0; i < 3; ++i)
+        v[i] /= length;
+}
+
+void ref_slice_turn(struct ref_slice *slice, double angle)
+{
+    const double *v = slice->to_eye;
+    double *o = slice->outward, *a = slice->across, in_slice[3];
+    slice->direction[0] = cos(angle);
+    slice->direction[1] = sin(angle);
+    for (int i = 0; i < 3; ++i)
+        o[i] = i < 2 ? slice->direction[i] : 0.0;
+    double along = ref_dot(o, v);
+    for (int i = 0; i < 3; ++i)
+        o[i] -= along * v[i];
+    normalize(o);
+    a[0] = o[1] * v[2] - o[2] * v[1];
+    a[1] = o[2] * v[0] - o[0] * v[2];
+    a[2] = o[0] * v[1] - o[1] * v[0];
+    double off = ref_dot(slice->n, a);
+    for (int i = 0; i < 3; ++i)
+        in_slice[i] = slice->n[i] - off * a[i];
+    slice->length = sqrt(ref_dot(in_slice, in_slice));
+    slice->angle = atan2(ref_dot(in_slice, o), ref_dot(in_slice, v));
+}
+
+void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
+                    const double p[3], const double n[3], uint32_t k)
+{
+    *slice = (struct ref_slice){.scene = scene, .params = params, .x = x, .y = y};
+    memcpy(slice->p, p, sizeof slice->p);
+    memcpy(slice->n, n, sizeof slice->n);
+    ref_view_eye(&scene->view, p, slice->to_eye);
+    slice->guard = 2.0 * ref_view_depth_error(&scene->view, p[2]); /* both ends of v */
+    double noise = ref_gradient_noise((uint32_t)x, (uint32_t)y, params->noise_index);
+    ref_slice_turn(slice, pi * (k + noise) / params->slice_count);
+}
+
+/* Distances crowd towards the point, but lie at least 1 + t/2 texels out. Where the point at that distance along the
+ * slice's direction on screen lies is for the projection to say. */
+static void step_texel(const struct ref_slice *s, double side, uint32_t step, double reach, int at[2])
+{
+    double jitter = ref_r2_noise((uint32_t)s->x, (uint32_t)s->y, s->params->noise_index);
+    double q = (step + jitter) / s->params->step_count;
+    double distance = reach * q * (VKAO_STEP_LINEAR + (1.0 - VKAO_STEP_LINEAR) * q);
+    double from[2], to[2];
+    const double unit[3] = {s->p[0] + s->direction[0], s->p[1] + s->direction[1], s->p[2]};
+    ref_view_project(&s->scene->view, s->p, from);
+    ref_view_project(&s->scene->view, unit, to);
+    double per_unit[2] = {to[0] - from[0], to[1] - from[1]};
+    double texels = distance * hypot(per_unit[0], per_unit[1]);
+    double scale = fmax(1.0, (1.0 + 0.5 * step) / texels) * distance * side;
+    at[0] = (int)floor(fmax(-1e6, fmin(1e6, s->x + per_unit[0] * scale)) + 0.5);
+    at[1] = (int)floor(fmax(-1e6, fmin(1e6, s->y + per_unit[1] * scale)) + 0.5);
+}
+
+bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, double reach, struct ref_sample *sample)
+{
+    int at[2];
+    double q[3];
+    step_texel(s, side, step, reach, at);
+    double z = ref_scene_z(s->scene, at[0], at[1]);
+    if (isnan(z))
+        return false;
+    ref_view_position(&s->scene->view, at[0], at[1], z, q);
+    for (int i = 0; i < 3; ++i)
+        sample->v[i] = q[i] - s->p[i];
+    sample->distance = sqrt(ref_dot(sample->v, sample->v));
+    /* Into the slice along the tangent plane: the height over that plane, n.v, stays what it is. */
+    double off = ref_dot(sample->v, s->across), facing = fmax(ref_dot(s->n, s->to_eye), 0.02);
+    sample->out = side * ref_dot(sample->v, s->outward);
+    /* The depth may be off by a step of its format. */
+    sample->up = ref_dot(sample->v, s->to_eye) + off * ref_dot(s->n, s->across) / facing - s->guard;
+    return true;
+}
+
+double ref_falloff(const vkao_ssao_params *params, double distance)
+{
+    double x = distance / (double)params->radius;
+    if (x > 1.0)
+        return 0.0;
+    return params->falloff == VKAO_FALLOFF_SMOOTH ? 1.0 - x * x : 1.0;
+}
+
+enum { PANELS = 96 };
+
+/* Of one sign of theta, where the integrand is smooth. */
+static void simpson(double n, double a, double b, double sums[3])
+{
+    for (int i = 0; i <= PANELS; ++i) {
+        double theta = a + (b - a) * i / PANELS, w = (i == 0 || i == PANELS) ? 1.0 : i % 2 ? 4.0 : 2.0;
+        w *= (b - a) / PANELS / 3.0 * cos(theta - n) * fabs(sin(theta));
+        sums[0] += w;
+        sums[1] += w * sin(theta);
+        sums[2] += w * cos(theta);
+    }
+}
+
+static void integrate(double n, double a, double b, double sums[3])
+{
+    sums[0] = sums[1] = sums[2] = 0.0;
+    if (a < 0.0 && b > 0.0) {
+        simpson(n, a, 0.0, sums);
+        simpson(n, 0.0, b, sums);
+    } else {
+        simpson(n, a, b, sums);
+    }
+}
+
+double ref_slice_integral(double n, double a, double b)
+{
+    double sums[3];
+    integrate(n, a, b, sums);
+    return sums[0];
+}
+
+void ref_slice_moment(double n, double a, double b, double out[2])
+{
+    double sums[3];
+    integrate(n, a, b, sums);
+    out[0] = sums[1];
+    out[1] = sums[2];
+}

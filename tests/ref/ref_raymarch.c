@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT */
+#include "ref_methods.h"
+
+#include "params.h"
+#include "ref_horizon.h"
+#include "ref_noise.h"
+#include "ref_normal.h"
+#include "ref_ssao.h"
+
+#include <math.h>
+
+static const double golden_angle = 2.39996322972865332, two_pi = 6.28318530717958647692;
+
+struct ray {
+    double p[3], n[3], direction[3], jitter;
+};
+
+/* The ray is hit where it is under the scene's surface, which stands over the tangent plane, by less than the scene is
+ * thick there. */
+static bool hit(const struct ref_scene *scene, const vkao_ssao_params *params, const struct ray *ray, const double point[3])
+{
+    double surface[3], v[3], eye[3], under[3], radius = (double)params->radius;
+    if (!ref_scene_lookup(scene, point, surface))
+        return false;
+    ref_view_eye(&scene->view, ray->p, eye);
+    for (int i = 0; i < 3; ++i) {
+        v[i] = surface[i] - ray->p[i];
+        under[i] = surface[i] - point[i];
+    }
+    double along = ref_dot(v, eye), lateral = sqrt(fmax(0.0, ref_dot(v, v) - along * along));
+    double thickness = (double)params->thickness *
+                       (VKAO_THICKNESS_BASE * radius + VKAO_THICKNESS_SLOPE * fmin(lateral, radius));
+    /* What stands behind the point, as the eye sees it, may be higher over the tangent plane and hides nothing. */
+    double behind = ref_dot(eye, under);
+    return ref_dot(ray->n, under) > ref_guard(scene, params, ray->p[2]) && behind > 0.0 && behind < thickness;
+}
+
+static double first_hit(const struct ref_scene *scene, const vkao_ssao_params *params, const struct ray *ray)
+{
+    for (uint32_t t = 0; t < params->step_count; ++t) {
+        double d = (double)params->radius * (t + ray->jitter) / params->step_count, point[3];
+        for (int i = 0; i < 3; ++i)
+            point[i] = ray->p[i] + d * ray->direction[i];
+        if (point[2] <= 0.0)
+            return 0.0;
+        if (hit(scene, params, ray, point))
+            return ref_falloff(params, d);
+    }
+    return 0.0;
+}
+
+static void visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y, const double p[3],
+                       const double n[3], double out[4])
+{
+    double turn = ref_gradient_noise((uint32_t)x, (uint32_t)y, params->noise_index);
+    double shift = ref_r2_noise((uint32_t)x, (uint32_t)y, params->noise_index), t[3], b[3];
+    ref_basis(n, t, b);
+    out[0] = out[1] = out[2] = out[3] = 0.0;
+    for (uint32_t k = 0; k < params->sample_count; ++k) {
+        /* Malley's method: uniform in the disk, lifted onto the hemisphere. */
+        double r = sqrt((k + shift) / params->sample_count), height = sqrt(1.0 - r * r);
+        double angle = k * golden_angle + two_pi * turn;
+        struct ray ray = {.jitter = ref_fract(ref_golden(k) + shift)};
+        for (int i = 0; i < 3; ++i) {
+            ray.p[i] = p[i];
+            ray.n[i] = n[i];
+            ray.direction[i] = r * cos(angle) * t[i] + r * sin(angle) * b[i] + height * n[i];
+        }
+        double seen = (1.0 - first_hit(scene, params, &ray)) / params->sample_count;
+        out[3] += seen;
+        for (int i = 0; i < 3; ++i)
+            out[i] += seen * ray.direction[i];
+    }
+}
+
+void ref_raymarch(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao)
+{
+    ref_ssao_directed(scene, params, visibility, ao, NULL);
+}
+
+void ref_raymarch_bent(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao, double *bent)
+{
+    ref_ssao_directed(scene, params, visibility, ao, bent);
+}
