@@ -31,7 +31,7 @@ static void objects_far_in_front_cast_no_halo(void **state)
 {
     (void)state;
     /* The point methods fade with the difference in depth instead of cutting at the reach. */
-    static const double darkest[METHODS] = {0.85, 0.85, 0.998, 0.998, 0.998, 0.998};
+    static const double darkest[METHODS] = {0.95, 0.95, 0.998, 0.998, 0.998, 0.998};
     const struct scene scene = {{
         {SHAPE_PLANE, {0.0, 0.0, 5.0}, {0.1, 0.2, -1.0}},
         {SHAPE_BOX, {0.0, 0.0, 1.6}, {0.2, 0.2, 0.2}},
@@ -70,7 +70,7 @@ static void shades_have_no_bands(void **state)
             before = fmax(before, mean);
         }
         print_message("    %-10s from %.3f, darkens again by %.4f\n", names[method], first, worst);
-        assert_true(worst < 0.012 && first < 0.8);
+        assert_true(worst < 0.004 && first < 0.8);
         picture_free(&p);
     }
 }
@@ -151,7 +151,7 @@ static void far_walls_are_open(void **state)
 static void facets_under_smooth_normals_hardly_show(void **state)
 {
     (void)state;
-    static const double darkest[METHODS] = {0.88, 0.94, 0.90, 0.97, 0.95, 0.94};
+    static const double darkest[METHODS] = {0.985, 0.998, 0.978, 0.997, 0.993, 0.993};
     const struct scene nothing = {{{SHAPE_NONE, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}}};
     const double facet = 12.0 * pi / 180.0, radius = 2.0;
     struct lens lens = lens_orthographic(1.6, 1.2);
@@ -210,7 +210,7 @@ static void the_sky_is_open_and_hides_nothing(void **state)
 static void subpixel_motion_does_not_flicker(void **state)
 {
     (void)state;
-    static const double limits[METHODS] = {0.002, 0.002, 0.002, 0.002, 0.002, 0.002};
+    static const double limits[METHODS] = {0.004, 0.004, 0.004, 0.004, 0.004, 0.004};
     const struct scene scene = scene_corner();
     for (int method = 0; method < METHODS; ++method) {
         double first = 0.0, worst = 0.0;
@@ -278,7 +278,7 @@ static void spectrum(const double *image, uint32_t width, uint32_t height, doubl
 }
 
 /* Noise has a pattern, and the blur must remove it: what it leaves at high frequencies is little, and none of them stands
- * out of the others. The groove's shade varies along y only; its rows' means are taken out. */
+ * out of the others by more than a factor of 100 (noise as it is: 170 to 450). The groove's shade varies along y only; its rows' means are taken out. */
 static void no_pattern_of_the_noise_is_left(void **state)
 {
     (void)state;
@@ -303,7 +303,8 @@ static void no_pattern_of_the_noise_is_left(void **state)
         double amplitude = sqrt(peak[1]) * 2.0 / (WINDOW * WINDOW / 4.0);
         print_message("    %-10s high frequencies: power falls to %.4f, peak to mean %.1f (noisy %.1f), amplitude %.4f\n",
                       names[method], mean[1] / mean[0], peak[1] / mean[1], peak[0] / mean[0], amplitude);
-        assert_true(mean[1] < 0.1 * mean[0]);
+        assert_true(mean[1] < 0.02 * mean[0]);
+        assert_true(peak[1] < 100.0 * mean[1]);
         assert_true(amplitude < 0.004);
     }
 }
@@ -339,7 +340,7 @@ static void ao_is_not_clamped_before_the_blur(void **state)
         ref_blur(&reference, &p.blur, p.view.normal_encoding, p.values[SLOT_NORMALS], noisy.values[SLOT_AO], clamped);
         double clamping = difference_of(want, clamped, 4800).mean;
         print_message("    %s: least %.3f, clamping would brighten by %.4f\n", names[methods[i]], least, clamping);
-        check_close("blurred", p.values[SLOT_AO], want, 4800, 3e-4, 2e-3);
+        check_close("blurred", p.values[SLOT_AO], want, 4800, 6e-4, 2e-3); /* 11 bits in between */
         assert_true(clamping > 1e-3);
         ref_scene_free(&reference);
         free(want);
