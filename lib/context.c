@@ -2,29 +2,44 @@
 #include "internal.h"
 
 #include "blur.comp.h"
+#include "blur_z16.comp.h"
 #include "composite.comp.h"
+#include "composite_z16.comp.h"
 #include "debug.comp.h"
+#include "debug_z16.comp.h"
 #include "prepare.comp.h"
+#include "prepare_z16.comp.h"
 #include "ssao_gtao.comp.h"
+#include "ssao_gtao_z16.comp.h"
 #include "ssao_hbao.comp.h"
+#include "ssao_hbao_z16.comp.h"
 #include "ssao_hemisphere.comp.h"
+#include "ssao_hemisphere_z16.comp.h"
 #include "ssao_raymarch.comp.h"
+#include "ssao_raymarch_z16.comp.h"
 #include "ssao_sphere.comp.h"
+#include "ssao_sphere_z16.comp.h"
 #include "ssao_vbao.comp.h"
+#include "ssao_vbao_z16.comp.h"
 #include "upsample.comp.h"
+#include "upsample_z16.comp.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 struct shader {
     const char *name;
-    const uint32_t *code;
-    size_t bytes;
+    const uint32_t *code[2]; /* view z in 32-bit floats, in 16-bit ones */
+    size_t bytes[2];
     VkBool32 vertical; /* VKAO_CONSTANT_BLUR_VERTICAL */
     bool bent;         /* has a variant with VKAO_CONSTANT_BENT_NORMALS */
 };
 
-#define SHADER(name) #name, name##_comp, sizeof name##_comp
+#define SHADER(name)                                                                               \
+#name, {name##_comp, name##_z16_comp },                                                        \
+    {                                                                                              \
+        sizeof name##_comp, sizeof name##_z16_comp                                                 \
+    }
 static const struct shader shaders[PIPELINE_COUNT] = {
     [PIPELINE_PREPARE] = {SHADER(prepare), VK_FALSE, false},
     [PIPELINE_BLUR_X] = {SHADER(blur), VK_FALSE, true},
@@ -98,6 +113,14 @@ static vkao_result check_info(const struct vkao_logger *log, const vkao_context_
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "context.method_mask is 0x%x, want bits of 0x%x", info->method_mask,
                            (1u << VKAO_METHOD_COUNT) - 1u);
+    if (info->half_view_z > 1 || info->reserved)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "context.half_view_z is %u, reserved %u, want 0 or 1, 0",
+                           info->half_view_z, info->reserved);
+    if (info->half_view_z && !info->enabled_features->shaderStorageImageExtendedFormats)
+        return vkao_refuse(log, VKAO_ERROR_UNSUPPORTED,
+                           "context.half_view_z needs shaderStorageImageExtendedFormats in "
+                           "context.enabled_features");
     if ((uint32_t)info->log_level > VKAO_LOG_INFO)
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "context.log_level is %d, want 0..%d",
                            (int)info->log_level, (int)VKAO_LOG_INFO);
@@ -184,8 +207,8 @@ static vkao_result create_pipeline(vkao_context *ctx, VkPipelineCache cache, enu
         ctx->vk.CreateShaderModule(ctx->device,
                                    &(VkShaderModuleCreateInfo){
                                        .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                       .codeSize = shader->bytes,
-                                       .pCode = shader->code,
+                                       .codeSize = shader->bytes[ctx->half_view_z],
+                                       .pCode = shader->code[ctx->half_view_z],
                                    },
                                    ctx->allocator, &module);
     if (result != VK_SUCCESS)
@@ -255,6 +278,7 @@ vkao_result vkao_context_create(const vkao_context_info *caller_info, vkao_conte
     ctx->log = log;
     ctx->device = info.device;
     ctx->physical_device = info.physical_device;
+    ctx->half_view_z = info.half_view_z;
     ctx->method_mask = info.method_mask ? info.method_mask : (1u << VKAO_METHOD_COUNT) - 1u;
     if (info.allocator) {
         ctx->allocator_copy = *info.allocator;

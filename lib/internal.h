@@ -37,6 +37,7 @@ struct vkao_context {
     VkAllocationCallbacks allocator_copy;
     const VkAllocationCallbacks *allocator; /* &allocator_copy or NULL */
     uint32_t method_mask;
+    bool half_view_z;
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout pipeline_layout;
     /* [1] also computes bent normals. Null for methods that were not asked for, or know no bent normals. */

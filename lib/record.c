@@ -33,6 +33,8 @@ vkao_result frame_view_check(const vkao_frame *frame, VkCommandBuffer cmd, const
     if (!needs_projection)
         return view_rects(log, &known, frame->extent, &out->valid, &out->rect);
     result = view_constants_init(log, &known, frame->extent, frame->images.depth.format, out);
+    if (result == VKAO_SUCCESS && frame->ctx->half_view_z)
+        view_halve_precision(out);
     if (result == VKAO_SUCCESS && frame->half_resolution && ((out->valid.x0 | out->valid.y0) & 1u))
         result = vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                              "view.valid begins at (%u,%u), want even texels at half resolution",

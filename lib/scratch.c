@@ -28,7 +28,8 @@ void scratch_plan(const vkao_frame *frame, struct scratch_image scratch[SCRATCH_
                has_blur = frame->stages & VKAO_STAGE_BLUR;
     const bool makes_ao = has_ssao || has_blur;
     if (makes_ao)
-        scratch[SCRATCH_VIEW_Z].format = VK_FORMAT_R32_SFLOAT;
+        scratch[SCRATCH_VIEW_Z].format =
+            frame->ctx->half_view_z ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT;
     if (has_ssao && has_blur && frame->images.ao_noisy.format == VK_FORMAT_UNDEFINED)
         scratch[SCRATCH_NOISY].format = noisy;
     if (has_blur)

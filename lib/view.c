@@ -281,6 +281,13 @@ struct view_constants view_halve(const struct view_constants *view)
     return half;
 }
 
+void view_halve_precision(struct view_constants *view)
+{
+    /* Devices may cut where they could round: a whole step, of z itself in perspective or not. */
+    view->depth_error[view->orthographic ? 1 : 0] += 0x1p-10f;
+    view->far_z = fminf(view->far_z, 65504.0f);
+}
+
 struct vkao_rect rect_grow(struct vkao_rect rect, uint32_t x, uint32_t y, struct vkao_rect bounds)
 {
     struct vkao_rect grown = {

@@ -41,6 +41,9 @@ vkao_result view_rects(const struct vkao_logger *log, const vkao_view *view, VkE
 /* The same view on the grid of every second texel. rect becomes what an upsampling to it reads. */
 struct view_constants view_halve(const struct view_constants *view);
 
+/* The same view with view z stored in 16-bit floats. */
+void view_halve_precision(struct view_constants *view);
+
 /* rect grown by x and y texels on each side, inside bounds. */
 struct vkao_rect rect_grow(struct vkao_rect rect, uint32_t x, uint32_t y, struct vkao_rect bounds);
 /* As shaders take it: see shaders/params.h. */

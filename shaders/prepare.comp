@@ -10,7 +10,7 @@
 
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_prepare_block params; };
-layout(binding = VKAO_BINDING_VIEW_Z, r32f) uniform writeonly image2D view_z_image;
+layout(binding = VKAO_BINDING_VIEW_Z, VKAO_VIEW_Z_FORMAT) uniform writeonly image2D view_z_image;
 #define VKAO_DEPTH_ENCODING params.depth_encoding
 #include "depth.glsl"
 

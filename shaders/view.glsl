@@ -4,7 +4,7 @@
 #ifndef VKAO_VIEW_GLSL_
 #define VKAO_VIEW_GLSL_
 
-layout(binding = VKAO_BINDING_VIEW_Z, r32f) uniform readonly image2D view_z_image;
+layout(binding = VKAO_BINDING_VIEW_Z, VKAO_VIEW_Z_FORMAT) uniform readonly image2D view_z_image;
 layout(binding = VKAO_BINDING_NORMALS) uniform texture2D normals_image;
 
 ivec2 unpack_texel(uint packed_texel)

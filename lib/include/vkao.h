@@ -138,6 +138,11 @@ typedef struct vkao_context_info {
     vkao_log_level log_level; /* most verbose level delivered. Default VKAO_LOG_WARNING */
     /* VK_TRUE: name objects and label stages through VK_EXT_debug_utils, if the instance enabled it. */
     VkBool32 debug_labels;
+    /* VK_TRUE: keep view z in 16-bit floats, at half the memory and bandwidth; then 65504 scene units are as far as it
+     * sees, and details of less than 1/1000 of their distance get lost. Needs shaderStorageImageExtendedFormats among
+     * enabled_features. Default: 32-bit floats */
+    VkBool32 half_view_z;
+    uint32_t reserved; /* zero */
 } vkao_context_info;
 
 /* Sets the members that vkao needs to VK_TRUE, leaves the others alone. Call before vkCreateDevice. */

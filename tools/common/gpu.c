@@ -195,6 +195,8 @@ static bool create_device(struct gpu *gpu, struct tool_error *err)
     if (!supported.shaderStorageImageWriteWithoutFormat)
         return fail(err, EXIT_DEVICE, "%s lacks shaderStorageImageWriteWithoutFormat",
                     gpu->properties.deviceName);
+    /* For contexts with half_view_z */
+    gpu->features.shaderStorageImageExtendedFormats = supported.shaderStorageImageExtendedFormats;
     VkResult result =
         vkCreateDevice(gpu->physical_device,
                        &(VkDeviceCreateInfo){
