@@ -158,7 +158,8 @@ static void touch(const char *name)
 static int make_directory(void **state)
 {
     (void)state;
-    strcpy(directory, "/tmp/vkao-frames-XXXXXX");
+    const char *parent = getenv("TMPDIR");
+    snprintf(directory, sizeof directory, "%s/vkao-frames-XXXXXX", parent ? parent : P_tmpdir);
     return mkdtemp(directory) ? 0 : -1;
 }
 
