@@ -6,13 +6,15 @@
 struct preset {
     VkBool32 half_resolution;
     uint32_t slice_count, step_count, blur_radius;
+    /* Few steps miss some of the scene, for which thickness makes up a little; more steps need less of it. */
+    float thickness;
 };
 
 static const struct preset presets[] = {
-    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3},
-    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 10, 4},
-    [VKAO_QUALITY_HIGH] = {VK_FALSE, 1, 16, 4},
-    [VKAO_QUALITY_BEST] = {VK_FALSE, 2, 16, 4},
+    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 1.0f},
+    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 10, 4, 1.0f},
+    [VKAO_QUALITY_HIGH] = {VK_FALSE, 1, 16, 4, 0.9f},
+    [VKAO_QUALITY_BEST] = {VK_FALSE, 2, 24, 4, 0.85f},
 };
 
 vkao_result vkao_preset(vkao_quality quality, vkao_frame_info *frame, vkao_ssao_params *ssao,
@@ -29,7 +31,7 @@ vkao_result vkao_preset(vkao_quality quality, vkao_frame_info *frame, vkao_ssao_
         ssao->slice_count = p->slice_count;
         ssao->step_count = p->step_count;
         ssao->bias = standard.bias;
-        ssao->thickness = standard.thickness;
+        ssao->thickness = p->thickness;
     }
     if (blur) {
         const vkao_blur_params standard = vkao_blur_params_default();

@@ -157,6 +157,7 @@ static bool apply_defaults(struct options *options, struct tool_error *err)
                                 .blur = vkao_blur_params_default()};
     /* What --quality fills unless it is given. */
     options->ssao.slice_count = options->ssao.step_count = 0;
+    options->ssao.thickness = 0.0f;
     for (size_t i = 0; i < option_table_count; i++) {
         const struct option_row *row = &option_table[i];
         if (row->fallback && !row->apply(options, row, row->fallback, err))
@@ -215,6 +216,8 @@ static void apply_quality(struct options *o)
         o->ssao.slice_count = ssao.slice_count;
     if (!o->ssao.step_count)
         o->ssao.step_count = ssao.step_count;
+    if (!(o->ssao.thickness > 0.0f))
+        o->ssao.thickness = ssao.thickness;
     if (o->blur.radius == BLUR_BY_QUALITY)
         o->blur.radius = blur.radius;
 }

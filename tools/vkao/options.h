@@ -43,7 +43,8 @@ struct options {
     bool radius_is_auto, bias_is_given;
     int quality; /* vkao_quality */
     bool half_resolution, bent_normals;
-    vkao_ssao_params ssao; /* slice_count and step_count 0 until the preset fills them */
+    vkao_ssao_params ssao; /* slice_count, step_count and thickness 0 until the preset
+                              fills them */
     vkao_blur_params blur;
 
     const char *device;

@@ -149,9 +149,9 @@ const struct option_row option_table[] = {
              "--quality",
      .commands = RENDER, .apply = apply_uint, .offset = AT(ssao.step_count),
      .range = FROM_TO(1, 256)},
-    {.name = "thickness", .argument = "X", .fallback = "1",
+    {.name = "thickness", .argument = "X",
      .help = "vbao and raymarch: how thick the scene is behind what is seen, above 0 to 8, relative "
-             "to the measured default",
+             "to the measured default of 1. Default: by --quality",
      .commands = RENDER, .apply = apply_float, .offset = AT(ssao.thickness),
      .range = {.low = 0, .high = 8, .low_is_excluded = true}},
     {.name = "bent-normals",
