@@ -52,7 +52,8 @@ static void view_z_and_normals_are_those_of_the_grid(void **state)
             want[t * 4 + 3] = 1.0;
         }
         picture_run(&p);
-        check_close(show_normals ? "normals" : "view z", p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4, 1e-6, 1e-5);
+        check_close(show_normals ? "normals" : "view z", p.values[SLOT_OUTPUT], want,
+                    picture_texels(&p) * 4, 1e-6, 1e-5);
         ref_scene_free(&full);
         ref_scene_free(&half);
         free(stored);
@@ -93,8 +94,8 @@ static void bent_normals_are_the_image(void **state)
             /* the lens is right-handed: +z is towards the eye there */
             for (size_t c = 0; c < 3; ++c)
                 if (!(fabs(p.values[SLOT_OUTPUT][t * 4 + c] - (n[c] * 0.5 + 0.5)) < 1e-5))
-                    fail_msg("half %d: texel %zu is %g, want %g", i, t, p.values[SLOT_OUTPUT][t * 4 + c],
-                             n[c] * 0.5 + 0.5);
+                    fail_msg("half %d: texel %zu is %g, want %g", i, t,
+                             p.values[SLOT_OUTPUT][t * 4 + c], n[c] * 0.5 + 0.5);
         }
         picture_free(&p);
     }

@@ -14,8 +14,8 @@
 
 static const double degrees = 57.29577951308232;
 
-static void make(struct picture *p, uint32_t width, uint32_t height, const struct scene *scene, const struct lens *lens,
-                 bool normals)
+static void make(struct picture *p, uint32_t width, uint32_t height, const struct scene *scene,
+                 const struct lens *lens, bool normals)
 {
     picture_init(p, width, height, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
     p->half_resolution = true;
@@ -26,7 +26,8 @@ static void make(struct picture *p, uint32_t width, uint32_t height, const struc
     picture_set(p, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
 }
 
-/* GTAO on every second texel, blurred, brought back and finished; 4 a texel: mean direction and visibility. */
+/* GTAO on every second texel, blurred, brought back and finished; 4 a texel: mean direction and
+ * visibility. */
 static void reference(const struct picture *p, double *out)
 {
     struct ref_scene full, half;
@@ -35,7 +36,8 @@ static void reference(const struct picture *p, double *out)
     ref_scene_half(&full, &p->view, p->values[SLOT_NORMALS], &half, &stored);
     size_t texels = (size_t)half.width * half.height;
     double *ao = test_alloc(texels, sizeof *ao), *bent = test_alloc(texels * 3, sizeof *bent);
-    double *channel = test_alloc(texels, sizeof *channel), *blurred = test_alloc(texels, sizeof *blurred);
+    double *channel = test_alloc(texels, sizeof *channel),
+           *blurred = test_alloc(texels, sizeof *blurred);
     double *result = test_alloc(picture_texels(p), sizeof *result);
     ref_gtao_bent(&half, &p->ssao, ao, bent);
     for (size_t c = 0; c < 4; ++c) {
@@ -70,7 +72,8 @@ static void check_against_reference(struct picture *p, const char *what)
         double length = sqrt(ref_dot(&want[i * 4], &want[i * 4]));
         bool known = p->formats[SLOT_BENT] && isfinite(p->values[SLOT_DEPTH][i]);
         if (known && length > 0.0) {
-            assert_true(ref_normal_decode(VKAO_NORMALS_XYZ_SNORM, &p->values[SLOT_BENT][i * 4], got));
+            assert_true(
+                ref_normal_decode(VKAO_NORMALS_XYZ_SNORM, &p->values[SLOT_BENT][i * 4], got));
             got[2] = -got[2];
             angles[i] = acos(fmin(1.0, ref_dot(got, &want[i * 4]) / length)) * degrees;
         } else if (p->formats[SLOT_BENT] && !known) {
@@ -90,7 +93,8 @@ static void check_against_reference(struct picture *p, const char *what)
     free(zeros);
 }
 
-/* Odd sizes too: a texel that nobody writes still holds the canary, which is not what the reference has. */
+/* Odd sizes too: a texel that nobody writes still holds the canary, which is not what the reference
+ * has. */
 static void agrees_with_the_reference_at_every_size(void **state)
 {
     (void)state;
@@ -99,18 +103,19 @@ static void agrees_with_the_reference_at_every_size(void **state)
         bool orthographic, normals, bent;
         float intensity, power;
     } rows[] = {
-        {80, 60, 4, false, true, false, 1.0f, 1.0f},   {79, 59, 3, false, true, true, 1.0f, 1.0f},
-        {65, 47, 4, false, false, false, 1.0f, 1.0f},  {48, 33, 2, true, true, true, 1.0f, 1.0f},
-        {33, 48, 0, true, false, true, 1.0f, 1.0f},    {79, 59, 3, false, true, false, 1.5f, 2.5f},
-        {1, 1, 4, false, true, false, 1.0f, 1.0f},     {2, 3, 4, false, true, true, 1.0f, 1.0f},
-        {3, 2, 4, false, true, true, 1.0f, 1.0f},      {80, 1, 4, false, true, false, 1.0f, 1.0f},
+        {80, 60, 4, false, true, false, 1.0f, 1.0f},  {79, 59, 3, false, true, true, 1.0f, 1.0f},
+        {65, 47, 4, false, false, false, 1.0f, 1.0f}, {48, 33, 2, true, true, true, 1.0f, 1.0f},
+        {33, 48, 0, true, false, true, 1.0f, 1.0f},   {79, 59, 3, false, true, false, 1.5f, 2.5f},
+        {1, 1, 4, false, true, false, 1.0f, 1.0f},    {2, 3, 4, false, true, true, 1.0f, 1.0f},
+        {3, 2, 4, false, true, true, 1.0f, 1.0f},     {80, 1, 4, false, true, false, 1.0f, 1.0f},
     };
     const struct scene scenes[] = {scene_corner(), scene_open_sky(), scene_steps()};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0] * 3; ++i) {
         const size_t r = i / 3;
         struct picture p;
         char what[80];
-        struct lens lens = rows[r].orthographic ? lens_orthographic(1.6, 1.2) : lens_perspective(0.6, 0.45);
+        struct lens lens =
+            rows[r].orthographic ? lens_orthographic(1.6, 1.2) : lens_perspective(0.6, 0.45);
         make(&p, rows[r].width, rows[r].height, &scenes[i % 3], &lens, rows[r].normals);
         p.ssao.method = VKAO_SSAO_GTAO;
         p.ssao.radius = 0.8f;
@@ -126,8 +131,8 @@ static void agrees_with_the_reference_at_every_size(void **state)
     }
 }
 
-/* Any split, with odd borders too, and also at full resolution, adds up to the whole, bit for bit. Each part runs in a
- * frame of its own, so that none finds in scratch what another left there. */
+/* Any split, with odd borders too, and also at full resolution, adds up to the whole, bit for bit.
+ * Each part runs in a frame of its own, so that none finds in scratch what another left there. */
 static void split_rects_equal_the_whole(void **state)
 {
     (void)state;
@@ -150,10 +155,10 @@ static void split_rects_equal_the_whole(void **state)
             split.view.rect = parts[part];
             picture_run(&split); /* uploads what the parts before wrote */
         }
-        check_equal(i & 1 ? "ao at half resolution" : "ao", split.values[SLOT_AO], whole.values[SLOT_AO],
-                    picture_texels(&whole));
-        check_equal(i & 1 ? "bent normals at half resolution" : "bent normals", split.values[SLOT_BENT],
-                    whole.values[SLOT_BENT], picture_texels(&whole) * 4);
+        check_equal(i & 1 ? "ao at half resolution" : "ao", split.values[SLOT_AO],
+                    whole.values[SLOT_AO], picture_texels(&whole));
+        check_equal(i & 1 ? "bent normals at half resolution" : "bent normals",
+                    split.values[SLOT_BENT], whole.values[SLOT_BENT], picture_texels(&whole) * 4);
         picture_free(&whole);
         picture_free(&split);
     }
@@ -187,8 +192,8 @@ static void half_resolution_looks_like_full_resolution(void **state)
             square += pow(half.values[SLOT_AO][t] - full.values[SLOT_AO][t], 2.0) / texels;
         double mean = mean_of(half.values[SLOT_AO], picture_texels(&full)) -
                       mean_of(full.values[SLOT_AO], picture_texels(&full));
-        print_message("    method %d: RMSE of half to full resolution %.4f, mean %+.4f\n", (int)rows[i].method,
-                      sqrt(square), mean);
+        print_message("    method %d: RMSE of half to full resolution %.4f, mean %+.4f\n",
+                      (int)rows[i].method, sqrt(square), mean);
         assert_true(sqrt(square) < rows[i].limit);
         assert_true(fabs(mean) < 0.006);
         picture_free(&half);
@@ -196,8 +201,8 @@ static void half_resolution_looks_like_full_resolution(void **state)
     }
 }
 
-/* A wall with a deep groove far behind a slab: the slab, which nothing occludes, stays open to its last texel, and so
- * does the sky. Slabs begin at odd and even columns. */
+/* A wall with a deep groove far behind a slab: the slab, which nothing occludes, stays open to its
+ * last texel, and so does the sky. Slabs begin at odd and even columns. */
 static void depth_edges_do_not_leak(void **state)
 {
     (void)state;
@@ -216,7 +221,8 @@ static void depth_edges_do_not_leak(void **state)
         for (size_t i = 0; i < picture_texels(&p); ++i) {
             dark += p.values[SLOT_AO][i] < 0.9;
             if ((int)(i % p.width) >= edge && !(p.values[SLOT_AO][i] > 0.999))
-                fail_msg("slab from %d: texel %zu,%zu is %g", edge, i % p.width, i / p.width, p.values[SLOT_AO][i]);
+                fail_msg("slab from %d: texel %zu,%zu is %g", edge, i % p.width, i / p.width,
+                         p.values[SLOT_AO][i]);
         }
         assert_true(dark > 200);
         picture_free(&p);

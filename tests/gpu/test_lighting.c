@@ -22,11 +22,14 @@ static void fill(struct picture *p, enum picture_slot slot, uint32_t seed)
     double *values = test_alloc(count, sizeof *values);
     for (size_t i = 0; i < count; ++i)
         values[i] = noise(&seed);
-    picture_set(p, slot, picture_channels(slot) == 1 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT, values);
+    picture_set(p, slot,
+                picture_channels(slot) == 1 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT,
+                values);
     free(values);
 }
 
-/* A frame that only composites: AO and every image of light hold noise, normals are a sphere's before the sky. */
+/* A frame that only composites: AO and every image of light hold noise, normals are a sphere's
+ * before the sky. */
 static void make(struct picture *p, bool orthographic, double forward)
 {
     const struct scene scene = scene_open_sky();
@@ -80,10 +83,12 @@ static void expected(const struct picture *p, double *out)
     struct ref_view view;
     ref_view_init(&view, &p->view, p->width, p->height, p->formats[SLOT_DEPTH]);
     for (size_t i = 0; i < picture_texels(p); ++i) {
-        double factor = p->composite.specular ? specular(p, &view, i) : 0.0, ao = p->values[SLOT_AO][i];
+        double factor = p->composite.specular ? specular(p, &view, i) : 0.0,
+               ao = p->values[SLOT_AO][i];
         for (size_t c = 0; c < 3; ++c) {
             double texel[4], albedo = p->values[SLOT_ALBEDO][i * 4 + c];
-            ref_composite(&p->composite, p->composite.multi_bounce ? ref_multi_bounce(ao, albedo) : ao,
+            ref_composite(&p->composite,
+                          p->composite.multi_bounce ? ref_multi_bounce(ao, albedo) : ao,
                           &p->values[SLOT_COLOR][i * 4], &p->values[SLOT_DIRECT][i * 4], texel);
             double weight = 1.0 + (double)p->composite.strength * (factor - 1.0);
             bool lit = p->composite.mode != VKAO_COMPOSITE_AO_ONLY && p->composite.specular;
@@ -107,17 +112,21 @@ static void every_mode_follows_its_formulas(void **state)
         double *want = test_alloc(picture_texels(&p) * 4, sizeof *want);
         expected(&p, want);
         picture_run(&p);
-        snprintf(what, sizeof what, "mode %d, multi-bounce %u, specular %d, %s", (int)p.composite.mode,
-                 p.composite.multi_bounce, (int)p.composite.specular, orthographic ? "orthographic" : "perspective");
+        snprintf(what, sizeof what, "mode %d, multi-bounce %u, specular %d, %s",
+                 (int)p.composite.mode, p.composite.multi_bounce, (int)p.composite.specular,
+                 orthographic ? "orthographic" : "perspective");
         /* acos of single precision near 1, divided by the size of a narrow lobe */
-        bool cones = p.composite.specular == VKAO_SPECULAR_FROM_BENT && p.composite.mode != VKAO_COMPOSITE_AO_ONLY;
-        check_close(what, p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4, cones ? 1e-4 : 1e-6, cones ? 2e-3 : 1e-5);
+        bool cones = p.composite.specular == VKAO_SPECULAR_FROM_BENT &&
+                     p.composite.mode != VKAO_COMPOSITE_AO_ONLY;
+        check_close(what, p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4, cones ? 1e-4 : 1e-6,
+                    cones ? 2e-3 : 1e-5);
         free(want);
         picture_free(&p);
     }
 }
 
-/* An open place reflects all that there is, whatever its roughness, when seen from straight above; a closed one nothing. */
+/* An open place reflects all that there is, whatever its roughness, when seen from straight above;
+ * a closed one nothing. */
 static void open_is_bright_and_closed_is_dark_at_every_roughness(void **state)
 {
     (void)state;
@@ -137,15 +146,18 @@ static void open_is_bright_and_closed_is_dark_at_every_roughness(void **state)
         p.composite.specular = i % 2 ? VKAO_SPECULAR_FROM_BENT : VKAO_SPECULAR_FROM_AO;
         picture_run(&p);
         for (size_t t = 0; t < picture_texels(&p); ++t) {
-            double got = p.values[SLOT_OUTPUT][t * 4], roughness = p.values[SLOT_SPECULAR][t * 4 + 3];
+            double got = p.values[SLOT_OUTPUT][t * 4],
+                   roughness = p.values[SLOT_SPECULAR][t * 4 + 3];
             if (!(fabs(got - (i / 2 ? 0.0 : 1.0)) < 0.01))
-                fail_msg("specular %d, AO %d, roughness %g: %g", (int)p.composite.specular, i / 2 ? 0 : 1, roughness, got);
+                fail_msg("specular %d, AO %d, roughness %g: %g", (int)p.composite.specular,
+                         i / 2 ? 0 : 1, roughness, got);
         }
         picture_free(&p);
     }
 }
 
-/* White walls brighten what is occluded, black ones do not, and neither changes what is open or closed. */
+/* White walls brighten what is occluded, black ones do not, and neither changes what is open or
+ * closed. */
 static void multi_bounce_brightens_by_albedo(void **state)
 {
     (void)state;

@@ -9,7 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-typedef void bent_reference(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao, double *bent);
+typedef void bent_reference(const struct ref_scene *scene, const vkao_ssao_params *params,
+                            double *ao, double *bent);
 
 static const struct method {
     const char *name;
@@ -65,8 +66,8 @@ static void agrees_with_reference_for_every_count_falloff_and_noise(void **state
         p.ssao.radius = rows[r].radius;
         p.ssao.bias = rows[r].bias;
         p.ssao.thickness = rows[r].thickness;
-        snprintf(what, sizeof what, "%s %ux%u, %u rays, falloff %d, R %g", m->name, rows[r].slices, rows[r].steps,
-                 rows[r].samples, (int)rows[r].falloff, (double)rows[r].radius);
+        snprintf(what, sizeof what, "%s %ux%u, %u rays, falloff %d, R %g", m->name, rows[r].slices,
+                 rows[r].steps, rows[r].samples, (int)rows[r].falloff, (double)rows[r].radius);
         check_ssao(&p, m->reference, what);
         picture_free(&p);
     }
@@ -161,7 +162,8 @@ static void bent_normals_agree_with_the_reference(void **state)
             continue;
         lens.forward = left ? 1.0 : -1.0;
         picture_make(&p, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, &scene);
-        picture_render_scene(&p, &scene, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
+        picture_render_scene(&p, &scene, &lens, VK_FORMAT_R32_SFLOAT,
+                             VK_FORMAT_R32G32B32A32_SFLOAT);
         picture_set(&p, SLOT_BENT, VK_FORMAT_R32G32B32A32_SFLOAT, NULL);
         p.ssao = params_of(m);
         p.ssao.radius = 0.8f;

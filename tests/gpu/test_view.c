@@ -109,7 +109,8 @@ static void tilted_planes_are_open_without_a_bias(void **state)
     check_tilted_planes(true, true, 0.0f, VK_FORMAT_R32_SFLOAT);
 }
 
-/* The step of half precision just above z = 4 is 4e-3, and the lens is so long that a texel is as small. */
+/* The step of half precision just above z = 4 is 4e-3, and the lens is so long that a texel is as
+ * small. */
 static void walls_of_half_precision_depth_are_open_without_a_bias(void **state)
 {
     (void)state;

@@ -74,8 +74,9 @@ double ref_blur_finish(const vkao_blur_params *params, double visibility)
     return pow(v, (double)params->power);
 }
 
-void ref_blur_channel(const struct ref_scene *scene, const vkao_blur_params *params, vkao_normal_encoding encoding,
-                      const double *stored, const double *noisy, double *out)
+void ref_blur_channel(const struct ref_scene *scene, const vkao_blur_params *params,
+                      vkao_normal_encoding encoding, const double *stored, const double *noisy,
+                      double *out)
 {
     double left[3], right[3];
     const double *viewport = scene->view.viewport;
@@ -98,8 +99,8 @@ void ref_blur_channel(const struct ref_scene *scene, const vkao_blur_params *par
     free(halfway);
 }
 
-void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params, vkao_normal_encoding encoding,
-              const double *stored, const double *noisy, double *ao)
+void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params,
+              vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao)
 {
     const VkRect2D *rect = &scene->view.rect;
     ref_blur_channel(scene, params, encoding, stored, noisy, ao);

@@ -6,12 +6,14 @@
 
 #include "ref_view.h"
 
-/* stored: components of the normals image, 4 a texel, or NULL; encoding says how. Writes the view's rect of ao. */
-void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params, vkao_normal_encoding encoding,
-              const double *stored, const double *noisy, double *ao);
+/* stored: components of the normals image, 4 a texel, or NULL; encoding says how. Writes the view's
+ * rect of ao. */
+void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params,
+              vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao);
 /* One channel before intensity and power, as half resolution passes it on. */
-void ref_blur_channel(const struct ref_scene *scene, const vkao_blur_params *params, vkao_normal_encoding encoding,
-                      const double *stored, const double *noisy, double *out);
+void ref_blur_channel(const struct ref_scene *scene, const vkao_blur_params *params,
+                      vkao_normal_encoding encoding, const double *stored, const double *noisy,
+                      double *out);
 /* Intensity, then power. */
 double ref_blur_finish(const vkao_blur_params *params, double visibility);
 

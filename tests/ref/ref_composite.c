@@ -28,7 +28,8 @@ void ref_composite(const vkao_composite_params *params, double ao, const double 
 
 double ref_multi_bounce(double ao, double albedo)
 {
-    double a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417, c = 2.7552 * albedo + 0.6903;
+    double a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417,
+           c = 2.7552 * albedo + 0.6903;
     return fmax(ao, a * ao * ao * ao + b * ao * ao + c * ao);
 }
 
@@ -43,8 +44,8 @@ double ref_specular_from_ao(double ao, double roughness, const double n[3], cons
     return saturate(pow(facing + ao, exp2(-16.0 * roughness - 1.0)) - 1.0 + ao);
 }
 
-/* Two spherical caps of angular radius a and b, their centres apart by d: the smaller one whole while
- * it lies inside the other, nothing when they do not touch, and in between a smooth step. */
+/* Two spherical caps of angular radius a and b, their centres apart by d: the smaller one whole
+ * while it lies inside the other, nothing when they do not touch, and in between a smooth step. */
 static double cap_intersection(double a, double b, double d)
 {
     double inside = fabs(a - b), touch = a + b, area = 1.0 - cos(fmin(a, b));

@@ -6,10 +6,11 @@
 
 #include <math.h>
 
-/* sum over the samples that rise over the horizon of W(d) (sin h - sin of the horizon so far), Bavoil et al. 2008; the
- * horizon begins at the bias over the tangent plane. Mean over both sides of every slice. */
-static double visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
-                         const double p[3], const double n[3])
+/* sum over the samples that rise over the horizon of W(d) (sin h - sin of the horizon so far),
+ * Bavoil et al. 2008; the horizon begins at the bias over the tangent plane. Mean over both sides
+ * of every slice. */
+static double visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x,
+                         int y, const double p[3], const double n[3])
 {
     double occluded = 0.0;
     for (uint32_t i = 0; i < 2 * params->slice_count; ++i) {
@@ -20,7 +21,8 @@ static double visibility(const struct ref_scene *scene, const vkao_ssao_params *
         for (uint32_t t = 0; t < params->step_count; ++t) {
             if (!ref_slice_sample(&slice, i % 2 ? -1.0 : 1.0, t, (double)params->radius, &sample))
                 continue;
-            double elevation = asin(fmax(-1.0, fmin(1.0, (ref_dot(n, sample.v) - slice.guard) / sample.distance)));
+            double elevation =
+                asin(fmax(-1.0, fmin(1.0, (ref_dot(n, sample.v) - slice.guard) / sample.distance)));
             double weight = ref_falloff(params, sample.distance);
             if (weight > 0.0 && elevation > horizon) {
                 occluded += weight * (sin(elevation) - sin(horizon));

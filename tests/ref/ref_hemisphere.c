@@ -7,8 +7,8 @@
 
 #include <math.h>
 
-static double visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
-                         const double p[3], const double n[3])
+static double visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x,
+                         int y, const double p[3], const double n[3])
 {
     const double golden_angle = 2.39996322972865332, two_pi = 6.28318530717958647692;
     double turn = two_pi * ref_gradient_noise((uint32_t)x, (uint32_t)y, params->noise_index);

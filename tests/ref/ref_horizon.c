@@ -39,8 +39,9 @@ void ref_slice_turn(struct ref_slice *slice, double angle)
     slice->angle = atan2(ref_dot(in_slice, o), ref_dot(in_slice, v));
 }
 
-void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
-                    const double p[3], const double n[3], uint32_t k)
+void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
+                    const vkao_ssao_params *params, int x, int y, const double p[3],
+                    const double n[3], uint32_t k)
 {
     *slice = (struct ref_slice){.scene = scene, .params = params, .x = x, .y = y};
     memcpy(slice->p, p, sizeof slice->p);
@@ -51,9 +52,10 @@ void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene, cons
     ref_slice_turn(slice, pi * (k + noise) / params->slice_count);
 }
 
-/* Distances crowd towards the point, but lie at least 1 + t/2 texels out. Where the point at that distance along the
- * slice's direction on screen lies is for the projection to say. */
-static void step_texel(const struct ref_slice *s, double side, uint32_t step, double reach, int at[2])
+/* Distances crowd towards the point, but lie at least 1 + t/2 texels out. Where the point at that
+ * distance along the slice's direction on screen lies is for the projection to say. */
+static void step_texel(const struct ref_slice *s, double side, uint32_t step, double reach,
+                       int at[2])
 {
     double jitter = ref_r2_noise((uint32_t)s->x, (uint32_t)s->y, s->params->noise_index);
     double q = (step + jitter) / s->params->step_count;
@@ -69,7 +71,8 @@ static void step_texel(const struct ref_slice *s, double side, uint32_t step, do
     at[1] = (int)floor(fmax(-1e6, fmin(1e6, s->y + per_unit[1] * scale)) + 0.5);
 }
 
-bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, double reach, struct ref_sample *sample)
+bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, double reach,
+                      struct ref_sample *sample)
 {
     int at[2];
     double q[3];
@@ -103,7 +106,9 @@ enum { PANELS = 96 };
 static void simpson(double n, double a, double b, double sums[3])
 {
     for (int i = 0; i <= PANELS; ++i) {
-        double theta = a + (b - a) * i / PANELS, w = (i == 0 || i == PANELS) ? 1.0 : i % 2 ? 4.0 : 2.0;
+        double theta = a + (b - a) * i / PANELS, w = (i == 0 || i == PANELS) ? 1.0
+                                                     : i % 2                 ? 4.0
+                                                                             : 2.0;
         w *= (b - a) / PANELS / 3.0 * cos(theta - n) * fabs(sin(theta));
         sums[0] += w;
         sums[1] += w * sin(theta);

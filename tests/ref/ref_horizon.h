@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Slices: planes through the eye direction V and a direction on screen. Angles in a slice are measured from V,
- * positive on the side of the screen direction; the hemisphere's cosine-weighted measure in a slice is
- *     L cos(theta - n) |sin theta| dtheta. */
+ * Slices: planes through the eye direction V and a direction on screen. Angles in a slice are
+ * measured from V, positive on the side of the screen direction; the hemisphere's cosine-weighted
+ * measure in a slice is L cos(theta - n) |sin theta| dtheta. */
 #ifndef VKAO_TESTS_REF_HORIZON_H_
 #define VKAO_TESTS_REF_HORIZON_H_
 
@@ -20,8 +20,9 @@ struct ref_slice {
 };
 
 /* Slice k of params->slice_count through texel (x, y), turned by the noise. */
-void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
-                    const double p[3], const double n[3], uint32_t k);
+void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
+                    const vkao_ssao_params *params, int x, int y, const double p[3],
+                    const double n[3], uint32_t k);
 /* The slice of a given angle on screen, with nothing but its geometry. */
 void ref_slice_turn(struct ref_slice *slice, double angle);
 
@@ -32,13 +33,14 @@ struct ref_sample {
     double distance; /* |v| */
 };
 /* reach in scene units. False where nothing is known. */
-bool ref_slice_sample(const struct ref_slice *slice, double side, uint32_t step, double reach, struct ref_sample *sample);
+bool ref_slice_sample(const struct ref_slice *slice, double side, uint32_t step, double reach,
+                      struct ref_sample *sample);
 
 /* 1 - (d/R)^2 within R, or 1 within R. */
 double ref_falloff(const vkao_ssao_params *params, double distance);
 
-/* Integrals from a to b over theta, by Simpson's rule: of the measure without L, and of the measure times
- * (sin theta, cos theta). */
+/* Integrals from a to b over theta, by Simpson's rule: of the measure without L, and of the measure
+ * times (sin theta, cos theta). */
 double ref_slice_integral(double n, double a, double b);
 void ref_slice_moment(double n, double a, double b, double out[2]);
 

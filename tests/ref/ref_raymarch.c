@@ -15,9 +15,10 @@ struct ray {
     double p[3], n[3], direction[3], jitter;
 };
 
-/* The ray is hit where it is under the scene's surface, which stands over the tangent plane, by less than the scene is
- * thick there. */
-static bool hit(const struct ref_scene *scene, const vkao_ssao_params *params, const struct ray *ray, const double point[3])
+/* The ray is hit where it is under the scene's surface, which stands over the tangent plane, by
+ * less than the scene is thick there. */
+static bool hit(const struct ref_scene *scene, const vkao_ssao_params *params,
+                const struct ray *ray, const double point[3])
 {
     double surface[3], v[3], eye[3], under[3], radius = (double)params->radius;
     if (!ref_scene_lookup(scene, point, surface))
@@ -28,14 +29,17 @@ static bool hit(const struct ref_scene *scene, const vkao_ssao_params *params, c
         under[i] = surface[i] - point[i];
     }
     double along = ref_dot(v, eye), lateral = sqrt(fmax(0.0, ref_dot(v, v) - along * along));
-    double thickness = (double)params->thickness *
-                       (VKAO_THICKNESS_BASE * radius + VKAO_THICKNESS_SLOPE * fmin(lateral, radius));
-    /* What stands behind the point, as the eye sees it, may be higher over the tangent plane and hides nothing. */
+    double thickness = (double)params->thickness * (VKAO_THICKNESS_BASE * radius +
+                                                    VKAO_THICKNESS_SLOPE * fmin(lateral, radius));
+    /* What stands behind the point, as the eye sees it, may be higher over the tangent plane and
+     * hides nothing. */
     double behind = ref_dot(eye, under);
-    return ref_dot(ray->n, under) > ref_guard(scene, params, ray->p[2]) && behind > 0.0 && behind < thickness;
+    return ref_dot(ray->n, under) > ref_guard(scene, params, ray->p[2]) && behind > 0.0 &&
+           behind < thickness;
 }
 
-static double first_hit(const struct ref_scene *scene, const vkao_ssao_params *params, const struct ray *ray)
+static double first_hit(const struct ref_scene *scene, const vkao_ssao_params *params,
+                        const struct ray *ray)
 {
     for (uint32_t t = 0; t < params->step_count; ++t) {
         double d = (double)params->radius * (t + ray->jitter) / params->step_count, point[3];
@@ -49,8 +53,8 @@ static double first_hit(const struct ref_scene *scene, const vkao_ssao_params *p
     return 0.0;
 }
 
-static void visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y, const double p[3],
-                       const double n[3], double out[4])
+static void visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
+                       const double p[3], const double n[3], double out[4])
 {
     double turn = ref_gradient_noise((uint32_t)x, (uint32_t)y, params->noise_index);
     double shift = ref_r2_noise((uint32_t)x, (uint32_t)y, params->noise_index), t[3], b[3];
@@ -78,7 +82,8 @@ void ref_raymarch(const struct ref_scene *scene, const vkao_ssao_params *params,
     ref_ssao_directed(scene, params, visibility, ao, NULL);
 }
 
-void ref_raymarch_bent(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao, double *bent)
+void ref_raymarch_bent(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao,
+                       double *bent)
 {
     ref_ssao_directed(scene, params, visibility, ao, bent);
 }

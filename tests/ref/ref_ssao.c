@@ -39,8 +39,9 @@ void ref_ssao_directed(const struct ref_scene *scene, const vkao_ssao_params *pa
     }
 }
 
-/* The basis of Duff et al. 2017, here by Rodrigues' formula: (0, 0, s), the nearer of +z and -z, is rotated onto n by
- * the shortest way, and the x and y axes with it; b is turned so that t, b, n are right-handed. */
+/* The basis of Duff et al. 2017, here by Rodrigues' formula: (0, 0, s), the nearer of +z and -z, is
+ * rotated onto n by the shortest way, and the x and y axes with it; b is turned so that t, b, n are
+ * right-handed. */
 void ref_basis(const double n[3], double t[3], double b[3])
 {
     double s = n[2] >= 0.0 ? 1.0 : -1.0;

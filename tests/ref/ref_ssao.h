@@ -15,8 +15,9 @@ void ref_ssao(const struct ref_scene *scene, const vkao_ssao_params *params,
               ref_visibility *visibility, double *ao);
 
 /* The same with the mean unoccluded direction: out = that, of any length, and visibility. */
-typedef void ref_directed_visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
-                                     const double p[3], const double n[3], double out[4]);
+typedef void ref_directed_visibility(const struct ref_scene *scene, const vkao_ssao_params *params,
+                                     int x, int y, const double p[3], const double n[3],
+                                     double out[4]);
 
 /* bent: 3 a texel, 0 where there is background; NULL if it is not wanted. */
 void ref_ssao_directed(const struct ref_scene *scene, const vkao_ssao_params *params,
@@ -25,8 +26,8 @@ void ref_ssao_directed(const struct ref_scene *scene, const vkao_ssao_params *pa
 /* The basis of Duff et al. 2017: t, b, n are right-handed and orthonormal. */
 void ref_basis(const double n[3], double t[3], double b[3]);
 
-/* Length of a kernel point for u uniform in [0,1): P(length > t) = 1 - (t/R)^2 for the smooth falloff, 1 - (t/R)^4 for
- * the threshold. */
+/* Length of a kernel point for u uniform in [0,1): P(length > t) = 1 - (t/R)^2 for the smooth
+ * falloff, 1 - (t/R)^4 for the threshold. */
 double ref_point_length(const vkao_ssao_params *params, double u);
 /* smoothstep(0, 1, R / |dz|) for an occluder whose view z is dz off. */
 double ref_range_weight(const vkao_ssao_params *params, double dz);

@@ -13,10 +13,11 @@ static VkRect2D halved(VkRect2D r)
     return (VkRect2D){{x0, y0}, {(uint32_t)((x1 + 1) / 2 - x0), (uint32_t)((y1 + 1) / 2 - y0)}};
 }
 
-void ref_scene_half(const struct ref_scene *full, const vkao_view *view, const double *stored, struct ref_scene *half,
-                    double **half_stored)
+void ref_scene_half(const struct ref_scene *full, const vkao_view *view, const double *stored,
+                    struct ref_scene *half, double **half_stored)
 {
-    *half = (struct ref_scene){.view = full->view, .width = (full->width + 1) / 2, .height = (full->height + 1) / 2};
+    *half = (struct ref_scene){
+        .view = full->view, .width = (full->width + 1) / 2, .height = (full->height + 1) / 2};
     size_t texels = (size_t)half->width * half->height;
     bool given = view->normal_encoding != VKAO_NORMALS_FROM_DEPTH;
     /* Texel i lies at 2i: (2i + 1/2 - x) / w = (i + 1/2 - (x + 1/2) / 2) / (w / 2) */
@@ -69,15 +70,18 @@ static double normal_weight(const struct upsample *u, int x, int y, int other_x,
 {
     double a[3], b[3];
     if (!u->stored || u->params->normal_power == 0.0f ||
-        !ref_normal_decode(u->encoding, &u->stored[((size_t)y * u->full->width + (size_t)x) * 4], a) ||
-        !ref_normal_decode(u->encoding, &u->stored[((size_t)other_y * u->full->width + (size_t)other_x) * 4], b))
+        !ref_normal_decode(u->encoding, &u->stored[((size_t)y * u->full->width + (size_t)x) * 4],
+                           a) ||
+        !ref_normal_decode(u->encoding,
+                           &u->stored[((size_t)other_y * u->full->width + (size_t)other_x) * 4], b))
         return 1.0;
     return pow(fmax(0.0, ref_dot(a, b)), (double)u->params->normal_power);
 }
 
-/* Bilinear weight * max(0, 1 - off) * max(0, n.n')^power over the neighbours, off being how far a neighbour's depth is
- * from the plane that the slopes continue, in units of depth / sharpness. A ghost of a weight for all sixteen around
- * decides where those are all 0: it falls with off and with the distance. */
+/* Bilinear weight * max(0, 1 - off) * max(0, n.n')^power over the neighbours, off being how far a
+ * neighbour's depth is from the plane that the slopes continue, in units of depth / sharpness. A
+ * ghost of a weight for all sixteen around decides where those are all 0: it falls with off and
+ * with the distance. */
 static double upsampled(const struct upsample *u, const double *value, int x, int y)
 {
     double z = ref_scene_z(u->full, x, y), sum = 0.0, weights = 0.0;
@@ -90,7 +94,8 @@ static double upsampled(const struct upsample *u, const double *value, int x, in
                 continue;
             double dx = 2.0 * i - x, dy = 2.0 * j - y;
             double off = scale * fabs(other - z - sx * dx - sy * dy);
-            double w = fmax(0.0, 1.0 - fabs(dx) / 2.0) * fmax(0.0, 1.0 - fabs(dy) / 2.0) * fmax(0.0, 1.0 - off);
+            double w = fmax(0.0, 1.0 - fabs(dx) / 2.0) * fmax(0.0, 1.0 - fabs(dy) / 2.0) *
+                       fmax(0.0, 1.0 - off);
             w *= normal_weight(u, x, y, 2 * i, 2 * j);
             w += 1.0e-6 / ((1.0 + off * off) * (1.0 + dx * dx + dy * dy));
             sum += w * value[(size_t)j * u->half->width + (size_t)i];
@@ -100,21 +105,22 @@ static double upsampled(const struct upsample *u, const double *value, int x, in
     return weights > 0.0 ? sum / weights : u->nothing;
 }
 
-void ref_upsample(const struct ref_scene *full, const struct ref_scene *half, const vkao_blur_params *params,
-                  vkao_normal_encoding encoding, const double *stored, double nothing,
-                  const double *value, double *out)
+void ref_upsample(const struct ref_scene *full, const struct ref_scene *half,
+                  const vkao_blur_params *params, vkao_normal_encoding encoding,
+                  const double *stored, double nothing, const double *value, double *out)
 {
     double left[3], right[3];
     const double *viewport = full->view.viewport;
     ref_view_position(&full->view, viewport[0] - 0.5, 0.0, 1.0, left);
     ref_view_position(&full->view, viewport[0] + viewport[2] - 0.5, 0.0, 1.0, right);
-    struct upsample u = {full, half, params, encoding, encoding ? stored : NULL, nothing,
-                         fabs(right[0] - left[0])};
+    struct upsample u = {
+        full, half, params, encoding, encoding ? stored : NULL, nothing, fabs(right[0] - left[0])};
     const VkRect2D *rect = &full->view.rect;
     for (int y = rect->offset.y; y < rect->offset.y + (int)rect->extent.height; ++y) {
         for (int x = rect->offset.x; x < rect->offset.x + (int)rect->extent.width; ++x) {
             bool background = isnan(ref_scene_z(full, x, y));
-            out[(size_t)y * full->width + (size_t)x] = background ? nothing : upsampled(&u, value, x, y);
+            out[(size_t)y * full->width + (size_t)x] =
+                background ? nothing : upsampled(&u, value, x, y);
         }
     }
 }

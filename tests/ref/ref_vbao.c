@@ -11,7 +11,8 @@
 enum { SECTORS = 31 };
 static const double half_pi = 1.57079632679489661923;
 
-/* With c = cos theta the measure is (cos n c + sin n sqrt(1 - c^2)) dc; this is its integral from 0. */
+/* With c = cos theta the measure is (cos n c + sin n sqrt(1 - c^2)) dc; this is its integral from
+ * 0. */
 static double mass_below(double n, double c)
 {
     return cos(n) * c * c / 2.0 + sin(n) * (c * sqrt(1.0 - c * c) + asin(c)) / 2.0;
@@ -41,7 +42,8 @@ struct side {
     double lost, moment[2]; /* of the measure, and along O and V */
 };
 
-/* Hides the sectors between the angles of the back and the front edge; those that were not hidden yet count. */
+/* Hides the sectors between the angles of the back and the front edge; those that were not hidden
+ * yet count. */
 static void hide(struct side *s, double front, double back, double weight)
 {
     int high = ref_vbao_sector(s->n, front), low = ref_vbao_sector(s->n, back), fresh = 0;
@@ -66,7 +68,8 @@ static void march(struct side *s)
 {
     const vkao_ssao_params *params = s->slice->params;
     const double radius = (double)params->radius;
-    double reach = params->falloff == VKAO_FALLOFF_SMOOTH ? VKAO_VBAO_REACH_SMOOTH : VKAO_VBAO_REACH_THRESHOLD;
+    double reach =
+        params->falloff == VKAO_FALLOFF_SMOOTH ? VKAO_VBAO_REACH_SMOOTH : VKAO_VBAO_REACH_THRESHOLD;
     double before[2] = {0.0, 0.0}, before_angle = INFINITY;
     struct ref_sample p;
     for (uint32_t t = 0; t < params->step_count; ++t) {
@@ -77,24 +80,26 @@ static void march(struct side *s)
         double fall = sin(s->n) / fmax(cos(s->n), 0.02);
         bool joined = fabs(dy + dx * fall) < VKAO_VBAO_JOIN * fabs(dx);
         bool above = p.up + p.out * fall > 0.0;
-        double front_out = !joined && above ? fmax(p.out - VKAO_VBAO_GAP_FRONT * dx, 1.0e-4 * radius) : p.out;
+        double front_out =
+            !joined && above ? fmax(p.out - VKAO_VBAO_GAP_FRONT * dx, 1.0e-4 * radius) : p.out;
         double front = fabs(atan2(front_out, p.up));
         if (joined)
             front = fmin(front, before_angle);
-        double thickness = (double)params->thickness *
-                           (VKAO_THICKNESS_BASE * radius + VKAO_THICKNESS_SLOPE * fmin(p.out, radius));
+        double thickness = (double)params->thickness * (VKAO_THICKNESS_BASE * radius +
+                                                        VKAO_THICKNESS_SLOPE * fmin(p.out, radius));
         double back = fabs(atan2(p.out + VKAO_VBAO_GAP_BACK * dx, p.up - thickness));
         /* The slab's point nearest to P is on P's own height if the slab spans that. */
         double near_up = p.up < 0.0 ? p.up : fmax(0.0, p.up - thickness);
-        hide(s, lowered(front, (double)params->bias), back, ref_falloff(params, hypot(p.out, near_up)));
+        hide(s, lowered(front, (double)params->bias), back,
+             ref_falloff(params, hypot(p.out, near_up)));
         before[0] = p.out;
         before[1] = p.up;
         before_angle = fabs(atan2(p.out, p.up));
     }
 }
 
-static void visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y, const double p[3],
-                       const double n[3], double out[4])
+static void visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
+                       const double p[3], const double n[3], double out[4])
 {
     for (int i = 0; i < 3; ++i)
         out[i] = 2.0 / 3.0 * n[i]; /* what an open hemisphere has */
@@ -118,7 +123,8 @@ void ref_vbao(const struct ref_scene *scene, const vkao_ssao_params *params, dou
     ref_ssao_directed(scene, params, visibility, ao, NULL);
 }
 
-void ref_vbao_bent(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao, double *bent)
+void ref_vbao_bent(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao,
+                   double *bent)
 {
     ref_ssao_directed(scene, params, visibility, ao, bent);
 }

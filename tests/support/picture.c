@@ -38,10 +38,11 @@ size_t picture_texels(const struct picture *p)
 vkao_image *picture_slot_image(vkao_images *images, enum picture_slot slot)
 {
     vkao_image *const slots[SLOT_COUNT] = {
-        [SLOT_DEPTH] = &images->depth,       [SLOT_NORMALS] = &images->normals, [SLOT_NOISY] = &images->ao_noisy,
-        [SLOT_AO] = &images->ao,             [SLOT_COLOR] = &images->color,     [SLOT_DIRECT] = &images->direct,
-        [SLOT_OUTPUT] = &images->output,     [SLOT_BENT] = &images->bent_normals, [SLOT_ALBEDO] = &images->albedo,
-        [SLOT_SPECULAR] = &images->specular,
+        [SLOT_DEPTH] = &images->depth,    [SLOT_NORMALS] = &images->normals,
+        [SLOT_NOISY] = &images->ao_noisy, [SLOT_AO] = &images->ao,
+        [SLOT_COLOR] = &images->color,    [SLOT_DIRECT] = &images->direct,
+        [SLOT_OUTPUT] = &images->output,  [SLOT_BENT] = &images->bent_normals,
+        [SLOT_ALBEDO] = &images->albedo,  [SLOT_SPECULAR] = &images->specular,
     };
     return slots[slot];
 }
@@ -143,8 +144,8 @@ static bool is_written(const struct picture *p, enum picture_slot slot)
     bool makes_noisy = (p->stages & VKAO_STAGE_SSAO) && (p->stages & VKAO_STAGE_BLUR);
     if (slot == SLOT_BENT)
         return makes_noisy;
-    return slot == SLOT_OUTPUT || (slot == SLOT_AO && makes_ao) || (slot == SLOT_NOISY && makes_noisy) ||
-           (slot == SLOT_COLOR && p->output_is_color);
+    return slot == SLOT_OUTPUT || (slot == SLOT_AO && makes_ao) ||
+           (slot == SLOT_NOISY && makes_noisy) || (slot == SLOT_COLOR && p->output_is_color);
 }
 
 static void open_slot(const struct picture *p, enum picture_slot slot, struct gpu_image *image)

@@ -183,7 +183,8 @@ struct scene_ambient scene_ambient(const struct scene *scene, const double point
                                    const double normal[3], double radius, unsigned rays)
 {
     struct scene_ambient result = {1.0, 1.0, {0.0, 0.0, 0.0}};
-    double s = normal[2] >= 0.0 ? 1.0 : -1.0, a = -1.0 / (s + normal[2]), c = normal[0] * normal[1] * a;
+    double s = normal[2] >= 0.0 ? 1.0 : -1.0, a = -1.0 / (s + normal[2]),
+           c = normal[0] * normal[1] * a;
     const double t[3] = {1.0 + s * normal[0] * normal[0] * a, s * c, -s * normal[0]};
     const double b[3] = {c, s + normal[1] * normal[1] * a, -normal[1]};
     double origin[3], ray[3], ignored[3];
@@ -192,7 +193,8 @@ struct scene_ambient scene_ambient(const struct scene *scene, const double point
     for (unsigned k = 0; k < rays; ++k) {
         double r2 = (k + 0.5) / rays, angle = k * 2.39996322972865332, nearest = INFINITY;
         for (int i = 0; i < 3; ++i)
-            ray[i] = sqrt(r2) * (cos(angle) * t[i] + sin(angle) * b[i]) + sqrt(1.0 - r2) * normal[i];
+            ray[i] =
+                sqrt(r2) * (cos(angle) * t[i] + sin(angle) * b[i]) + sqrt(1.0 - r2) * normal[i];
         for (int i = 0; i < SCENE_SHAPES && scene->shapes[i].kind != SHAPE_NONE; ++i) {
             double at = hit(&scene->shapes[i], origin, ray, ignored);
             nearest = at > 0.0 && at < nearest ? at : nearest;

@@ -28,7 +28,8 @@ struct scene scene_corner(void);
 struct scene scene_sphere_on_plane(void);
 /* Three boxes at different depths before a wall. */
 struct scene scene_steps(void);
-/* Two walls that meet at a right angle in the plane x = any, y = 0, z = 4, and open towards the eye. */
+/* Two walls that meet at a right angle in the plane x = any, y = 0, z = 4, and open towards the
+ * eye. */
 struct scene scene_groove(void);
 /* Four steps, going up away from the eye. */
 struct scene scene_staircase(void);
@@ -45,8 +46,9 @@ struct scene scene_open_sky(void);
 void scene_render(const struct scene *scene, const struct lens *lens, VkRect2D viewport,
                   uint32_t width, uint32_t height, double *z, double *normals);
 
-/* Ambient visibility of a surface point, ray cast: threshold counts any hit within the radius, falloff
- * weighs it 1 - (t / R)^2; bent is the unit mean of the directions by the falloff's visibility. */
+/* Ambient visibility of a surface point, ray cast: threshold counts any hit within the radius,
+ * falloff weighs it 1 - (t / R)^2; bent is the unit mean of the directions by the falloff's
+ * visibility. */
 struct scene_ambient {
     double threshold, falloff, bent[3];
 };

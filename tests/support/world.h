@@ -35,8 +35,8 @@ struct world {
     vkao_context_info info;
     vkao_context *ctx;
 
-    /* Every slot used but bent_normals, which shuns ao_noisy, each with its own format; the extent is
-     * 100x60. */
+    /* Every slot used but bent_normals, which shuns ao_noisy, each with its own format; the extent
+     * is 100x60. */
     vkao_images images;
     vkao_image bent_normals; /* for world_use_bent_normals */
     vkao_frame_info frame_info;

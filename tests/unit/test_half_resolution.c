@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Half resolution and bent normals as frames know them: which combinations exist, how much scratch they
- * take, and which texels each dispatch covers. */
+ * Half resolution and bent normals as frames know them: which combinations exist, how much scratch
+ * they take, and which texels each dispatch covers. */
 #include "internal.h"
 #include "world.h"
 
@@ -83,7 +83,8 @@ static void open_frame(struct world *w, bool half, bool bent, VkExtent2D extent)
     assert_int_equal(vkao_frame_create(w->ctx, &w->frame_info, &w->frame), VKAO_SUCCESS);
 }
 
-/* All that the stages hand to each other has half the resolution, rounded up; what COMPOSITE reads has all of it. */
+/* All that the stages hand to each other has half the resolution, rounded up; what COMPOSITE reads
+ * has all of it. */
 static void scratch_has_half_the_resolution(void **state)
 {
     (void)state;
@@ -167,8 +168,9 @@ static void check_cover(const struct world *w, size_t index, struct vkao_rect wa
                  want.y1);
 }
 
-/* Texel (x, y) of the half-resolution grid is (2x, 2y) of the image. The upsampling of texel t reads the grid from
- * t/2 - 1 to t/2 + 2, the blur reads blur.radius further, all inside the grid's valid part. */
+/* Texel (x, y) of the half-resolution grid is (2x, 2y) of the image. The upsampling of texel t
+ * reads the grid from t/2 - 1 to t/2 + 2, the blur reads blur.radius further, all inside the grid's
+ * valid part. */
 static void dispatch_covers_what_the_upsampling_reads(void **state)
 {
     (void)state;
@@ -177,16 +179,41 @@ static void dispatch_covers_what_the_upsampling_reads(void **state)
         struct vkao_rect prepare, ssao, blur_x, blur_y, upsample;
     } cases[] = {
         /* blur radius 3 */
-        {{{0, 0}, {0, 0}}, {{0, 0}, {0, 0}},
-         {0, 0, 51, 30}, {0, 0, 51, 30}, {0, 0, 51, 30}, {0, 0, 51, 30}, {0, 0, 101, 59}},
-        {{{0, 0}, {0, 0}}, {{50, 30}, {1, 1}},
-         {0, 0, 51, 30}, {21, 11, 31, 21}, {24, 11, 28, 21}, {24, 14, 28, 18}, {50, 30, 51, 31}},
-        {{{0, 0}, {0, 0}}, {{51, 31}, {1, 1}},
-         {0, 0, 51, 30}, {21, 11, 31, 21}, {24, 11, 28, 21}, {24, 14, 28, 18}, {51, 31, 52, 32}},
-        {{{20, 10}, {41, 21}}, {{21, 11}, {2, 3}},
-         {10, 5, 31, 16}, {10, 5, 17, 12}, {10, 5, 14, 12}, {10, 5, 14, 9}, {21, 11, 23, 14}},
-        {{{20, 10}, {41, 21}}, {{59, 30}, {2, 1}},
-         {10, 5, 31, 16}, {25, 11, 31, 16}, {28, 11, 31, 16}, {28, 14, 31, 16}, {59, 30, 61, 31}},
+        {{{0, 0}, {0, 0}},
+         {{0, 0}, {0, 0}},
+         {0, 0, 51, 30},
+         {0, 0, 51, 30},
+         {0, 0, 51, 30},
+         {0, 0, 51, 30},
+         {0, 0, 101, 59}},
+        {{{0, 0}, {0, 0}},
+         {{50, 30}, {1, 1}},
+         {0, 0, 51, 30},
+         {21, 11, 31, 21},
+         {24, 11, 28, 21},
+         {24, 14, 28, 18},
+         {50, 30, 51, 31}},
+        {{{0, 0}, {0, 0}},
+         {{51, 31}, {1, 1}},
+         {0, 0, 51, 30},
+         {21, 11, 31, 21},
+         {24, 11, 28, 21},
+         {24, 14, 28, 18},
+         {51, 31, 52, 32}},
+        {{{20, 10}, {41, 21}},
+         {{21, 11}, {2, 3}},
+         {10, 5, 31, 16},
+         {10, 5, 17, 12},
+         {10, 5, 14, 12},
+         {10, 5, 14, 9},
+         {21, 11, 23, 14}},
+        {{{20, 10}, {41, 21}},
+         {{59, 30}, {2, 1}},
+         {10, 5, 31, 16},
+         {25, 11, 31, 16},
+         {28, 11, 31, 16},
+         {28, 14, 31, 16},
+         {59, 30, 61, 31}},
     };
     for (size_t i = 0; i < COUNT(cases); ++i) {
         struct world w;

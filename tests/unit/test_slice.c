@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The formulas of the slice methods, before any of them is trusted: the cumulative distribution of the
- * cosine-weighted measure in a slice, VBAO's form of it, and that slices add up to the hemisphere. */
+ * The formulas of the slice methods, before any of them is trusted: the cumulative distribution of
+ * the cosine-weighted measure in a slice, VBAO's form of it, and that slices add up to the
+ * hemisphere. */
 #include "ref_horizon.h"
 #include "ref_methods.h"
 #include "ref_normal.h"
@@ -22,14 +23,15 @@ static void check_near(const char *what, double got, double want, double toleran
         fail_msg("%s: %.12g, want %.12g", what, got, want);
 }
 
-/* phi is measured from the projected normal, V stands at phi = n or, with the other orientation, at -n; the density is
- * cos(phi) |sin(phi - v)| for V at v. */
+/* phi is measured from the projected normal, V stands at phi = n or, with the other orientation, at
+ * -n; the density is cos(phi) |sin(phi - v)| for V at v. */
 static double closed_form(double v, double phi)
 {
     double total = cos(v) + v * sin(v);
     if (phi < v)
         return (cos(v) + cos(v - 2.0 * phi) + (2.0 * phi + pi) * sin(v)) / (4.0 * total);
-    return (3.0 * cos(v) - cos(v - 2.0 * phi) + (4.0 * v - 2.0 * phi + pi) * sin(v)) / (4.0 * total);
+    return (3.0 * cos(v) - cos(v - 2.0 * phi) + (4.0 * v - 2.0 * phi + pi) * sin(v)) /
+           (4.0 * total);
 }
 
 static void distribution_is_the_integral_of_its_density(void **state)
@@ -54,7 +56,7 @@ static void distribution_is_the_integral_of_its_density(void **state)
 static void sector_bounds_follow_the_distribution(void **state)
 {
     (void)state;
-    for (int i = -7; i <= 8; ++i) { /* beyond, one side is next to nothing */
+    for (int i = -7; i <= 8; ++i) {              /* beyond, one side is next to nothing */
         double n = i * 0.19, low = n + pi / 2.0; /* of the tangent plane */
         double side = ref_slice_integral(n, 0.0, low);
         for (int k = 0; k <= 20; ++k) {
@@ -84,8 +86,9 @@ static void inner_integral_is_the_closed_form(void **state)
     }
 }
 
-/* Mean over slices of L (cos n + n sin n) for a normal tilted from V. The slices of a texel are evenly spread on screen,
- * so that away from the middle of a perspective picture they are not around V: weight is what makes up for that. */
+/* Mean over slices of L (cos n + n sin n) for a normal tilted from V. The slices of a texel are
+ * evenly spread on screen, so that away from the middle of a perspective picture they are not
+ * around V: weight is what makes up for that. */
 static double mean_of_slices(double eye_tilt, double tilt, double azimuth, bool weighted)
 {
     enum { SLICES = 3600 };
@@ -93,7 +96,8 @@ static double mean_of_slices(double eye_tilt, double tilt, double azimuth, bool 
     /* the normal at tilt from V, round V by azimuth */
     double x[3] = {cos(eye_tilt), 0.0, sin(eye_tilt)}, sum = 0.0;
     for (int c = 0; c < 3; ++c)
-        s.n[c] = cos(tilt) * s.to_eye[c] + sin(tilt) * (cos(azimuth) * x[c] + sin(azimuth) * (c == 1 ? 1.0 : 0.0));
+        s.n[c] = cos(tilt) * s.to_eye[c] +
+                 sin(tilt) * (cos(azimuth) * x[c] + sin(azimuth) * (c == 1 ? 1.0 : 0.0));
     for (int i = 0; i < SLICES; ++i) {
         double angle = pi * (i + 0.5) / SLICES;
         ref_slice_turn(&s, angle);
@@ -116,7 +120,8 @@ static void slices_add_up_to_the_hemisphere(void **state)
             worst = fmax(worst, fabs(mean_of_slices(0.6, tilt, azimuth, false) - 1.0));
         }
     }
-    print_message("    34 degrees off the axis the mean without weights is off by up to %.3f\n", worst);
+    print_message("    34 degrees off the axis the mean without weights is off by up to %.3f\n",
+                  worst);
     assert_true(worst > 0.01); /* or the weight would be idle */
 }
 
