@@ -47,6 +47,7 @@ float specular_occlusion(ivec2 texel, float ao, float roughness)
 {
     vec3 n = to_view(decode_normal(texel, params.encodings & 0xffu));
     vec3 v = direction_to_eye(view_position(vec2(texel) / float(1 << params.grid_shift), 1.0));
+    n = dot(n, v) < 0.0 ? -n : n; /* as the SSAO stage turned it */
     if (n == vec3(0.0))
         return ao; /* background, or a normal that is not to be trusted */
     if (params.specular_occlusion == VKAO_GLSL_SPECULAR_FROM_AO) {

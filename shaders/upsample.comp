@@ -60,7 +60,8 @@ vec4 upsampled(ivec2 texel, float z)
             weights += w;
         }
     }
-    return weights > 0.0 ? sum / weights : vec4(0.0, 0.0, 0.0, 1.0);
+    /* A lone texel before the sky: open, towards the eye. */
+    return weights > 0.0 ? sum / weights : vec4(0.0, 0.0, -1.0, 1.0);
 }
 
 void main()
