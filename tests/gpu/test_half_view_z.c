@@ -5,7 +5,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <vulkan/vulkan.h>
 
 static const struct {
     const char *name;
@@ -21,18 +20,9 @@ enum { METHODS = sizeof methods / sizeof methods[0] };
 static vkao_context *half_context(void)
 {
     vkao_context *context = NULL;
-    check_vkao(vkao_context_create(
-        &(vkao_context_info){
-            .struct_size = sizeof(vkao_context_info),
-            .instance = fixture.gpu.instance,
-            .physical_device = fixture.gpu.physical_device,
-            .device = fixture.gpu.device,
-            .get_instance_proc_addr = vkGetInstanceProcAddr,
-            .get_device_proc_addr = vkGetDeviceProcAddr,
-            .enabled_features = &fixture.gpu.features,
-            .half_view_z = VK_TRUE,
-        },
-        &context));
+    vkao_context_info info = fixture_context_info();
+    info.half_view_z = VK_TRUE;
+    check_vkao(vkao_context_create(&info, &context));
     return context;
 }
 
@@ -126,16 +116,9 @@ static void the_feature_must_be_enabled(void **state)
     vkao_context *context = NULL;
     VkPhysicalDeviceFeatures features = {0};
     vkao_add_required_features(&features);
-    vkao_context_info info = {
-        .struct_size = sizeof info,
-        .instance = fixture.gpu.instance,
-        .physical_device = fixture.gpu.physical_device,
-        .device = fixture.gpu.device,
-        .get_instance_proc_addr = vkGetInstanceProcAddr,
-        .get_device_proc_addr = vkGetDeviceProcAddr,
-        .enabled_features = &features,
-        .half_view_z = VK_TRUE,
-    };
+    vkao_context_info info = fixture_context_info();
+    info.enabled_features = &features;
+    info.half_view_z = VK_TRUE;
     assert_int_equal(vkao_context_create(&info, &context), VKAO_ERROR_UNSUPPORTED);
     assert_null(context);
 }

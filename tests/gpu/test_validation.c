@@ -229,17 +229,9 @@ static void scratch_query_equals_what_create_allocates(void **state)
                                               VKAO_STAGE_SSAO | VKAO_STAGE_COMPOSITE,
                                               VKAO_STAGE_ALL};
     vkao_context *context;
-    check_vkao(vkao_context_create(
-        &(vkao_context_info){
-            .struct_size = sizeof(vkao_context_info),
-            .instance = fixture.gpu.instance,
-            .physical_device = fixture.gpu.physical_device,
-            .device = fixture.gpu.device,
-            .get_instance_proc_addr = vkGetInstanceProcAddr,
-            .get_device_proc_addr = counting_proc_addr,
-            .enabled_features = &fixture.gpu.features,
-        },
-        &context));
+    vkao_context_info counting = fixture_context_info();
+    counting.get_device_proc_addr = counting_proc_addr;
+    check_vkao(vkao_context_create(&counting, &context));
     for (size_t i = 0; i < sizeof stages / sizeof stages[0] * 2; ++i) {
         struct picture p;
         struct picture_gpu g;

@@ -48,6 +48,19 @@ bool fixture_open(void)
     return true;
 }
 
+vkao_context_info fixture_context_info(void)
+{
+    return (vkao_context_info){
+        .struct_size = sizeof(vkao_context_info),
+        .instance = fixture.gpu.instance,
+        .physical_device = fixture.gpu.physical_device,
+        .device = fixture.gpu.device,
+        .get_instance_proc_addr = vkGetInstanceProcAddr,
+        .get_device_proc_addr = vkGetDeviceProcAddr,
+        .enabled_features = &fixture.gpu.features,
+    };
+}
+
 int fixture_close(void **state)
 {
     (void)state;

@@ -40,6 +40,9 @@ int fixture_after_test(void **state);
 #define fixture_run(tests)                                                                         \
     (fixture_open() ? cmocka_run_group_tests(tests, NULL, fixture_close) : FIXTURE_UNAVAILABLE)
 
+/* What a further context on the fixture's device starts from: silent, all methods. */
+vkao_context_info fixture_context_info(void);
+
 /* Fails the test with the tool's error if ok is false. */
 void check(bool ok);
 #define check_vkao(call)                                                                           \

@@ -5,8 +5,8 @@
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE
 #endif
-#include "atomic_file.h"
 #include "exr_file.h"
+#include "exr_files.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -18,92 +18,7 @@
 
 #include <cmocka.h>
 
-#include <dirent.h>
-#include <fcntl.h>
-#include <signal.h>
-#include <sys/resource.h>
-#include <sys/stat.h>
 #include <unistd.h>
-
-enum { WIDTH = 70, HEIGHT = 45, PIXELS = WIDTH * HEIGHT };
-
-static char directory[512];
-static float ramp[PIXELS], noise[PIXELS];
-
-struct bytes {
-    unsigned char *data;
-    size_t size;
-};
-
-static const char *in_directory(const char *name)
-{
-    static char paths[8][1024];
-    static unsigned next;
-    char *path = paths[next++ % 8];
-    snprintf(path, sizeof paths[0], "%s/%s", directory, name);
-    return path;
-}
-
-static struct bytes load(const char *path)
-{
-    struct bytes b = {0};
-    FILE *file = fopen(path, "rb");
-    assert_non_null(file);
-    assert_int_equal(fseek(file, 0, SEEK_END), 0);
-    b.size = (size_t)ftell(file);
-    rewind(file);
-    b.data = malloc(b.size + 1);
-    assert_non_null(b.data);
-    assert_int_equal(fread(b.data, 1, b.size, file), b.size);
-    fclose(file);
-    return b;
-}
-
-static void store(const char *path, const void *data, size_t size)
-{
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(data, 1, size, file), size);
-    assert_int_equal(fclose(file), 0);
-}
-
-static size_t files_in_directory(void)
-{
-    size_t count = 0;
-    DIR *dir = opendir(directory);
-    assert_non_null(dir);
-    for (struct dirent *entry; (entry = readdir(dir));)
-        count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
-    closedir(dir);
-    return count;
-}
-
-/* Two channels that compress well and badly, at an offset inside the display window. */
-static struct exr_write default_channels[2] = {
-    {"Z", EXR_FLOAT, noise, 1},
-    {"A", EXR_HALF, ramp, 1},
-};
-
-static struct exr_new_part make_part(const char *name, const char *compression)
-{
-    return (struct exr_new_part){
-        .name = name,
-        .data_window = {-3, 5, -3 + WIDTH - 1, 5 + HEIGHT - 1},
-        .display_window = {0, 0, 99, 59},
-        .pixel_aspect = 1.5f,
-        .compression = compression,
-        .channels = default_channels,
-        .channel_count = 2,
-    };
-}
-
-static void write_ok(const char *path, const char *copy_from, const struct exr_new_part *parts,
-                     size_t count)
-{
-    struct tool_error err = {0};
-    if (!exr_write_file(path, copy_from, parts, count, true, &err))
-        fail_msg("%s", err.message);
-}
 
 static void info_ok(const char *path, struct exr_info *info)
 {
@@ -212,8 +127,7 @@ static void written_floats_come_back_exactly(void **state)
         }
         info_ok(in_directory("a.exr"), &info);
         assert_string_equal(info.parts[0].compression, lossless[i]);
-        assert_memory_equal(&info.parts[0].data_window, &part.data_window,
-                            sizeof part.data_window);
+        assert_memory_equal(&info.parts[0].data_window, &part.data_window, sizeof part.data_window);
         assert_memory_equal(&info.parts[0].display_window, &part.display_window,
                             sizeof part.display_window);
         assert_true(info.parts[0].pixel_aspect == 1.5f);
@@ -263,7 +177,7 @@ static void append_keeps_every_existing_chunk_bit_identical(void **state)
     struct exr_new_part ao = make_part("ao", "zip");
     write_ok(in_directory("in.exr"), NULL, parts, 2);
     write_ok(in_directory("out.exr"), in_directory("in.exr"), &ao, 1);
-    struct bytes in = load(in_directory("in.exr")), out = load(in_directory("out.exr"));
+    struct bytes in = load_file(in_directory("in.exr")), out = load_file(in_directory("out.exr"));
     for (int i = 0; i < 2; i++)
         assert_same_chunks(&in, first[i], &out, first[i], chunks[i]);
     free(in.data);
@@ -288,7 +202,7 @@ static void append_promotes_a_single_part_with_its_chunks_and_attributes(void **
     assert_non_null(kept);
     assert_string_equal(kept->text, "keep me");
     exr_info_free(&info);
-    struct bytes in = load(in_directory("in.exr")), out = load(in_directory("out.exr"));
+    struct bytes in = load_file(in_directory("in.exr")), out = load_file(in_directory("out.exr"));
     assert_same_chunks(&in, 0, &out, 0, 2);
     free(in.data);
     free(out.data);
@@ -336,8 +250,8 @@ static void two_parts_of_one_name_are_an_error(void **state)
     struct exr_new_part part = make_part("ao", "zip");
     struct tool_error err = {0};
     write_ok(in_directory("in.exr"), NULL, &part, 1);
-    assert_false(exr_write_file(in_directory("out.exr"), in_directory("in.exr"), &part, 1, true,
-                                &err));
+    assert_false(
+        exr_write_file(in_directory("out.exr"), in_directory("in.exr"), &part, 1, true, &err));
     assert_int_equal(err.code, EXIT_OUTPUT);
     assert_non_null(strstr(err.message, "'ao'"));
     assert_int_equal(files_in_directory(), 1);
@@ -349,16 +263,16 @@ static void truncated_file_is_an_error(void **state)
     struct exr_new_part parts[] = {make_part("one", "zip"), make_part("two", "none")};
     for (size_t count = 1; count <= 2; count++) {
         write_ok(in_directory("whole.exr"), NULL, parts, count);
-        struct bytes file = load(in_directory("whole.exr"));
+        struct bytes file = load_file(in_directory("whole.exr"));
         /* Every cut up to the first chunks, then in strides, and the last bytes. */
         for (size_t cut = 0; cut < file.size; cut += cut < 1200 || cut + 9 > file.size ? 1 : 151) {
             struct tool_error err = {0};
-            store(in_directory("cut.exr"), file.data, cut);
+            store_file(in_directory("cut.exr"), file.data, cut);
             if (reads_whole(in_directory("cut.exr"), &err))
                 fail_msg("%zu of %zu bytes were accepted", cut, file.size);
             assert_int_equal(err.code, EXIT_INPUT);
         }
-        store(in_directory("cut.exr"), file.data, file.size - 1);
+        store_file(in_directory("cut.exr"), file.data, file.size - 1);
         expect_refused(in_directory("cut.exr"), EXIT_INPUT, "truncated");
         free(file.data);
     }
@@ -370,11 +284,11 @@ static void truncated_file_is_not_appended_to(void **state)
     struct exr_new_part part = make_part("g", "none"), ao = make_part("ao", "zip");
     struct tool_error err = {0};
     write_ok(in_directory("whole.exr"), NULL, &part, 1);
-    struct bytes file = load(in_directory("whole.exr"));
-    store(in_directory("cut.exr"), file.data, file.size * 6 / 10);
+    struct bytes file = load_file(in_directory("whole.exr"));
+    store_file(in_directory("cut.exr"), file.data, file.size * 6 / 10);
     free(file.data);
-    assert_false(exr_write_file(in_directory("out.exr"), in_directory("cut.exr"), &ao, 1, true,
-                                &err));
+    assert_false(
+        exr_write_file(in_directory("out.exr"), in_directory("cut.exr"), &ao, 1, true, &err));
     assert_int_equal(err.code, EXIT_INPUT);
     assert_non_null(strstr(err.message, "cut.exr"));
     assert_int_equal(files_in_directory(), 2);
@@ -385,9 +299,9 @@ static void unfinished_file_is_an_error(void **state)
     (void)state;
     struct exr_new_part part = make_part("g", "none");
     write_ok(in_directory("a.exr"), NULL, &part, 1);
-    struct bytes file = load(in_directory("a.exr"));
+    struct bytes file = load_file(in_directory("a.exr"));
     memset(file.data + skip_headers(&file) + 8 * 7, 0, 8); /* as a renderer that was killed */
-    store(in_directory("a.exr"), file.data, file.size);
+    store_file(in_directory("a.exr"), file.data, file.size);
     free(file.data);
     expect_refused(in_directory("a.exr"), EXIT_INPUT, "part 0 has 44 of 45 chunks");
 }
@@ -425,10 +339,10 @@ static void damaged_headers_are_named_errors(void **state)
     struct exr_new_part part = make_part("g", "none");
     write_ok(in_directory("a.exr"), NULL, &part, 1);
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        struct bytes file = load(in_directory("a.exr"));
+        struct bytes file = load_file(in_directory("a.exr"));
         memcpy(header_value(&file, cases[i].attribute) + cases[i].offset, cases[i].bytes,
                cases[i].count);
-        store(in_directory("bad.exr"), file.data, file.size);
+        store_file(in_directory("bad.exr"), file.data, file.size);
         free(file.data);
         expect_refused(in_directory("bad.exr"), EXIT_INPUT, cases[i].text);
     }
@@ -450,11 +364,11 @@ static void other_formats_and_empty_files_are_named(void **state)
         {"", 0, "empty file"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
-        store(in_directory("x.exr"), cases[i].bytes, cases[i].size);
+        store_file(in_directory("x.exr"), cases[i].bytes, cases[i].size);
         expect_refused(in_directory("x.exr"), EXIT_INPUT, cases[i].text);
     }
     expect_refused(in_directory("none.exr"), EXIT_INPUT, "cannot open: No such file or directory");
-    expect_refused(directory, EXIT_INPUT, "Is a directory");
+    expect_refused(in_directory("."), EXIT_INPUT, "Is a directory");
 }
 
 static void missing_channel_is_a_channel_error(void **state)
@@ -470,160 +384,10 @@ static void missing_channel_is_a_channel_error(void **state)
     assert_non_null(strstr(err.message, "'depth.Z'"));
 }
 
-static void no_temporary_is_left_when_the_disk_write_fails(void **state)
-{
-    (void)state;
-    struct exr_new_part part = make_part("g", "none");
-    struct tool_error err = {0};
-    struct rlimit old, small;
-    assert_int_equal(getrlimit(RLIMIT_FSIZE, &old), 0);
-    small = old;
-    small.rlim_cur = 4096;
-    void (*handler)(int) = signal(SIGXFSZ, SIG_IGN);
-    assert_int_equal(setrlimit(RLIMIT_FSIZE, &small), 0);
-    bool ok = exr_write_file(in_directory("out.exr"), NULL, &part, 1, false, &err);
-    assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
-    signal(SIGXFSZ, handler);
-    assert_false(ok);
-    assert_int_equal(err.code, EXIT_OUTPUT);
-    assert_non_null(strstr(err.message, "out.exr: cannot write: File too large"));
-    assert_int_equal(files_in_directory(), 0);
-}
-
-static void missing_directory_is_an_output_error(void **state)
-{
-    (void)state;
-    struct exr_new_part part = make_part("g", "zip");
-    struct tool_error err = {0};
-    assert_false(exr_write_file(in_directory("no/out.exr"), NULL, &part, 1, false, &err));
-    assert_int_equal(err.code, EXIT_OUTPUT);
-    assert_non_null(strstr(err.message, "No such file or directory"));
-    assert_string_not_equal(err.hint, "");
-}
-
-static void existing_output_is_not_replaced(void **state)
-{
-    (void)state;
-    struct exr_new_part part = make_part("g", "zip");
-    struct tool_error err = {0};
-    store(in_directory("out.exr"), "mine", 4);
-    assert_false(exr_write_file(in_directory("out.exr"), NULL, &part, 1, false, &err));
-    assert_int_equal(err.code, EXIT_OUTPUT);
-    struct bytes file = load(in_directory("out.exr"));
-    assert_int_equal(file.size, 4);
-    free(file.data);
-    assert_int_equal(files_in_directory(), 1);
-}
-
-static void output_that_appears_meanwhile_is_not_replaced(void **state)
-{
-    (void)state;
-    struct atomic_file file;
-    struct tool_error err = {0};
-    assert_true(atomic_file_open(&file, in_directory("out"), false, &err));
-    assert_true(atomic_file_write(&file, "new", 3, &err));
-    store(in_directory("out"), "theirs", 6);
-    assert_false(atomic_file_commit(&file, &err));
-    assert_int_equal(err.code, EXIT_OUTPUT);
-    struct bytes left = load(in_directory("out"));
-    assert_int_equal(left.size, 6);
-    free(left.data);
-    assert_int_equal(files_in_directory(), 1);
-}
-
-static void output_is_invisible_until_the_commit(void **state)
-{
-    (void)state;
-    struct atomic_file file;
-    struct tool_error err = {0};
-    assert_true(atomic_file_open(&file, in_directory("out"), true, &err));
-    assert_true(atomic_file_write(&file, "new", 3, &err));
-    assert_int_equal(access(in_directory("out"), F_OK), -1);
-    assert_true(atomic_file_commit(&file, &err));
-    assert_int_equal(access(in_directory("out"), F_OK), 0);
-    atomic_file_abort(&file); /* harmless now */
-    assert_int_equal(files_in_directory(), 1);
-}
-
-static void interruption_removes_every_pending_file(void **state)
-{
-    (void)state;
-    struct atomic_file a, b;
-    struct tool_error err = {0};
-    assert_true(atomic_file_open(&a, in_directory("a"), true, &err));
-    assert_true(atomic_file_open(&b, in_directory("b"), false, &err));
-    assert_int_equal(files_in_directory(), 2);
-    atomic_file_remove_pending();
-    assert_int_equal(files_in_directory(), 0);
-    atomic_file_abort(&a);
-    atomic_file_abort(&b);
-}
-
-static void replacing_through_a_link_keeps_the_link_and_the_mode(void **state)
-{
-    (void)state;
-    struct exr_new_part part = make_part("g", "zip");
-    struct stat status;
-    store(in_directory("real.exr"), "old", 3);
-    assert_int_equal(chmod(in_directory("real.exr"), 0640), 0);
-    assert_int_equal(symlink("real.exr", in_directory("link.exr")), 0);
-    write_ok(in_directory("link.exr"), NULL, &part, 1);
-    assert_int_equal(lstat(in_directory("link.exr"), &status), 0);
-    assert_true(S_ISLNK(status.st_mode));
-    assert_int_equal(lstat(in_directory("real.exr"), &status), 0);
-    assert_true(S_ISREG(status.st_mode) && status.st_size > 3);
-    assert_int_equal(status.st_mode & 0777, 0640);
-}
-
-static void new_files_have_the_permissions_of_the_umask(void **state)
-{
-    (void)state;
-    struct exr_new_part part = make_part("g", "zip");
-    struct stat status;
-    mode_t old = umask(027);
-    write_ok(in_directory("out.exr"), NULL, &part, 1);
-    umask(old);
-    assert_int_equal(stat(in_directory("out.exr"), &status), 0);
-    assert_int_equal(status.st_mode & 0777, 0640);
-}
-
-static int make_directory(void **state)
-{
-    const char *base = getenv("TMPDIR");
-    (void)state;
-    snprintf(directory, sizeof directory, "%s/vkao-exr-XXXXXX", base && base[0] ? base : "/tmp");
-    return mkdtemp(directory) ? 0 : -1;
-}
-
-static int empty_directory(void **state)
-{
-    (void)state;
-    DIR *dir = opendir(directory);
-    if (!dir)
-        return -1;
-    for (struct dirent *entry; (entry = readdir(dir));) {
-        if (strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0)
-            unlinkat(dirfd(dir), entry->d_name, 0);
-    }
-    return closedir(dir);
-}
-
-static int remove_directory(void **state)
-{
-    (void)state;
-    return rmdir(directory);
-}
-
 #define TEST(name) cmocka_unit_test_teardown(name, empty_directory)
 
 int main(void)
 {
-    uint32_t random = 1;
-    for (size_t i = 0; i < PIXELS; i++) {
-        random = random * 1664525u + 1013904223u;
-        noise[i] = (float)(random >> 8) / 4096.0f - 1000.0f;
-        ramp[i] = (float)(i % WIDTH) / WIDTH;
-    }
     const struct CMUnitTest tests[] = {
         TEST(written_floats_come_back_exactly),
         TEST(halves_are_rounded_to_nearest_and_stay_finite),
@@ -639,14 +403,6 @@ int main(void)
         TEST(damaged_headers_are_named_errors),
         TEST(other_formats_and_empty_files_are_named),
         TEST(missing_channel_is_a_channel_error),
-        TEST(no_temporary_is_left_when_the_disk_write_fails),
-        TEST(missing_directory_is_an_output_error),
-        TEST(existing_output_is_not_replaced),
-        TEST(output_that_appears_meanwhile_is_not_replaced),
-        TEST(output_is_invisible_until_the_commit),
-        TEST(interruption_removes_every_pending_file),
-        TEST(replacing_through_a_link_keeps_the_link_and_the_mode),
-        TEST(new_files_have_the_permissions_of_the_umask),
     };
     return cmocka_run_group_tests(tests, make_directory, remove_directory);
 }
