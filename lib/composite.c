@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static_assert(sizeof(struct vkao_composite_block) == 120, "as shaders/composite.comp lays it out");
+static_assert(sizeof(struct vkao_composite_block) == 116, "as shaders/composite.comp lays it out");
 static_assert(VKAO_GLSL_COMPOSITE_MULTIPLY == (int)VKAO_COMPOSITE_MULTIPLY &&
                   VKAO_GLSL_COMPOSITE_INDIRECT == (int)VKAO_COMPOSITE_INDIRECT &&
                   VKAO_GLSL_COMPOSITE_AO_ONLY == (int)VKAO_COMPOSITE_AO_ONLY &&
@@ -26,9 +26,8 @@ void record_composite(const vkao_frame *frame, VkCommandBuffer cmd,
         .mode = (uint32_t)params->mode,
         .multi_bounce = params->multi_bounce,
         .specular_occlusion = (uint32_t)params->specular,
-        .encodings = view->encodings,
-        .orthographic = view->orthographic,
-        .grid_shift = grid.grid_shift,
+        .flags = recording_flags(&grid, frame->packed, NULL, NULL),
+        .stride = frame->scratch.buffer.stride,
     };
     memcpy(block.unproject, grid.unproject, sizeof block.unproject);
     copy_normal_rows(view, block.normal_x, block.normal_y, block.normal_z);
@@ -37,8 +36,8 @@ void record_composite(const vkao_frame *frame, VkCommandBuffer cmd,
     record_label_begin(frame, cmd, "vkao composite");
     record_barrier(frame, cmd); /* ssao or blur y wrote AO -> composite reads it */
     const bool debug = params->mode > VKAO_COMPOSITE_AO_ONLY;
-    record_dispatch(frame, cmd, debug ? PIPELINE_DEBUG : PIPELINE_COMPOSITE, &block, sizeof block,
-                    view->rect);
+    record_dispatch(frame, cmd, debug ? PIPELINE_DEBUG : PIPELINE_COMPOSITE,
+                    (struct pipeline_key){0}, &block, sizeof block, view->rect);
     record_label_end(frame, cmd);
 }
 

@@ -1,59 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "internal.h"
 
-#include "blur.comp.h"
-#include "blur_z16.comp.h"
-#include "composite.comp.h"
-#include "composite_z16.comp.h"
-#include "debug.comp.h"
-#include "debug_z16.comp.h"
-#include "prepare.comp.h"
-#include "prepare_z16.comp.h"
-#include "ssao_gtao.comp.h"
-#include "ssao_gtao_z16.comp.h"
-#include "ssao_hbao.comp.h"
-#include "ssao_hbao_z16.comp.h"
-#include "ssao_hemisphere.comp.h"
-#include "ssao_hemisphere_z16.comp.h"
-#include "ssao_raymarch.comp.h"
-#include "ssao_raymarch_z16.comp.h"
-#include "ssao_sphere.comp.h"
-#include "ssao_sphere_z16.comp.h"
-#include "ssao_vbao.comp.h"
-#include "ssao_vbao_z16.comp.h"
-#include "upsample.comp.h"
-#include "upsample_z16.comp.h"
-
 #include <stdlib.h>
 #include <string.h>
 
-struct shader {
-    const char *name;
-    const uint32_t *code[2]; /* view z in 32-bit floats, in 16-bit ones */
-    size_t bytes[2];
-    VkBool32 vertical; /* VKAO_CONSTANT_BLUR_VERTICAL */
-    bool bent;         /* has a variant with VKAO_CONSTANT_BENT_NORMALS */
-};
-
-#define SHADER(name)                                                                               \
-#name, {name##_comp, name##_z16_comp },                                                        \
-    {                                                                                              \
-        sizeof name##_comp, sizeof name##_z16_comp                                                 \
-    }
-static const struct shader shaders[PIPELINE_COUNT] = {
-    [PIPELINE_PREPARE] = {SHADER(prepare), VK_FALSE, false},
-    [PIPELINE_BLUR_X] = {SHADER(blur), VK_FALSE, true},
-    [PIPELINE_BLUR_Y] = {SHADER(blur), VK_TRUE, true},
-    [PIPELINE_UPSAMPLE] = {SHADER(upsample), VK_FALSE, true},
-    [PIPELINE_COMPOSITE] = {SHADER(composite), VK_FALSE, false},
-    [PIPELINE_DEBUG] = {SHADER(debug), VK_FALSE, false},
-    [PIPELINE_SSAO + VKAO_SSAO_SPHERE] = {SHADER(ssao_sphere), VK_FALSE, false},
-    [PIPELINE_SSAO + VKAO_SSAO_HEMISPHERE] = {SHADER(ssao_hemisphere), VK_FALSE, false},
-    [PIPELINE_SSAO + VKAO_SSAO_HBAO] = {SHADER(ssao_hbao), VK_FALSE, false},
-    [PIPELINE_SSAO + VKAO_SSAO_GTAO] = {SHADER(ssao_gtao), VK_FALSE, true},
-    [PIPELINE_SSAO + VKAO_SSAO_VBAO] = {SHADER(ssao_vbao), VK_FALSE, true},
-    [PIPELINE_SSAO + VKAO_SSAO_RAYMARCH] = {SHADER(ssao_raymarch), VK_FALSE, true},
-};
+/* A limit for sanity; each takes milliseconds to compile. */
+#define MAX_VARIANTS 64u
 
 void *vkao_calloc(const VkAllocationCallbacks *allocator, size_t bytes)
 {
@@ -113,10 +65,20 @@ static vkao_result check_info(const struct vkao_logger *log, const vkao_context_
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "context.method_mask is 0x%x, want bits of 0x%x", info->method_mask,
                            (1u << VKAO_METHOD_COUNT) - 1u);
-    if (info->half_view_z > 1 || info->reserved)
+    if (info->half_view_z > 1 || info->variants_only > 1)
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "context.half_view_z is %u, reserved %u, want 0 or 1, 0",
-                           info->half_view_z, info->reserved);
+                           "context.half_view_z is %u, variants_only %u, want 0 or 1",
+                           info->half_view_z, info->variants_only);
+    if ((uint32_t)info->scratch_layout > VKAO_SCRATCH_BUFFERS ||
+        (info->scratch_layout == VKAO_SCRATCH_BUFFERS && info->half_view_z))
+        return vkao_refuse(
+            log, VKAO_ERROR_INVALID_ARGUMENT,
+            "context.scratch_layout is %d, want 0..%d, and not BUFFERS with half_view_z",
+            (int)info->scratch_layout, (int)VKAO_SCRATCH_BUFFERS);
+    if (info->variant_count > MAX_VARIANTS || (info->variant_count && !info->variants))
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "context.variant_count is %u, want at most %u and context.variants",
+                           info->variant_count, MAX_VARIANTS);
     if (info->half_view_z && !info->enabled_features->shaderStorageImageExtendedFormats)
         return vkao_refuse(log, VKAO_ERROR_UNSUPPORTED,
                            "context.half_view_z needs shaderStorageImageExtendedFormats in "
@@ -136,7 +98,15 @@ static vkao_result check_info(const struct vkao_logger *log, const vkao_context_
     return VKAO_SUCCESS;
 }
 
-static vkao_result read_device(vkao_context *ctx)
+/* Noisy AO as texels to write; view z as texels is mandatory. */
+static bool has_buffer_formats(const vkao_context *ctx)
+{
+    VkFormatProperties packed;
+    ctx->vk.GetPhysicalDeviceFormatProperties(ctx->physical_device, VK_FORMAT_R8_UINT, &packed);
+    return packed.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT;
+}
+
+static vkao_result read_device(vkao_context *ctx, vkao_scratch_layout layout)
 {
     VkPhysicalDeviceProperties properties;
     ctx->vk.GetPhysicalDeviceProperties(ctx->physical_device, &properties);
@@ -150,24 +120,52 @@ static vkao_result read_device(vkao_context *ctx)
     /* shaders/params.h packs texel coordinates to 16 bits */
     if (ctx->max_dimension > UINT16_MAX)
         ctx->max_dimension = UINT16_MAX;
+    ctx->max_texels = properties.limits.maxTexelBufferElements;
+    ctx->max_buffer = properties.limits.maxStorageBufferRange;
+    const bool wanted =
+        layout == VKAO_SCRATCH_BUFFERS || (layout == VKAO_SCRATCH_AUTO && !ctx->half_view_z &&
+                                           properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU);
+    ctx->buffers = wanted && has_buffer_formats(ctx);
+    if (layout == VKAO_SCRATCH_BUFFERS && !ctx->buffers)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
+                           "context.scratch_layout is BUFFERS, but the device cannot store R8_UINT "
+                           "texels in buffers");
     return VKAO_SUCCESS;
+}
+
+VkDescriptorType binding_type(uint32_t binding)
+{
+    switch (binding) {
+    case VKAO_BINDING_VIEW_Z:
+    case VKAO_BINDING_NOISY_WRITE:
+    case VKAO_BINDING_HALFWAY_WRITE:
+    case VKAO_BINDING_AO_WRITE:
+    case VKAO_BINDING_OUTPUT:
+    case VKAO_BINDING_BENT_WRITE:
+        return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+    case VKAO_BINDING_Z_TEXELS:
+    case VKAO_BINDING_PACKED_TEXELS:
+        return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+    case VKAO_BINDING_Z_WORDS:
+    case VKAO_BINDING_PACKED_WORDS:
+    case VKAO_BINDING_HALFWAY_WORDS:
+    case VKAO_BINDING_BLURRED_WORDS:
+        return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    default:
+        return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+    }
 }
 
 static vkao_result create_layouts(vkao_context *ctx)
 {
     VkDescriptorSetLayoutBinding bindings[VKAO_BINDING_COUNT];
-    for (uint32_t i = 0; i < VKAO_BINDING_COUNT; ++i) {
-        bool storage = i == VKAO_BINDING_VIEW_Z || i == VKAO_BINDING_NOISY_WRITE ||
-                       i == VKAO_BINDING_HALFWAY_WRITE || i == VKAO_BINDING_AO_WRITE ||
-                       i == VKAO_BINDING_OUTPUT || i == VKAO_BINDING_BENT_WRITE;
+    for (uint32_t i = 0; i < VKAO_BINDING_COUNT; ++i)
         bindings[i] = (VkDescriptorSetLayoutBinding){
             .binding = i,
-            .descriptorType =
-                storage ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
+            .descriptorType = binding_type(i),
             .descriptorCount = 1,
             .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
         };
-    }
     VkResult result = ctx->vk.CreateDescriptorSetLayout(
         ctx->device,
         &(VkDescriptorSetLayoutCreateInfo){
@@ -196,61 +194,6 @@ static vkao_result create_layouts(vkao_context *ctx)
         return vkao_vk_failed(&ctx->log, "vkCreatePipelineLayout", result);
     }
     return VKAO_SUCCESS;
-}
-
-static vkao_result create_pipeline(vkao_context *ctx, VkPipelineCache cache, enum pipeline which,
-                                   VkBool32 bent)
-{
-    const struct shader *shader = &shaders[which];
-    VkShaderModule module = VK_NULL_HANDLE;
-    VkResult result =
-        ctx->vk.CreateShaderModule(ctx->device,
-                                   &(VkShaderModuleCreateInfo){
-                                       .sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
-                                       .codeSize = shader->bytes[ctx->half_view_z],
-                                       .pCode = shader->code[ctx->half_view_z],
-                                   },
-                                   ctx->allocator, &module);
-    if (result != VK_SUCCESS)
-        return vkao_vk_failed(&ctx->log, "vkCreateShaderModule", result);
-    /* Entries for constants that a shader does not have are ignored. */
-    const VkSpecializationMapEntry entries[] = {
-        {VKAO_CONSTANT_BLUR_VERTICAL, 0, sizeof(VkBool32)},
-        {VKAO_CONSTANT_BENT_NORMALS, sizeof(VkBool32), sizeof(VkBool32)},
-    };
-    const VkBool32 constants[] = {shader->vertical, bent};
-    const VkSpecializationInfo specialization = {2, entries, sizeof constants, constants};
-    result = ctx->vk.CreateComputePipelines(
-        ctx->device, cache, 1,
-        &(VkComputePipelineCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-            .stage =
-                {
-                    .sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                    .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                    .module = module,
-                    .pName = "main",
-                    .pSpecializationInfo = &specialization,
-                },
-            .layout = ctx->pipeline_layout,
-        },
-        ctx->allocator, &ctx->pipelines[which][bent]);
-    ctx->vk.DestroyShaderModule(ctx->device, module, ctx->allocator);
-    if (result != VK_SUCCESS) {
-        ctx->pipelines[which][bent] = VK_NULL_HANDLE;
-        return vkao_vk_failed(&ctx->log, "vkCreateComputePipelines", result);
-    }
-    vkao_set_name(ctx, VK_OBJECT_TYPE_PIPELINE, (uint64_t)ctx->pipelines[which][bent],
-                  shader->name);
-    return VKAO_SUCCESS;
-}
-
-static vkao_result create_pipelines(vkao_context *ctx, VkPipelineCache cache, enum pipeline which)
-{
-    vkao_result result = create_pipeline(ctx, cache, which, VK_FALSE);
-    if (result == VKAO_SUCCESS && shaders[which].bent)
-        result = create_pipeline(ctx, cache, which, VK_TRUE);
-    return result;
 }
 
 vkao_result vkao_context_create(const vkao_context_info *caller_info, vkao_context **out)
@@ -292,13 +235,11 @@ vkao_result vkao_context_create(const vkao_context_info *caller_info, vkao_conte
         vkao_free(info.allocator, ctx);
         return result;
     }
-    result = read_device(ctx);
+    result = read_device(ctx, info.scratch_layout);
     if (result == VKAO_SUCCESS)
         result = create_layouts(ctx);
-    for (uint32_t i = 0; result == VKAO_SUCCESS && i < PIPELINE_COUNT; ++i) {
-        if (i < PIPELINE_SSAO || (ctx->method_mask >> (i - PIPELINE_SSAO) & 1u))
-            result = create_pipelines(ctx, info.pipeline_cache, (enum pipeline)i);
-    }
+    if (result == VKAO_SUCCESS)
+        result = pipelines_create(ctx, &info);
     if (result != VKAO_SUCCESS) {
         vkao_context_destroy(ctx);
         return result;
@@ -311,12 +252,7 @@ void vkao_context_destroy(vkao_context *ctx)
 {
     if (!ctx)
         return;
-    for (uint32_t i = 0; i < PIPELINE_COUNT; ++i) {
-        for (int bent = 0; bent < 2; ++bent) {
-            if (ctx->pipelines[i][bent])
-                ctx->vk.DestroyPipeline(ctx->device, ctx->pipelines[i][bent], ctx->allocator);
-        }
-    }
+    pipelines_destroy(ctx);
     if (ctx->pipeline_layout)
         ctx->vk.DestroyPipelineLayout(ctx->device, ctx->pipeline_layout, ctx->allocator);
     if (ctx->set_layout)

@@ -199,6 +199,10 @@ static vkao_result describe(const vkao_context *ctx, const vkao_frame_info *call
     frame->extent = info->extent;
     frame->half_resolution = info->half_resolution;
     vkao_result checked = check_images(ctx, info->stages, &frame->images, need_views);
+    const vkao_stage_flags both = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
+    frame->packed = ctx->buffers && (info->stages & both) == both &&
+                    frame->images.ao_noisy.format == VK_FORMAT_UNDEFINED &&
+                    frame->images.bent_normals.format == VK_FORMAT_UNDEFINED;
     return checked == VKAO_SUCCESS ? check_combination(frame) : checked;
 }
 
@@ -216,126 +220,18 @@ vkao_result vkao_frame_scratch(const vkao_context *ctx, const vkao_frame_info *i
     if (result != VKAO_SUCCESS)
         return result;
     VkMemoryRequirements requirements;
-    scratch_plan(&frame, frame.scratch);
-    result = scratch_create_images(&frame, frame.scratch, &requirements);
-    scratch_destroy(ctx, frame.scratch);
+    result = scratch_create(&frame, &frame.scratch, &requirements);
+    scratch_destroy(ctx, &frame.scratch);
     if (result == VKAO_SUCCESS)
         *out = requirements;
     return result;
-}
-
-/* One descriptor per binding that the frame's stages use. Shaders statically use a few slots that may be absent
- * (normals, color, direct); those bindings repeat another image, which is never read there. */
-static void write_descriptors(const vkao_frame *frame, const vkao_images *images)
-{
-    const struct scratch_image *s = frame->scratch;
-    const vkao_image view_z = {s[SCRATCH_VIEW_Z].view, VK_IMAGE_LAYOUT_GENERAL,
-                               s[SCRATCH_VIEW_Z].format};
-    const vkao_image halfway = {s[SCRATCH_HALFWAY].view, VK_IMAGE_LAYOUT_GENERAL,
-                                s[SCRATCH_HALFWAY].format};
-    vkao_image noisy = images->ao_noisy, ao = images->ao;
-    if (!ao.format)
-        ao = (vkao_image){s[SCRATCH_AO].view, VK_IMAGE_LAYOUT_GENERAL, s[SCRATCH_AO].format};
-    if (!(frame->stages & VKAO_STAGE_BLUR))
-        noisy = ao; /* SSAO writes the final image itself */
-    else if (!noisy.format)
-        noisy =
-            (vkao_image){s[SCRATCH_NOISY].view, VK_IMAGE_LAYOUT_GENERAL, s[SCRATCH_NOISY].format};
-    const vkao_image color = images->color.format ? images->color : ao;
-    /* BLUR alone reads the caller's image and has no use for writing it, but the shader names the binding. */
-    const vkao_image noisy_write = frame->stages & VKAO_STAGE_SSAO ? noisy : halfway;
-    const bool makes_ao = frame->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
-    const vkao_image stand_in = makes_ao ? images->depth : ao;
-    const vkao_image normals = images->normals.format ? images->normals : stand_in;
-    const bool has_blur = frame->stages & VKAO_STAGE_BLUR;
-    const bool composite = frame->stages & VKAO_STAGE_COMPOSITE;
-    const struct {
-        uint32_t binding;
-        bool used, storage;
-        vkao_image image;
-    } table[VKAO_BINDING_COUNT] = {
-        {VKAO_BINDING_DEPTH, makes_ao, false, images->depth},
-        {VKAO_BINDING_NORMALS, makes_ao || composite, false, normals},
-        {VKAO_BINDING_VIEW_Z, makes_ao, true, view_z},
-        {VKAO_BINDING_NOISY_WRITE, makes_ao, true, noisy_write},
-        {VKAO_BINDING_NOISY_READ, has_blur || composite, false, has_blur ? noisy : ao},
-        {VKAO_BINDING_HALFWAY_WRITE, has_blur, true, halfway},
-        {VKAO_BINDING_HALFWAY_READ, has_blur, false, halfway},
-        {VKAO_BINDING_AO_WRITE, has_blur, true, ao},
-        {VKAO_BINDING_AO_READ, composite, false, ao},
-        {VKAO_BINDING_COLOR, composite, false, color},
-        {VKAO_BINDING_DIRECT, composite, false, images->direct.format ? images->direct : color},
-        {VKAO_BINDING_OUTPUT, composite, true, images->output},
-        {VKAO_BINDING_BENT_WRITE, has_blur, true,
-         frame_has_bent_normals(frame) ? images->bent_normals : ao},
-        {VKAO_BINDING_BENT_READ, composite, false,
-         images->bent_normals.format ? images->bent_normals : ao},
-        {VKAO_BINDING_ALBEDO, composite, false, images->albedo.format ? images->albedo : ao},
-        {VKAO_BINDING_SPECULAR, composite, false, images->specular.format ? images->specular : ao},
-    };
-    VkDescriptorImageInfo infos[VKAO_BINDING_COUNT];
-    VkWriteDescriptorSet writes[VKAO_BINDING_COUNT];
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < VKAO_BINDING_COUNT; ++i) {
-        if (!table[i].used)
-            continue;
-        infos[count] = (VkDescriptorImageInfo){.imageView = table[i].image.view,
-                                               .imageLayout = table[i].image.layout};
-        writes[count] = (VkWriteDescriptorSet){
-            .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
-            .dstSet = frame->set,
-            .dstBinding = table[i].binding,
-            .descriptorCount = 1,
-            .descriptorType = table[i].storage ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE
-                                               : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
-            .pImageInfo = &infos[count],
-        };
-        ++count;
-    }
-    frame->ctx->vk.UpdateDescriptorSets(frame->ctx->device, count, writes, 0, NULL);
-}
-
-static vkao_result create_descriptors(vkao_frame *frame)
-{
-    const vkao_context *ctx = frame->ctx;
-    const VkDescriptorPoolSize sizes[] = {
-        {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VKAO_BINDING_COUNT},
-        {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VKAO_BINDING_COUNT},
-    };
-    VkResult result =
-        ctx->vk.CreateDescriptorPool(ctx->device,
-                                     &(VkDescriptorPoolCreateInfo){
-                                         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
-                                         .maxSets = 1,
-                                         .poolSizeCount = 2,
-                                         .pPoolSizes = sizes,
-                                     },
-                                     ctx->allocator, &frame->pool);
-    if (result != VK_SUCCESS) {
-        frame->pool = VK_NULL_HANDLE;
-        return vkao_vk_failed(&ctx->log, "vkCreateDescriptorPool", result);
-    }
-    result =
-        ctx->vk.AllocateDescriptorSets(ctx->device,
-                                       &(VkDescriptorSetAllocateInfo){
-                                           .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
-                                           .descriptorPool = frame->pool,
-                                           .descriptorSetCount = 1,
-                                           .pSetLayouts = &ctx->set_layout,
-                                       },
-                                       &frame->set);
-    if (result != VK_SUCCESS)
-        return vkao_vk_failed(&ctx->log, "vkAllocateDescriptorSets", result);
-    write_descriptors(frame, &frame->images);
-    return VKAO_SUCCESS;
 }
 
 static vkao_result create_scratch(vkao_frame *frame, const vkao_frame_info *info)
 {
     const vkao_context *ctx = frame->ctx;
     VkMemoryRequirements requirements;
-    scratch_plan(frame, frame->scratch);
-    vkao_result result = scratch_create_images(frame, frame->scratch, &requirements);
+    vkao_result result = scratch_create(frame, &frame->scratch, &requirements);
     if (result != VKAO_SUCCESS || requirements.size == 0)
         return result;
     if (info->scratch_memory) {
@@ -344,7 +240,7 @@ static vkao_result create_scratch(vkao_frame *frame, const vkao_frame_info *info
                                "frame.scratch_offset is %llu, want a multiple of %llu",
                                (unsigned long long)info->scratch_offset,
                                (unsigned long long)requirements.alignment);
-        return scratch_bind(ctx, frame->scratch, info->scratch_memory, info->scratch_offset);
+        return scratch_bind(ctx, &frame->scratch, info->scratch_memory, info->scratch_offset);
     }
     uint32_t type = vk_memory_type(&ctx->memory, requirements.memoryTypeBits);
     if (type == UINT32_MAX)
@@ -363,7 +259,7 @@ static vkao_result create_scratch(vkao_frame *frame, const vkao_frame_info *info
     }
     vkao_log(&ctx->log, VKAO_LOG_INFO, "frame %ux%u: %llu bytes of scratch", frame->extent.width,
              frame->extent.height, (unsigned long long)requirements.size);
-    return scratch_bind(ctx, frame->scratch, frame->memory, 0);
+    return scratch_bind(ctx, &frame->scratch, frame->memory, 0);
 }
 
 vkao_result vkao_frame_create(const vkao_context *ctx, const vkao_frame_info *caller_info,
@@ -388,7 +284,7 @@ vkao_result vkao_frame_create(const vkao_context *ctx, const vkao_frame_info *ca
     *frame = described;
     result = create_scratch(frame, &info);
     if (result == VKAO_SUCCESS)
-        result = create_descriptors(frame);
+        result = descriptors_create(frame);
     if (result != VKAO_SUCCESS) {
         vkao_frame_destroy(frame);
         return result;
@@ -418,7 +314,7 @@ vkao_result vkao_frame_update(vkao_frame *frame, const vkao_images *images)
     if (result != VKAO_SUCCESS)
         return result;
     frame->images = known;
-    write_descriptors(frame, &frame->images);
+    descriptors_write(frame);
     return VKAO_SUCCESS;
 }
 
@@ -429,7 +325,7 @@ void vkao_frame_destroy(vkao_frame *frame)
     const vkao_context *ctx = frame->ctx;
     if (frame->pool)
         ctx->vk.DestroyDescriptorPool(ctx->device, frame->pool, ctx->allocator);
-    scratch_destroy(ctx, frame->scratch);
+    scratch_destroy(ctx, &frame->scratch);
     if (frame->memory)
         ctx->vk.FreeMemory(ctx->device, frame->memory, ctx->allocator);
     vkao_free(ctx->allocator, frame);

@@ -4,25 +4,15 @@
 
 #include "log.h"
 #include "params.h"
+#include "pipeline.h"
+#include "scratch.h"
 #include "view.h"
 #include "vk.h"
 
 #include <assert.h>
 #include <stddef.h>
 
-#define VKAO_METHOD_COUNT 6
 #define VKAO_PUSH_BYTES 128u
-
-enum pipeline {
-    PIPELINE_PREPARE,
-    PIPELINE_BLUR_X,
-    PIPELINE_BLUR_Y,
-    PIPELINE_UPSAMPLE,
-    PIPELINE_COMPOSITE,
-    PIPELINE_DEBUG,
-    PIPELINE_SSAO, /* + vkao_ssao_method */
-    PIPELINE_COUNT = PIPELINE_SSAO + VKAO_METHOD_COUNT
-};
 
 /* GTAO, VBAO and RAYMARCH know where the light comes from. */
 #define VKAO_BENT_METHODS 0x38u
@@ -38,31 +28,16 @@ struct vkao_context {
     const VkAllocationCallbacks *allocator; /* &allocator_copy or NULL */
     uint32_t method_mask;
     bool half_view_z;
+    bool buffers; /* scratch is in buffers, and shaders are those for it */
+    uint32_t max_texels, max_buffer;
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout pipeline_layout;
-    /* [1] also computes bent normals. Null for methods that were not asked for, or know no bent normals. */
-    VkPipeline pipelines[PIPELINE_COUNT][2];
+    struct pipelines pipelines;
 };
 
 /* Host memory through the caller's callbacks, zeroed; NULL when there is none. */
 void *vkao_calloc(const VkAllocationCallbacks *allocator, size_t bytes);
 void vkao_free(const VkAllocationCallbacks *allocator, void *memory);
-
-/* Intermediate images that live in the frame's one block of memory. */
-enum scratch {
-    SCRATCH_VIEW_Z,
-    SCRATCH_NOISY,   /* if the SSAO stage feeds BLUR and the caller gave no ao_noisy */
-    SCRATCH_HALFWAY, /* between the two directions of the blur */
-    SCRATCH_AO,      /* if COMPOSITE reads AO and the caller gave no ao */
-    SCRATCH_COUNT
-};
-
-struct scratch_image {
-    VkFormat format; /* UNDEFINED = not needed */
-    VkImage image;
-    VkImageView view;
-    VkDeviceSize offset;
-};
 
 struct vkao_frame {
     const vkao_context *ctx;
@@ -70,7 +45,8 @@ struct vkao_frame {
     VkExtent2D extent;
     bool half_resolution;
     vkao_images images;
-    struct scratch_image scratch[SCRATCH_COUNT];
+    bool packed; /* noisy AO goes to the blur through the scratch buffer */
+    struct scratch scratch;
     VkDeviceMemory memory; /* null if the caller's memory is used */
     VkDescriptorPool pool;
     VkDescriptorSet set;
@@ -82,7 +58,7 @@ struct vkao_frame {
 vkao_result vkao_import(const struct vkao_logger *log, const char *name, const void *src, void *dst,
                         size_t known);
 
-vkao_result ssao_params_check(const vkao_frame *frame, const vkao_ssao_params *in,
+vkao_result ssao_params_check(const vkao_context *ctx, bool bent, const vkao_ssao_params *in,
                               vkao_ssao_params *out);
 vkao_result blur_params_check(const struct vkao_logger *log, const vkao_blur_params *in,
                               vkao_blur_params *out);
@@ -114,24 +90,20 @@ void copy_normal_rows(const struct view_constants *view, float x[4], float y[4],
 bool frame_has_bent_normals(const vkao_frame *frame);
 
 /* What every stage records: bind, push, one invocation per texel of the rect. */
-void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline pipeline,
-                     const void *block, size_t block_bytes, struct vkao_rect rect);
+void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline which,
+                     struct pipeline_key key, const void *block, size_t block_bytes,
+                     struct vkao_rect rect);
 /* Earlier vkao work on this queue -> the next dispatch. */
 void record_barrier(const vkao_frame *frame, VkCommandBuffer cmd);
 void record_label_begin(const vkao_frame *frame, VkCommandBuffer cmd, const char *name);
 void record_label_end(const vkao_frame *frame, VkCommandBuffer cmd);
 
-/* --- Scratch --- */
+/* The frame's set, for its current images. */
+vkao_result descriptors_create(vkao_frame *frame);
+void descriptors_write(const vkao_frame *frame);
 
-/* Fills the formats of the scratch images that a checked frame needs. */
-void scratch_plan(const vkao_frame *frame, struct scratch_image scratch[SCRATCH_COUNT]);
-/* Creates the planned images, unbound, and lays them out in one block. Unwinds by scratch_destroy. */
-vkao_result scratch_create_images(const vkao_frame *frame,
-                                  struct scratch_image scratch[SCRATCH_COUNT],
-                                  VkMemoryRequirements *out);
-vkao_result scratch_bind(const vkao_context *ctx, struct scratch_image scratch[SCRATCH_COUNT],
-                         VkDeviceMemory memory, VkDeviceSize offset);
-void scratch_destroy(const vkao_context *ctx, struct scratch_image scratch[SCRATCH_COUNT]);
+/* Descriptor type of a VKAO_BINDING_*. */
+VkDescriptorType binding_type(uint32_t binding);
 
 void vkao_set_name(const vkao_context *ctx, VkObjectType type, uint64_t handle, const char *name);
 

@@ -64,7 +64,7 @@ static vkao_result check_uint(const struct vkao_logger *log, const char *name, u
                        max);
 }
 
-vkao_result ssao_params_check(const vkao_frame *frame, const vkao_ssao_params *in,
+vkao_result ssao_params_check(const vkao_context *ctx, bool bent, const vkao_ssao_params *in,
                               vkao_ssao_params *out)
 {
     static const struct float_range ranges[] = {
@@ -73,7 +73,6 @@ vkao_result ssao_params_check(const vkao_frame *frame, const vkao_ssao_params *i
         {"ssao.blocking_scale", offsetof(vkao_ssao_params, blocking_scale), 0.0f, FLT_MAX, true},
         {"ssao.thickness", offsetof(vkao_ssao_params, thickness), 0.0f, 8.0f, false},
     };
-    const vkao_context *ctx = frame->ctx;
     const struct vkao_logger *log = &ctx->log;
     vkao_result result = vkao_import(log, "ssao", in, out, sizeof *out);
     if (result == VKAO_SUCCESS)
@@ -97,8 +96,7 @@ vkao_result ssao_params_check(const vkao_frame *frame, const vkao_ssao_params *i
         result = vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                              "ssao.method is %d, but the context was created with method_mask 0x%x",
                              (int)out->method, ctx->method_mask);
-    if (result == VKAO_SUCCESS && frame_has_bent_normals(frame) &&
-        !(VKAO_BENT_METHODS >> out->method & 1u))
+    if (result == VKAO_SUCCESS && bent && !(VKAO_BENT_METHODS >> out->method & 1u))
         result = vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                              "ssao.method is %d, which has no bent normals for images.bent_normals",
                              (int)out->method);

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static_assert(sizeof(struct vkao_prepare_block) == 52, "as shaders/prepare.comp lays it out");
+static_assert(sizeof(struct vkao_prepare_block) == 44, "as shaders/prepare.comp lays it out");
 static_assert(VKAO_GLSL_DEPTH_PROJECTED == (int)VKAO_DEPTH_PROJECTED &&
                   VKAO_GLSL_DEPTH_VIEW_Z == (int)VKAO_DEPTH_VIEW_Z &&
                   VKAO_GLSL_DEPTH_DISTANCE == (int)VKAO_DEPTH_DISTANCE &&
@@ -17,7 +17,7 @@ static void begin_scratch(const vkao_frame *frame, VkCommandBuffer cmd)
     VkImageMemoryBarrier barriers[SCRATCH_COUNT];
     uint32_t count = 0;
     for (int i = 0; i < SCRATCH_COUNT; ++i) {
-        if (!frame->scratch[i].image)
+        if (!frame->scratch.images[i].image)
             continue;
         barriers[count++] = (VkImageMemoryBarrier){
             .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
@@ -27,7 +27,7 @@ static void begin_scratch(const vkao_frame *frame, VkCommandBuffer cmd)
             .newLayout = VK_IMAGE_LAYOUT_GENERAL,
             .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
             .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-            .image = frame->scratch[i].image,
+            .image = frame->scratch.images[i].image,
             .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1},
         };
     }
@@ -42,23 +42,34 @@ static void begin_scratch(const vkao_frame *frame, VkCommandBuffer cmd)
                                       count, barriers);
 }
 
+/* As many texels as prepare writes, border and padding included, moved to begin at 0. */
+static struct vkao_rect bordered(const vkao_frame *frame, struct vkao_rect valid)
+{
+    if (!frame->ctx->buffers)
+        return (struct vkao_rect){0, 0, valid.x1 - valid.x0 + 2 * VKAO_VIEW_Z_BORDER,
+                                  valid.y1 - valid.y0 + 2 * VKAO_VIEW_Z_BORDER};
+    return (struct vkao_rect){
+        0, 0, valid.x1 - valid.x0 + valid.x0 % VKAO_BLUR_X_WIDTH + 2 * VKAO_BUFFER_PAD,
+        valid.y1 - valid.y0 + 2 * VKAO_VIEW_Z_BORDER};
+}
+
 void record_prepare(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view)
 {
     const struct view_constants grid = frame_grid(frame, view);
     struct vkao_prepare_block block = {
         .linearize = {view->linearize[0], view->linearize[1]},
-        .far_depth = view->far_depth,
         .far_z = view->far_z,
-        .depth_encoding = view->depth_encoding,
-        .orthographic = view->orthographic,
-        .grid_shift = grid.grid_shift,
+        .flags = recording_flags(&grid, false, NULL, NULL),
+        .stride = frame->scratch.buffer.stride,
     };
     memcpy(block.unproject, view->unproject,
            sizeof block.unproject); /* of the image: prepare reads it there */
     rect_pack(grid.valid, block.valid);
     record_label_begin(frame, cmd, "vkao prepare");
     begin_scratch(frame, cmd);
-    record_dispatch(frame, cmd, PIPELINE_PREPARE, &block, sizeof block, grid.valid);
+    record_dispatch(frame, cmd, PIPELINE_PREPARE,
+                    pipeline_key(PIPELINE_PREPARE, block.flags, NULL, NULL), &block, sizeof block,
+                    bordered(frame, grid.valid));
     record_label_end(frame, cmd);
 }
 

@@ -60,20 +60,24 @@ bool frame_has_bent_normals(const vkao_frame *frame)
            frame->images.bent_normals.format != VK_FORMAT_UNDEFINED;
 }
 
-void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline pipeline,
-                     const void *block, size_t block_bytes, struct vkao_rect rect)
+void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline which,
+                     struct pipeline_key key, const void *block, size_t block_bytes,
+                     struct vkao_rect rect)
 {
     const vkao_context *ctx = frame->ctx;
-    ctx->vk.CmdBindPipeline(
-        cmd, VK_PIPELINE_BIND_POINT_COMPUTE,
-        ctx->pipelines[pipeline]
-                      [frame_has_bent_normals(frame) && ctx->pipelines[pipeline][1] ? 1 : 0]);
+    ctx->vk.CmdBindPipeline(cmd, VK_PIPELINE_BIND_POINT_COMPUTE,
+                            pipeline_find(ctx, which, frame_has_bent_normals(frame), key));
     ctx->vk.CmdBindDescriptorSets(cmd, VK_PIPELINE_BIND_POINT_COMPUTE, ctx->pipeline_layout, 0, 1,
                                   &frame->set, 0, NULL);
     ctx->vk.CmdPushConstants(cmd, ctx->pipeline_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                              (uint32_t)block_bytes, block);
-    ctx->vk.CmdDispatch(cmd, (rect.x1 - rect.x0 + VKAO_GROUP_WIDTH - 1) / VKAO_GROUP_WIDTH,
-                        (rect.y1 - rect.y0 + VKAO_GROUP_HEIGHT - 1) / VKAO_GROUP_HEIGHT, 1);
+    /* Invocations begin at multiples of their width, as words of a buffer do. */
+    const VkExtent2D texels = pipeline_texels(ctx, which);
+    const uint32_t width = texels.width * VKAO_GROUP_WIDTH,
+                   height = texels.height * VKAO_GROUP_HEIGHT;
+    const uint32_t x0 = rect.x0 - rect.x0 % texels.width;
+    ctx->vk.CmdDispatch(cmd, (rect.x1 - x0 + width - 1) / width,
+                        (rect.y1 - rect.y0 + height - 1) / height, 1);
 }
 
 void record_barrier(const vkao_frame *frame, VkCommandBuffer cmd)
@@ -139,7 +143,7 @@ vkao_result vkao_cmd_all(const vkao_frame *frame, VkCommandBuffer cmd, const vka
     if (result == VKAO_SUCCESS)
         result = check_presence(frame, ssao, blur, composite);
     if (result == VKAO_SUCCESS && (frame->stages & VKAO_STAGE_SSAO))
-        result = ssao_params_check(frame, ssao, &ssao_known);
+        result = ssao_params_check(frame->ctx, frame_has_bent_normals(frame), ssao, &ssao_known);
     if (result == VKAO_SUCCESS && (frame->stages & VKAO_STAGE_BLUR))
         result = blur_params_check(&frame->ctx->log, blur, &blur_known);
     if (result == VKAO_SUCCESS && (frame->stages & VKAO_STAGE_COMPOSITE))

@@ -1,10 +1,7 @@
-/* SPDX-License-Identifier: MIT
- *
- * Intermediate images of a frame, laid out in one block of device memory. */
-#include "internal.h"
+/* SPDX-License-Identifier: MIT */
+#include "scratch.h"
 
-static const char *const scratch_names[SCRATCH_COUNT] = {"vkao view z", "vkao noisy ao",
-                                                         "vkao halfway ao", "vkao ao"};
+#include "internal.h"
 
 /* Half precision is plenty for AO on its way to the blur; storing to it is optional in Vulkan. */
 static VkFormat ao_scratch_format(const vkao_context *ctx, bool bent)
@@ -20,22 +17,65 @@ static VkFormat ao_scratch_format(const vkao_context *ctx, bool bent)
                                                              : VK_FORMAT_R32_SFLOAT;
 }
 
-void scratch_plan(const vkao_frame *frame, struct scratch_image scratch[SCRATCH_COUNT])
+/* AO that COMPOSITE reads has the image's resolution, all else that of the grid. */
+static VkExtent2D grid_extent(const vkao_frame *frame)
 {
-    const VkFormat ao = ao_scratch_format(frame->ctx, false);
-    const VkFormat noisy = ao_scratch_format(frame->ctx, frame_has_bent_normals(frame));
+    VkExtent2D e = frame->extent;
+    return frame->half_resolution ? (VkExtent2D){(e.width + 1) / 2, (e.height + 1) / 2} : e;
+}
+
+static void plan_images(const vkao_frame *frame, struct scratch_image images[SCRATCH_COUNT])
+{
+    const vkao_context *ctx = frame->ctx;
+    const VkFormat ao = ao_scratch_format(ctx, false);
+    const VkFormat noisy = ao_scratch_format(ctx, frame_has_bent_normals(frame));
+    const VkExtent2D grid = grid_extent(frame);
     const bool has_ssao = frame->stages & VKAO_STAGE_SSAO,
                has_blur = frame->stages & VKAO_STAGE_BLUR;
     const bool makes_ao = has_ssao || has_blur;
-    if (makes_ao)
-        scratch[SCRATCH_VIEW_Z].format =
-            frame->ctx->half_view_z ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT;
-    if (has_ssao && has_blur && frame->images.ao_noisy.format == VK_FORMAT_UNDEFINED)
-        scratch[SCRATCH_NOISY].format = noisy;
-    if (has_blur)
-        scratch[SCRATCH_HALFWAY].format = noisy;
+    for (int i = 0; i < SCRATCH_COUNT; ++i)
+        images[i].extent = grid;
+    images[SCRATCH_AO].extent = frame->extent;
+    if (makes_ao && !ctx->buffers) {
+        images[SCRATCH_VIEW_Z].format =
+            ctx->half_view_z ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT;
+        images[SCRATCH_VIEW_Z].extent =
+            (VkExtent2D){grid.width + 2 * VKAO_VIEW_Z_BORDER, grid.height + 2 * VKAO_VIEW_Z_BORDER};
+    }
+    if (has_ssao && has_blur && !frame->packed &&
+        frame->images.ao_noisy.format == VK_FORMAT_UNDEFINED)
+        images[SCRATCH_NOISY].format = noisy;
+    if (has_blur && !frame->packed)
+        images[SCRATCH_HALFWAY].format = noisy;
     if (makes_ao && frame->images.ao.format == VK_FORMAT_UNDEFINED)
-        scratch[SCRATCH_AO].format = ao;
+        images[SCRATCH_AO].format = ao;
+}
+
+/* The largest that limits ask offsets of buffers to be a multiple of. */
+enum { PART_ALIGNMENT = 256 };
+
+static void plan_buffer(const vkao_frame *frame, struct scratch_buffer *buffer)
+{
+    if (!frame->ctx->buffers || !(frame->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR)))
+        return;
+    const VkExtent2D grid = grid_extent(frame);
+    buffer->stride = ((grid.width + 3) & ~3u) + 2 * VKAO_BUFFER_PAD;
+    const VkDeviceSize stride = buffer->stride;
+    buffer->parts[PART_VIEW_Z].bytes = stride * (grid.height + 2 * VKAO_VIEW_Z_BORDER) * 4;
+    /* Shaders name these whether they are used or not. */
+    buffer->parts[PART_PACKED].bytes = buffer->parts[PART_BLURRED].bytes = PART_ALIGNMENT;
+    if (frame->packed) {
+        const uint32_t ring = VKAO_RING_ROWS;
+        buffer->parts[PART_PACKED].bytes = stride * grid.height;
+        buffer->parts[PART_HALFWAY].bytes = stride * ring * 2;
+        if (frame->half_resolution)
+            buffer->parts[PART_BLURRED].bytes = stride * grid.height * 2;
+    }
+    for (int i = 0; i < PART_COUNT; ++i) {
+        buffer->parts[i].offset = buffer->bytes;
+        buffer->bytes +=
+            (buffer->parts[i].bytes + PART_ALIGNMENT - 1) & ~(VkDeviceSize)(PART_ALIGNMENT - 1);
+    }
 }
 
 static VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment)
@@ -43,91 +83,174 @@ static VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment)
     return (value + alignment - 1) / alignment * alignment;
 }
 
-/* AO that COMPOSITE reads has the image's resolution, all else that of the grid. */
-static VkExtent2D scratch_extent(const vkao_frame *frame, int i)
+/* Lays out one more thing; returns its offset. */
+static VkDeviceSize add_requirements(VkMemoryRequirements *all, const VkMemoryRequirements *one)
 {
-    VkExtent2D e = frame->extent;
-    return frame->half_resolution && i != SCRATCH_AO
-               ? (VkExtent2D){(e.width + 1) / 2, (e.height + 1) / 2}
-               : e;
+    const VkDeviceSize offset = align_up(all->size, one->alignment);
+    all->size = offset + one->size;
+    all->memoryTypeBits &= one->memoryTypeBits;
+    if (one->alignment > all->alignment)
+        all->alignment = one->alignment;
+    return offset;
 }
 
-vkao_result scratch_create_images(const vkao_frame *frame,
-                                  struct scratch_image scratch[SCRATCH_COUNT],
-                                  VkMemoryRequirements *out)
+static vkao_result create_image(const vkao_context *ctx, struct scratch_image *image,
+                                VkMemoryRequirements *all)
 {
-    const vkao_context *ctx = frame->ctx;
+    VkResult result =
+        ctx->vk.CreateImage(ctx->device,
+                            &(VkImageCreateInfo){
+                                .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                                .imageType = VK_IMAGE_TYPE_2D,
+                                .format = image->format,
+                                .extent = {image->extent.width, image->extent.height, 1},
+                                .mipLevels = 1,
+                                .arrayLayers = 1,
+                                .samples = VK_SAMPLE_COUNT_1_BIT,
+                                .tiling = VK_IMAGE_TILING_OPTIMAL,
+                                .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
+                                .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+                                .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+                            },
+                            ctx->allocator, &image->image);
+    if (result != VK_SUCCESS) {
+        image->image = VK_NULL_HANDLE;
+        return vkao_vk_failed(&ctx->log, "vkCreateImage", result);
+    }
+    VkMemoryRequirements r;
+    ctx->vk.GetImageMemoryRequirements(ctx->device, image->image, &r);
+    image->offset = add_requirements(all, &r);
+    return VKAO_SUCCESS;
+}
+
+static vkao_result create_buffer(const vkao_context *ctx, struct scratch_buffer *buffer,
+                                 VkMemoryRequirements *all)
+{
+    /* A part's texels at most, and its bytes. */
+    const VkDeviceSize texels = buffer->parts[PART_VIEW_Z].bytes / 4;
+    if (texels > ctx->max_texels || texels * 4 > ctx->max_buffer)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
+                           "frame.extent needs a buffer of %llu texels, the device's limits are %u "
+                           "texels and %u bytes; images may be larger: context.scratch_layout",
+                           (unsigned long long)texels, ctx->max_texels, ctx->max_buffer);
+    VkResult result = ctx->vk.CreateBuffer(ctx->device,
+                                           &(VkBufferCreateInfo){
+                                               .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+                                               .size = buffer->bytes,
+                                               .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                                        
+                                                        VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT,
+                                               .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+                                           },
+                                           ctx->allocator, &buffer->buffer);
+    if (result != VK_SUCCESS) {
+        buffer->buffer = VK_NULL_HANDLE;
+        return vkao_vk_failed(&ctx->log, "vkCreateBuffer", result);
+    }
+    VkMemoryRequirements r;
+    ctx->vk.GetBufferMemoryRequirements(ctx->device, buffer->buffer, &r);
+    buffer->offset = add_requirements(all, &r);
+    return VKAO_SUCCESS;
+}
+
+vkao_result scratch_create(const vkao_frame *frame, struct scratch *scratch,
+                           VkMemoryRequirements *out)
+{
+    vkao_result result = VKAO_SUCCESS;
     *out = (VkMemoryRequirements){.alignment = 1, .memoryTypeBits = UINT32_MAX};
-    for (int i = 0; i < SCRATCH_COUNT; ++i) {
-        if (scratch[i].format == VK_FORMAT_UNDEFINED)
-            continue;
-        const VkExtent2D extent = scratch_extent(frame, i);
-        VkResult result = ctx->vk.CreateImage(
-            ctx->device,
-            &(VkImageCreateInfo){
-                .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-                .imageType = VK_IMAGE_TYPE_2D,
-                .format = scratch[i].format,
-                .extent = {extent.width, extent.height, 1},
-                .mipLevels = 1,
-                .arrayLayers = 1,
-                .samples = VK_SAMPLE_COUNT_1_BIT,
-                .tiling = VK_IMAGE_TILING_OPTIMAL,
-                .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT,
-                .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
-                .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
-            },
-            ctx->allocator, &scratch[i].image);
-        if (result != VK_SUCCESS) {
-            scratch[i].image = VK_NULL_HANDLE;
-            return vkao_vk_failed(&ctx->log, "vkCreateImage", result);
-        }
-        VkMemoryRequirements r;
-        ctx->vk.GetImageMemoryRequirements(ctx->device, scratch[i].image, &r);
-        scratch[i].offset = align_up(out->size, r.alignment);
-        out->size = scratch[i].offset + r.size;
-        out->memoryTypeBits &= r.memoryTypeBits;
-        if (r.alignment > out->alignment)
-            out->alignment = r.alignment;
+    plan_images(frame, scratch->images);
+    plan_buffer(frame, &scratch->buffer);
+    if (scratch->buffer.bytes)
+        result = create_buffer(frame->ctx, &scratch->buffer, out);
+    for (int i = 0; result == VKAO_SUCCESS && i < SCRATCH_COUNT; ++i) {
+        if (scratch->images[i].format != VK_FORMAT_UNDEFINED)
+            result = create_image(frame->ctx, &scratch->images[i], out);
     }
+    return result;
+}
+
+static vkao_result bind_image(const vkao_context *ctx, struct scratch_image *image,
+                              const char *name, VkDeviceMemory memory, VkDeviceSize offset)
+{
+    VkResult result =
+        ctx->vk.BindImageMemory(ctx->device, image->image, memory, offset + image->offset);
+    if (result != VK_SUCCESS)
+        return vkao_vk_failed(&ctx->log, "vkBindImageMemory", result);
+    result =
+        ctx->vk.CreateImageView(ctx->device,
+                                &(VkImageViewCreateInfo){
+                                    .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                    .image = image->image,
+                                    .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                                    .format = image->format,
+                                    .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1},
+                                },
+                                ctx->allocator, &image->view);
+    if (result != VK_SUCCESS) {
+        image->view = VK_NULL_HANDLE;
+        return vkao_vk_failed(&ctx->log, "vkCreateImageView", result);
+    }
+    vkao_set_name(ctx, VK_OBJECT_TYPE_IMAGE, (uint64_t)image->image, name);
     return VKAO_SUCCESS;
 }
 
-vkao_result scratch_bind(const vkao_context *ctx, struct scratch_image scratch[SCRATCH_COUNT],
-                         VkDeviceMemory memory, VkDeviceSize offset)
+static vkao_result bind_buffer(const vkao_context *ctx, struct scratch_buffer *buffer,
+                               VkDeviceMemory memory, VkDeviceSize offset)
 {
-    for (int i = 0; i < SCRATCH_COUNT; ++i) {
-        if (!scratch[i].image)
+    static const VkFormat formats[PART_COUNT] = {
+        [PART_VIEW_Z] = VK_FORMAT_R32_SFLOAT, [PART_PACKED] = VK_FORMAT_R8_UINT};
+    VkResult result =
+        ctx->vk.BindBufferMemory(ctx->device, buffer->buffer, memory, offset + buffer->offset);
+    if (result != VK_SUCCESS)
+        return vkao_vk_failed(&ctx->log, "vkBindBufferMemory", result);
+    for (int i = 0; i < PART_COUNT; ++i) {
+        if (formats[i] == VK_FORMAT_UNDEFINED || !buffer->parts[i].bytes)
             continue;
-        VkResult result = ctx->vk.BindImageMemory(ctx->device, scratch[i].image, memory,
-                                                  offset + scratch[i].offset);
-        if (result != VK_SUCCESS)
-            return vkao_vk_failed(&ctx->log, "vkBindImageMemory", result);
-        result =
-            ctx->vk.CreateImageView(ctx->device,
-                                    &(VkImageViewCreateInfo){
-                                        .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                        .image = scratch[i].image,
-                                        .viewType = VK_IMAGE_VIEW_TYPE_2D,
-                                        .format = scratch[i].format,
-                                        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1},
-                                    },
-                                    ctx->allocator, &scratch[i].view);
+        result = ctx->vk.CreateBufferView(ctx->device,
+                                          &(VkBufferViewCreateInfo){
+                                              .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                              .buffer = buffer->buffer,
+                                              .format = formats[i],
+                                              .offset = buffer->parts[i].offset,
+                                              .range = buffer->parts[i].bytes,
+                                          },
+                                          ctx->allocator, &buffer->views[i]);
         if (result != VK_SUCCESS) {
-            scratch[i].view = VK_NULL_HANDLE;
-            return vkao_vk_failed(&ctx->log, "vkCreateImageView", result);
+            buffer->views[i] = VK_NULL_HANDLE;
+            return vkao_vk_failed(&ctx->log, "vkCreateBufferView", result);
         }
-        vkao_set_name(ctx, VK_OBJECT_TYPE_IMAGE, (uint64_t)scratch[i].image, scratch_names[i]);
     }
+    vkao_set_name(ctx, VK_OBJECT_TYPE_BUFFER, (uint64_t)buffer->buffer, "vkao scratch");
     return VKAO_SUCCESS;
 }
 
-void scratch_destroy(const vkao_context *ctx, struct scratch_image scratch[SCRATCH_COUNT])
+vkao_result scratch_bind(const vkao_context *ctx, struct scratch *scratch, VkDeviceMemory memory,
+                         VkDeviceSize offset)
 {
+    static const char *const names[SCRATCH_COUNT] = {"vkao view z", "vkao noisy ao",
+                                                     "vkao halfway ao", "vkao ao"};
+    vkao_result result = VKAO_SUCCESS;
+    if (scratch->buffer.buffer)
+        result = bind_buffer(ctx, &scratch->buffer, memory, offset);
+    for (int i = 0; result == VKAO_SUCCESS && i < SCRATCH_COUNT; ++i) {
+        if (scratch->images[i].image)
+            result = bind_image(ctx, &scratch->images[i], names[i], memory, offset);
+    }
+    return result;
+}
+
+void scratch_destroy(const vkao_context *ctx, struct scratch *scratch)
+{
+    for (int i = 0; i < PART_COUNT; ++i) {
+        if (scratch->buffer.views[i])
+            ctx->vk.DestroyBufferView(ctx->device, scratch->buffer.views[i], ctx->allocator);
+    }
+    if (scratch->buffer.buffer)
+        ctx->vk.DestroyBuffer(ctx->device, scratch->buffer.buffer, ctx->allocator);
     for (int i = 0; i < SCRATCH_COUNT; ++i) {
-        if (scratch[i].view)
-            ctx->vk.DestroyImageView(ctx->device, scratch[i].view, ctx->allocator);
-        if (scratch[i].image)
-            ctx->vk.DestroyImage(ctx->device, scratch[i].image, ctx->allocator);
+        if (scratch->images[i].view)
+            ctx->vk.DestroyImageView(ctx->device, scratch->images[i].view, ctx->allocator);
+        if (scratch->images[i].image)
+            ctx->vk.DestroyImage(ctx->device, scratch->images[i].image, ctx->allocator);
     }
 }

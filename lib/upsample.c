@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static_assert(sizeof(struct vkao_upsample_block) == 120, "as shaders/upsample.comp lays it out");
+static_assert(sizeof(struct vkao_upsample_block) == 116, "as shaders/upsample.comp lays it out");
 
 void record_upsample(const vkao_frame *frame, VkCommandBuffer cmd,
                      const struct view_constants *view, const vkao_blur_params *params)
@@ -14,18 +14,21 @@ void record_upsample(const vkao_frame *frame, VkCommandBuffer cmd,
         .normal_y[3] = params->normal_power,
         .normal_z[3] = view->reference_z,
         .linearize = {view->linearize[0], view->linearize[1]},
-        .far_depth = view->far_depth,
         .far_z = view->far_z,
         .intensity = params->intensity,
         .power = params->power,
-        .encodings = view->encodings | view->depth_encoding << 16,
-        .orthographic = view->orthographic,
+        .flags = recording_flags(view, frame->packed, NULL, params),
+        .stride = frame->scratch.buffer.stride,
     };
     memcpy(block.unproject, view->unproject, sizeof block.unproject);
     copy_normal_rows(view, block.normal_x, block.normal_y, block.normal_z);
     rect_pack(grid.valid, block.valid);
     rect_pack(view->valid, block.full_valid);
     rect_pack(view->rect, block.rect);
+    const enum pipeline which = frame->packed ? PIPELINE_PACKED_UPSAMPLE : PIPELINE_UPSAMPLE;
+    record_label_begin(frame, cmd, "vkao upsample");
     record_barrier(frame, cmd); /* blur y wrote half-resolution AO -> upsample reads it */
-    record_dispatch(frame, cmd, PIPELINE_UPSAMPLE, &block, sizeof block, view->rect);
+    record_dispatch(frame, cmd, which, pipeline_key(which, block.flags, NULL, params), &block,
+                    sizeof block, view->rect);
+    record_label_end(frame, cmd);
 }

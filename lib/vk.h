@@ -34,6 +34,12 @@
     X(BindImageMemory)                                                                             \
     X(CreateImageView)                                                                             \
     X(DestroyImageView)                                                                            \
+    X(CreateBuffer)                                                                                \
+    X(DestroyBuffer)                                                                               \
+    X(GetBufferMemoryRequirements)                                                                 \
+    X(BindBufferMemory)                                                                            \
+    X(CreateBufferView)                                                                            \
+    X(DestroyBufferView)                                                                           \
     X(CmdPipelineBarrier)                                                                          \
     X(CmdBindPipeline)                                                                             \
     X(CmdBindDescriptorSets)                                                                       \

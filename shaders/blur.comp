@@ -12,7 +12,6 @@
 #include "params.h"
 
 layout(constant_id = VKAO_CONSTANT_BLUR_VERTICAL) const bool VERTICAL = false;
-layout(constant_id = VKAO_CONSTANT_BENT_NORMALS) const bool BENT_NORMALS = false;
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_blur_block params; };
 layout(binding = VKAO_BINDING_NOISY_READ) uniform texture2D noisy_image;
@@ -40,7 +39,7 @@ float local_slope(ivec2 texel, float z)
 
 float normal_weight(vec3 normal, ivec2 texel)
 {
-    vec3 other = decode_normal(texel << params.grid_shift, params.encodings & 0xffu);
+    vec3 other = decode_normal(texel << grid_shift());
     if (normal == vec3(0.0) || other == vec3(0.0))
         return 1.0;
     return pow(max(dot(normal, other), 1.0e-6), params.normal_power);
@@ -50,8 +49,8 @@ vec4 blurred(ivec2 texel, float z)
 {
     float slope = local_slope(texel, z);
     float edge = params.sharpness / (params.reference_z > 0.0 ? params.reference_z : z);
-    bool use_normals = params.normal_power > 0.0;
-    vec3 normal = use_normals ? decode_normal(texel << params.grid_shift, params.encodings & 0xffu) : vec3(0.0);
+    bool use_normals = flag(VKAO_FLAG_BLUR_NORMALS);
+    vec3 normal = use_normals ? decode_normal(texel << grid_shift()) : vec3(0.0);
     /* The outermost tap keeps exp(-2) of the centre's weight. */
     float fall = -2.0 / float(max(1u, params.radius * params.radius));
     vec4 sum = load_noisy(texel);
@@ -80,7 +79,7 @@ void main()
     vec4 stored = BENT_NORMALS ? result : result.wwww;
     if (!VERTICAL)
         imageStore(halfway_out, texel, stored);
-    else if (params.grid_shift > 0)
+    else if (grid_shift() > 0)
         imageStore(noisy_out, texel, stored); /* upsample finishes */
     else
         finish(texel, result, z == 0.0);

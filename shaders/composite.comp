@@ -25,7 +25,6 @@ layout(binding = VKAO_BINDING_SPECULAR) uniform texture2D specular_image;
 layout(binding = VKAO_BINDING_BENT_READ) uniform texture2D bent_image;
 layout(binding = VKAO_BINDING_OUTPUT) uniform writeonly image2D output_image;
 #define VKAO_UNPROJECT
-#define VKAO_NORMAL_ENCODING (params.encodings & 0xffu)
 #include "view.glsl"
 
 vec3 multi_bounce(float ao, vec3 albedo)
@@ -45,8 +44,8 @@ float cone_overlap(float cos_open, float cos_lobe, float cos_between)
 
 float specular_occlusion(ivec2 texel, float ao, float roughness)
 {
-    vec3 n = to_view(decode_normal(texel, params.encodings & 0xffu));
-    vec3 v = direction_to_eye(view_position(vec2(texel) / float(1 << params.grid_shift), 1.0));
+    vec3 n = to_view(decode_normal(texel));
+    vec3 v = direction_to_eye(view_position(vec2(texel) / float(1 << grid_shift()), 1.0));
     n = dot(n, v) < 0.0 ? -n : n; /* as the SSAO stage turned it */
     if (n == vec3(0.0))
         return ao; /* background, or a normal that is not to be trusted */
@@ -54,7 +53,7 @@ float specular_occlusion(ivec2 texel, float ao, float roughness)
         float exponent = exp2(-16.0 * roughness - 1.0);
         return clamp(pow(max(dot(n, v), 0.0) + ao, exponent) - 1.0 + ao, 0.0, 1.0);
     }
-    vec3 bent = to_view(decode_direction(texelFetch(bent_image, texel, 0).xyz, (params.encodings >> 8) & 0xffu));
+    vec3 bent = to_view(decode_direction(texelFetch(bent_image, texel, 0).xyz, bent_encoding()));
     if (bent == vec3(0.0))
         return ao;
     /* AO is 1 - cos^2 of the cone that is open; the lobe holds most of a GGX lobe's energy. */

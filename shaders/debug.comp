@@ -13,22 +13,35 @@ layout(binding = VKAO_BINDING_NOISY_READ) uniform texture2D noisy_image;
 layout(binding = VKAO_BINDING_BENT_READ) uniform texture2D bent_image;
 layout(binding = VKAO_BINDING_OUTPUT) uniform writeonly image2D output_image;
 #define VKAO_UNPROJECT
-#define VKAO_NORMAL_ENCODING (params.encodings & 0xffu)
 #include "view.glsl"
+#ifdef VKAO_BUFFERS
+layout(binding = VKAO_BINDING_PACKED_WORDS) readonly buffer Packed { uint packed_ao[]; };
+#endif
+
+float noisy_ao(ivec2 texel)
+{
+#ifdef VKAO_BUFFERS
+    if (flag(VKAO_FLAG_PACKED)) {
+        int i = buffer_row(texel.y) + texel.x;
+        return float((packed_ao[i >> 2] >> ((i & 3) << 3)) & 255u) / VKAO_CODE_SCALE - VKAO_CODE_OFFSET;
+    }
+#endif
+    return texelFetch(noisy_image, texel, 0).x;
+}
 
 vec4 debug_view(ivec2 texel)
 {
-    ivec2 at = texel >> params.grid_shift;
+    ivec2 at = texel >> grid_shift();
     float z = load_view_z(at);
     if (params.mode == VKAO_GLSL_COMPOSITE_VIEW_Z)
         return vec4(vec3(z / params.normal_x.w), 1.0);
     if (params.mode == VKAO_GLSL_COMPOSITE_NOISY_AO)
-        return vec4(vec3(z > 0.0 ? texelFetch(noisy_image, at, 0).x : 1.0), 1.0);
+        return vec4(vec3(z > 0.0 ? noisy_ao(at) : 1.0), 1.0);
     vec3 n = vec3(0.0);
     if (z > 0.0 && params.mode == VKAO_GLSL_COMPOSITE_NORMALS)
         n = view_normal(at, view_position(vec2(at), z));
     if (params.mode == VKAO_GLSL_COMPOSITE_BENT_NORMALS)
-        n = to_view(decode_direction(texelFetch(bent_image, texel, 0).xyz, (params.encodings >> 8) & 0xffu));
+        n = to_view(decode_direction(texelFetch(bent_image, texel, 0).xyz, bent_encoding()));
     n.z = -n.z; /* towards the eye is what pictures of normals show as blue */
     return vec4(n * 0.5 + 0.5, 1.0);
 }

@@ -27,14 +27,15 @@ vec4 encode_normal(vec3 n, uint encoding)
  * it is open, and its bent normal is zero, as its normal is. */
 void finish(ivec2 texel, vec4 result, bool background)
 {
-    float ao = clamp(1.0 - params.intensity * (1.0 - result.w), 0.0, 1.0);
-    ao = params.power == 1.0 ? ao : pow(ao, params.power);
+    float ao = clamp(result.w, 0.0, 1.0);
+    if (!flag(VKAO_FLAG_PHYSICAL))
+        ao = pow(clamp(1.0 - params.intensity * (1.0 - result.w), 0.0, 1.0), params.power);
     imageStore(ao_out, texel, vec4(background ? 1.0 : ao));
     if (BENT_NORMALS) {
         vec3 n = params.normal_x.xyz * result.x + params.normal_y.xyz * result.y + params.normal_z.xyz * result.z;
         float length2 = dot(n, n);
-        vec4 zero = encode_normal(vec3(0.0, 0.0, 0.0), (params.encodings >> 8) & 0xffu);
-        vec4 code = encode_normal(n * inversesqrt(max(length2, 1.0e-30)), (params.encodings >> 8) & 0xffu);
+        vec4 zero = encode_normal(vec3(0.0, 0.0, 0.0), bent_encoding());
+        vec4 code = encode_normal(n * inversesqrt(max(length2, 1.0e-30)), bent_encoding());
         imageStore(bent_out, texel, background || length2 == 0.0 ? zero : code);
     }
 }

@@ -11,7 +11,7 @@ const float TWO_PI = 6.28318530717958648;
 /* The upper 24 bits as a number in [0,1). */
 float unit_float(uint bits)
 {
-    return float(bits >> 8) * (1.0 / 16777216.0);
+    return float(int(bits >> 8)) * (1.0 / 16777216.0);
 }
 
 /* Interleaved gradient noise (Jimenez 2014), 0.06711056 and 0.00583715 in 32-bit fixed point; the frame moves the

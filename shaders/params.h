@@ -40,11 +40,70 @@
 #define VKAO_BINDING_BENT_READ 13
 #define VKAO_BINDING_ALBEDO 14
 #define VKAO_BINDING_SPECULAR 15
-#define VKAO_BINDING_COUNT 16
+/* Scratch in buffers, see VKAO_BUFFERS below: the same memory as texels and as words. */
+#define VKAO_BINDING_Z_TEXELS 16
+#define VKAO_BINDING_Z_WORDS 17
+#define VKAO_BINDING_PACKED_TEXELS 18
+#define VKAO_BINDING_PACKED_WORDS 19
+#define VKAO_BINDING_HALFWAY_WORDS 20
+#define VKAO_BINDING_BLURRED_WORDS 21
+#define VKAO_BINDING_COUNT 22
 
-/* Specialization constants */
+/* Specialization constants. Counts that are 0, and flags that are VKAO_FLAGS_UNKNOWN, come from the push constants:
+ * that is the general pipeline of a stage. A variant has them all, so that loops unroll and branches go. */
 #define VKAO_CONSTANT_BLUR_VERTICAL 0
 #define VKAO_CONSTANT_BENT_NORMALS 1
+#define VKAO_CONSTANT_FLAGS 2
+#define VKAO_CONSTANT_SLICES 3
+#define VKAO_CONSTANT_STEPS 4
+#define VKAO_CONSTANT_SAMPLES 5
+#define VKAO_CONSTANT_RADIUS 6
+#define VKAO_CONSTANT_COUNT 7
+#define VKAO_FLAGS_UNKNOWN 0xffffffffu
+
+/* What a recording says in one word: three enums, and yes or no. */
+#define VKAO_FLAG_NORMALS_SHIFT 0       /* vkao_normal_encoding, 3 bits */
+#define VKAO_FLAG_BENT_SHIFT 3          /* the same of bent normals */
+#define VKAO_FLAG_DEPTH_SHIFT 6         /* vkao_depth_encoding, 2 bits */
+#define VKAO_FLAG_ORTHOGRAPHIC 0x100u
+#define VKAO_FLAG_FAR_IS_ONE 0x200u     /* device depth of the far plane: 1, else 0 */
+#define VKAO_FLAG_NORMALS_ALIGNED 0x400u /* normal_to_view only turns axes round */
+#define VKAO_FLAG_HALF_RESOLUTION 0x800u /* texel << 1 of the grid is the image's */
+#define VKAO_FLAG_THRESHOLD 0x1000u     /* falloff */
+#define VKAO_FLAG_SPHERE_LITERAL 0x2000u
+#define VKAO_FLAG_BLUR_NORMALS 0x4000u  /* normal_power > 0 */
+#define VKAO_FLAG_PHYSICAL 0x8000u      /* intensity 1, power 1 */
+
+#define VKAO_FLAG_NORMAL_POWER_8 0x20000u
+#define VKAO_FLAG_PACKED 0x10000u       /* AO goes through buffers, not images */
+
+/* Texels of zeros around view z, so that taps outside read background without a test. */
+#define VKAO_VIEW_Z_BORDER 1
+
+/* Shaders are compiled for scratch in images, and with VKAO_BUFFERS for scratch in buffers. A CPU takes several texels
+ * from a buffer at once, where an image gives them one by one; on GPUs images have the better caches.
+ *
+ * Rows of such a buffer have VKAO_BUFFER_PAD texels of padding on each side, as the blur reads beyond the edge, and are
+ * as long as a multiple of 4 allows. View z is a float per texel and has VKAO_VIEW_Z_BORDER rows above and below.
+ * Noisy AO is a byte per texel, coded as (ao + OFFSET) * SCALE: one slice per texel sees between -.55 and 2 of what a
+ * whole hemisphere sees, 1 must be exact, and next to its noise the rounding is nothing. AO between the directions of
+ * the blur is a 16-bit word per texel, 256 times that code; that buffer is a ring of VKAO_RING_ROWS rows, the blur goes
+ * down the image in strips. */
+#define VKAO_BUFFER_PAD 16
+#define VKAO_CODE_SCALE 100.0
+#define VKAO_CODE_OFFSET 0.55
+#define VKAO_CODE_FINE 256.0
+#define VKAO_CODE_OPEN 39680 /* fine code of 1; numbers are taken relative to it, so that what is open stays exactly 1 */
+#define VKAO_RING_ROWS 288
+#define VKAO_STRIP_ROWS 256 /* a ring holds a strip and the largest radius on both sides of it */
+
+/* Texels per invocation in the shaders for buffers. */
+#define VKAO_PREPARE_WIDTH 4
+#define VKAO_BLUR_X_WIDTH 8
+#define VKAO_BLUR_Y_WIDTH 4
+#define VKAO_BLUR_Y_HEIGHT 8
+#define VKAO_UPSAMPLE_WIDTH 8
+#define VKAO_UPSAMPLE_HEIGHT 2
 
 /* Values of the public enums that shaders test; lib/internal.h asserts that they are equal. */
 #define VKAO_GLSL_DEPTH_PROJECTED 0
@@ -56,8 +115,6 @@
 #define VKAO_GLSL_NORMALS_XYZ_UNORM 2
 #define VKAO_GLSL_NORMALS_OCT_SNORM 3
 #define VKAO_GLSL_NORMALS_OCT_UNORM 4
-#define VKAO_GLSL_FALLOFF_SMOOTH 0
-#define VKAO_GLSL_SPHERE_RESCALED 0
 #define VKAO_GLSL_COMPOSITE_MULTIPLY 0
 #define VKAO_GLSL_COMPOSITE_INDIRECT 1
 #define VKAO_GLSL_COMPOSITE_AO_ONLY 2
@@ -88,32 +145,31 @@ struct vkao_prepare_block {
     VKAO_VEC4(unproject);
     /* PROJECTED: .x / (.y - depth) in perspective, .x + .y * depth in orthographic views */
     VKAO_VEC2(linearize);
-    VKAO_FLOAT(far_depth); /* device depth of the far plane: 0 or 1 */
-    VKAO_FLOAT(far_z);     /* other encodings: view z of the far plane */
+    VKAO_FLOAT(far_z); /* other encodings: view z of the far plane */
+    VKAO_UINT(flags);
     VKAO_UVEC2(valid);
-    VKAO_UINT(depth_encoding);
-    VKAO_UINT(orthographic);
-    VKAO_UINT(grid_shift); /* 1 = half resolution: texel << 1 is the image's */
+    VKAO_UINT(stride); /* texels in a row of buffers */
 };
 
 struct vkao_ssao_block {
     VKAO_VEC4(unproject);
     VKAO_UVEC2(valid);
     VKAO_UVEC2(rect);
-    /* rows of normal_to_view; .w holds radius, bias (scene units), and blocking_scale (SPHERE) or thickness */
+    /* rows of normal_to_view; .w holds radius, bias (scene units), and blocking_scale (SPHERE) */
     VKAO_VEC4(normal_x);
     VKAO_VEC4(normal_y);
     VKAO_VEC4(normal_z);
     /* uncertainty of a view z: .x + .y * z, times z in perspective */
     VKAO_VEC2(depth_error);
-    VKAO_UINT(normal_encoding);
-    VKAO_UINT(orthographic);
+    VKAO_UINT(flags);
     VKAO_UINT(sample_count);
     VKAO_UINT(noise_index);
-    VKAO_UINT(falloff);
-    VKAO_UINT(sphere_form);
-    VKAO_UINT(slices_and_steps); /* 16 bits each, slices low */
-    VKAO_UINT(grid_shift);
+    VKAO_UINT(slices_and_steps);  /* 16 bits each, slices low */
+    VKAO_FLOAT(inverse_radius2);  /* 1 / radius^2 */
+    VKAO_FLOAT(bias_cosine);      /* bias / radius */
+    VKAO_FLOAT(thickness_base);   /* VBAO, RAYMARCH: scene units */
+    VKAO_FLOAT(thickness_slope);
+    VKAO_UINT(stride);            /* texels in a row of buffers */
 };
 
 struct vkao_blur_block {
@@ -123,13 +179,14 @@ struct vkao_blur_block {
     VKAO_UVEC2(valid);
     VKAO_UVEC2(rect);
     VKAO_UINT(radius);
+    VKAO_UINT(flags);
     VKAO_FLOAT(sharpness);
     VKAO_FLOAT(normal_power);
-    VKAO_UINT(encodings); /* of normals, and << 8 of bent normals */
     VKAO_FLOAT(intensity);
     VKAO_FLOAT(power);
     VKAO_FLOAT(reference_z); /* what sharpness is relative to in orthographic views; 0 = the texel's own z */
-    VKAO_UINT(grid_shift);
+    VKAO_UINT(stride);       /* texels in a row of buffers */
+    VKAO_UINT(ring_row);     /* image row in row 0 of the ring, or VKAO_RING_ROWS rows before that */
 };
 
 /* valid is the half-resolution one, which load_view_z checks. */
@@ -142,12 +199,11 @@ struct vkao_upsample_block {
     VKAO_UVEC2(valid);
     VKAO_UVEC2(full_valid);
     VKAO_UVEC2(rect);
-    VKAO_FLOAT(far_depth);
     VKAO_FLOAT(far_z);
     VKAO_FLOAT(intensity);
     VKAO_FLOAT(power);
-    VKAO_UINT(encodings); /* of normals, << 8 of bent normals, << 16 of depth */
-    VKAO_UINT(orthographic);
+    VKAO_UINT(flags);
+    VKAO_UINT(stride); /* texels in a row of buffers */
 };
 
 struct vkao_composite_block {
@@ -158,12 +214,11 @@ struct vkao_composite_block {
     VKAO_VEC4(unproject);
     VKAO_UVEC2(valid); /* of the grid that the stages ran on */
     VKAO_UVEC2(rect);
+    VKAO_UINT(flags);
     VKAO_UINT(mode);
     VKAO_UINT(multi_bounce);
     VKAO_UINT(specular_occlusion);
-    VKAO_UINT(encodings);
-    VKAO_UINT(orthographic);
-    VKAO_UINT(grid_shift);
+    VKAO_UINT(stride); /* texels in a row of buffers */
 };
 
 #endif

@@ -11,13 +11,16 @@
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_prepare_block params; };
 layout(binding = VKAO_BINDING_VIEW_Z, VKAO_VIEW_Z_FORMAT) uniform writeonly image2D view_z_image;
-#define VKAO_DEPTH_ENCODING params.depth_encoding
 #include "depth.glsl"
 
 void main()
 {
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + ivec2(params.valid.x & 0xffffu, params.valid.x >> 16);
-    if (texel.x >= int(params.valid.y & 0xffffu) || texel.y >= int(params.valid.y >> 16))
+    ivec2 low = ivec2(params.valid.x & 0xffffu, params.valid.x >> 16);
+    ivec2 high = ivec2(params.valid.y & 0xffffu, params.valid.y >> 16);
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + low - VKAO_VIEW_Z_BORDER;
+    if (any(greaterThanEqual(texel, high + VKAO_VIEW_Z_BORDER)))
         return;
-    imageStore(view_z_image, texel, vec4(view_z_from_depth(texel << params.grid_shift)));
+    bool inside = all(greaterThanEqual(texel, low)) && all(lessThan(texel, high));
+    float z = inside ? view_z_from_depth(texel << grid_shift()) : 0.0;
+    imageStore(view_z_image, texel + VKAO_VIEW_Z_BORDER, vec4(z));
 }

@@ -6,16 +6,35 @@
 #ifndef VKAO_SSAO_GLSL_
 #define VKAO_SSAO_GLSL_
 
-layout(constant_id = VKAO_CONSTANT_BENT_NORMALS) const bool BENT_NORMALS = false;
+layout(constant_id = VKAO_CONSTANT_SLICES) const uint SLICES = 0u;
+layout(constant_id = VKAO_CONSTANT_STEPS) const uint STEPS = 0u;
+layout(constant_id = VKAO_CONSTANT_SAMPLES) const uint SAMPLES = 0u;
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_ssao_block params; };
 layout(binding = VKAO_BINDING_NOISY_WRITE) uniform writeonly image2D noisy_image;
+#ifdef VKAO_BUFFERS
+layout(binding = VKAO_BINDING_PACKED_TEXELS) uniform writeonly uimageBuffer packed_texels;
+#endif
 #define VKAO_UNPROJECT
-#define VKAO_NORMAL_ENCODING params.normal_encoding
 #include "view.glsl"
 #include "noise.glsl"
 
 vec4 visibility(ivec2 texel, vec3 position, vec3 normal);
+
+uint slice_count()
+{
+    return SLICES != 0u ? SLICES : params.slices_and_steps & 0xffffu;
+}
+
+uint step_count()
+{
+    return STEPS != 0u ? STEPS : params.slices_and_steps >> 16;
+}
+
+uint sample_count()
+{
+    return SAMPLES != 0u ? SAMPLES : params.sample_count;
+}
 
 /* Any two unit vectors that make an orthonormal basis with n (Duff et al., JCGT 6(1), 2017). */
 void tangents(vec3 n, out vec3 t, out vec3 b)
@@ -31,7 +50,7 @@ void tangents(vec3 n, out vec3 t, out vec3 b)
 float depth_error(float z)
 {
     float line = params.depth_error.x + params.depth_error.y * z;
-    return params.orthographic != 0u ? line : z * line;
+    return orthographic() ? line : z * line;
 }
 
 /* Length of a point of the kernel, u uniform in [0,1). A point at length l is hidden if its ray hits anything within l,
@@ -39,7 +58,7 @@ float depth_error(float z)
  * threshold a ray counts alike wherever it hits, so the lengths crowd towards R. */
 float point_length(float u, float radius)
 {
-    return radius * (params.falloff == VKAO_GLSL_FALLOFF_SMOOTH ? sqrt(u) : sqrt(sqrt(u)));
+    return radius * (flag(VKAO_FLAG_THRESHOLD) ? sqrt(sqrt(u)) : sqrt(u));
 }
 
 /* How much an occluder counts whose view z is dz off the shaded point's: all within the radius, then less and less, as
@@ -57,18 +76,27 @@ bool stands_in_front(vec3 occluder, vec3 position, vec3 normal, float point_heig
     return dot(normal, occluder - position) > point_height;
 }
 
+void store_noisy(ivec2 texel, vec4 result)
+{
+#ifdef VKAO_BUFFERS
+    if (flag(VKAO_FLAG_PACKED)) {
+        int code = int(clamp((result.w + VKAO_CODE_OFFSET) * VKAO_CODE_SCALE, 0.0, 255.0) + 0.5);
+        imageStore(packed_texels, buffer_row(texel.y) + texel.x, uvec4(code));
+        return;
+    }
+#endif
+    imageStore(noisy_image, texel, BENT_NORMALS ? result : result.wwww);
+}
+
 void main()
 {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(params.rect.x);
-    if (any(greaterThanEqual(texel, unpack_texel(params.rect.y))))
-        return;
     float z = load_view_z(texel);
-    vec4 result = vec4(0.0, 0.0, 0.0, 1.0);
-    if (z > 0.0) {
         vec3 position = view_position(vec2(texel), z);
-        result = visibility(texel, position, view_normal(texel, position));
-    }
-    imageStore(noisy_image, texel, BENT_NORMALS ? result : result.wwww);
+    vec4    result = visibility(texel, position, view_normal(texel, position));
+    result = z > 0.0 ? result : vec4(0.0,0.0,0.0,1.0);
+    if (!any(greaterThanEqual(texel, unpack_texel(params.rect.y))))
+    store_noisy(texel, result);
 }
 
 #endif

@@ -8,28 +8,30 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
 #include "ssao.glsl"
 #include "horizon.glsl"
 
-/* Cosine of the horizon on one side. */
-float horizon_cosine(Slice s, ivec2 texel, vec3 position, vec3 to_eye, float side, float jitter)
+/* Cosines of the horizons. */
+vec2 horizon_cosines(Slice s, vec2 texel, float jitter)
 {
     float radius = params.normal_x.w;
-    float low = -side * s.sin_n; /* cos(n +- pi/2): the tangent plane */
-    float horizon = low, guard = 2.0 * depth_error(position.z);
-    for (uint t = 0u; t < step_count(); ++t) {
-        ivec2 at = step_texel(s, texel, side, t, jitter, radius);
-        float z = load_view_z(at);
-        if (z > 0.0) {
-            vec3 v = view_position(vec2(at), z) - position;
-            vec2 p = slice_point(s, v, to_eye, side, guard);
-            float c = p.y * inversesqrt(dot(p, p)) - params.normal_y.w / radius;
-            horizon = max(horizon, mix(low, c, falloff_weight(dot(v, v), radius)));
-        }
+    vec2 low = -SIDES * s.sin_n; /* cos(n +- pi/2): the tangent plane */
+    vec2 horizon = low;
+    vec2 next = step_offset(s, 0u, jitter, radius), next_z = load_sides(texel, next);
+    [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
+        vec2 offset = next, z = next_z, x, y;
+        next = step_offset(s, t + 1u, jitter, radius);
+        if (STEPS == 0u || t + 1u < STEPS)
+            next_z = load_sides(texel, next);
+        slice_points(s, offset, z, x, y);
+        vec2 d2 = x * x + y * y;
+        vec2 weight = mix(vec2(0.0), falloff_weight(d2), greaterThan(z, vec2(0.0)));
+        horizon = max(horizon, low + weight * (y * inversesqrt(d2) - params.bias_cosine - low));
     }
-    return clamp(horizon, -1.0, 1.0);
+    return clamp(horizon, vec2(-1.0), vec2(1.0));
 }
 
 float inner_integral(float h, float n, float cos_n, float sin_n)
@@ -52,11 +54,11 @@ vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
     vec2 noise = slice_noise(texel);
     float lost = 0.0;
     vec3 bent = vec3(0.0);
-    for (uint k = 0u; k < slice_count(); ++k) {
-        Slice s = make_slice(PI * (float(k) + noise.x) / float(slice_count()), position, normal, to_eye);
+    [[unroll]] for (uint k = 0u; k < slice_count(); ++k) {
+        Slice s = make_slice((float(k) + noise.x) * (1.0 / float(slice_count())), position, normal, to_eye);
+        vec2 cosines = horizon_cosines(s, vec2(texel), noise.y);
         float n = s.sin_n >= 0.0 ? acos(s.cos_n) : -acos(s.cos_n);
-        float h1 = min(acos(horizon_cosine(s, texel, position, to_eye, 1.0, noise.y)), n + 0.5 * PI);
-        float h0 = max(-acos(horizon_cosine(s, texel, position, to_eye, -1.0, noise.y)), n - 0.5 * PI);
+        float h1 = min(acos(cosines.x), n + 0.5 * PI), h0 = max(-acos(cosines.y), n - 0.5 * PI);
         float open = s.cos_n + n * s.sin_n;
         lost += s.normal_length * (open - inner_integral(h0, n, s.cos_n, s.sin_n) - inner_integral(h1, n, s.cos_n, s.sin_n));
         if (BENT_NORMALS) {

@@ -8,29 +8,30 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
 #include "ssao.glsl"
 #include "horizon.glsl"
 
-float occlusion(Slice s, ivec2 texel, vec3 position, vec3 normal, float side, float jitter)
+/* Of both sides together. */
+float occlusion(Slice s, vec2 texel, float jitter)
 {
-    float radius = params.normal_x.w, sine = params.normal_y.w / radius;
-    float occluded = 0.0, guard = 2.0 * depth_error(position.z);
-    for (uint t = 0u; t < step_count(); ++t) {
-        ivec2 at = step_texel(s, texel, side, t, jitter, radius);
-        float z = load_view_z(at);
-        if (z > 0.0) {
-            vec3 v = view_position(vec2(at), z) - position;
-            float d2 = dot(v, v), weight = falloff_weight(d2, radius);
-            float elevation = (dot(normal, v) - guard) * inversesqrt(d2);
-            if (weight > 0.0 && elevation > sine) {
-                occluded += weight * (elevation - sine);
-                sine = elevation;
-            }
-        }
+    float radius = params.normal_x.w;
+    vec2 sine = vec2(params.bias_cosine), occluded = vec2(0.0);
+    vec2 along = SIDES * (s.normal_length * s.sin_n);
+    [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
+        vec2 offset = step_offset(s, t, jitter, radius);
+        vec2 z = load_sides(texel, offset), x, y;
+        slice_points(s, offset, z, x, y);
+        vec2 d2 = x * x + y * y;
+        vec2 weight = mix(vec2(0.0), falloff_weight(d2), greaterThan(z, vec2(0.0)));
+        vec2 elevation = (along * x + s.normal_length * s.cos_n * y) * inversesqrt(d2);
+        vec2 higher = mix(sine, max(sine, elevation), greaterThan(weight, vec2(0.0)));
+        occluded += weight * (higher - sine);
+        sine = higher;
     }
-    return occluded;
+    return occluded.x + occluded.y;
 }
 
 vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
@@ -38,9 +39,9 @@ vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
     vec3 to_eye = direction_to_eye(position);
     vec2 noise = slice_noise(texel);
     float occluded = 0.0;
-    for (uint k = 0u; k < slice_count(); ++k) {
-        Slice s = make_slice(PI * (float(k) + noise.x) / float(slice_count()), position, normal, to_eye);
-        occluded += occlusion(s, texel, position, normal, 1.0, noise.y) + occlusion(s, texel, position, normal, -1.0, noise.y);
+    [[unroll]] for (uint k = 0u; k < slice_count(); ++k) {
+        Slice s = make_slice((float(k) + noise.x) * (1.0 / float(slice_count())), position, normal, to_eye);
+        occluded += occlusion(s, vec2(texel), noise.y);
     }
     return vec4(vec3(0.0), 1.0 - occluded / float(2u * slice_count()));
 }

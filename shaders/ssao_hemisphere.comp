@@ -9,6 +9,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
 #include "ssao.glsl"
@@ -21,8 +22,8 @@ vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
     float turn = TWO_PI * interleaved_gradient_noise(uvec2(texel), params.noise_index);
     float shift = r2_noise(uvec2(texel), params.noise_index);
     float blocked = 0.0;
-    for (uint k = 0u; k < params.sample_count; ++k) {
-        float r2 = (float(k) + 0.5) / float(params.sample_count);
+    for (uint k = 0u; k < sample_count(); ++k) {
+        float r2 = (float(k) + 0.5) / float(sample_count());
         float angle = float(k) * GOLDEN_ANGLE + turn;
         float len = point_length(fract(golden_sequence(k) + shift), radius);
         vec3 offset = len * (sqrt(r2) * (cos(angle) * t + sin(angle) * b) + sqrt(1.0 - r2) * normal);
@@ -33,5 +34,5 @@ vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
         bool hit = scene_z > 0.0 && stands_in_front(occluder, position, normal, len * sqrt(1.0 - r2) + bias);
         blocked += hit ? range_weight(scene_z - position.z, radius) : 0.0;
     }
-    return vec4(vec3(0.0), 1.0 - blocked / float(params.sample_count));
+    return vec4(vec3(0.0), 1.0 - blocked / float(sample_count()));
 }

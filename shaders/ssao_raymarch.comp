@@ -7,6 +7,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
 #include "ssao.glsl"
@@ -31,10 +32,10 @@ float first_hit(vec3 position, vec3 normal, vec3 direction, float jitter)
         vec3 v = surface - position;
         float lateral = length(v - dot(v, to_eye) * to_eye);
         float behind = dot(to_eye, surface - point);
-        float depth = params.normal_z.w * (VKAO_THICKNESS_BASE * radius + VKAO_THICKNESS_SLOPE * min(lateral, radius));
+        float depth = params.thickness_base + params.thickness_slope * min(lateral, radius);
         if (dot(normal, surface - point) > bias &&
             behind > 0.0 && behind < depth)
-            return falloff_weight(d * d, radius);
+            return falloff_weight(vec2(d * d)).x;
     }
     return 0.0;
 }
@@ -46,13 +47,13 @@ vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
     tangents(normal, t, b);
     vec3 bent = vec3(0.0);
     float lost = 0.0;
-    for (uint k = 0u; k < params.sample_count; ++k) {
-        float r2 = (float(k) + noise.y) / float(params.sample_count);
+    for (uint k = 0u; k < sample_count(); ++k) {
+        float r2 = (float(k) + noise.y) / float(sample_count());
         float angle = float(k) * GOLDEN_ANGLE + TWO_PI * noise.x;
         vec3 direction = sqrt(r2) * (cos(angle) * t + sin(angle) * b) + sqrt(1.0 - r2) * normal;
         float hit = first_hit(position, normal, direction, fract(golden_sequence(k) + noise.y));
         lost += hit;
         bent += (1.0 - hit) * direction;
     }
-    return vec4(bent, 1.0 - lost / float(params.sample_count));
+    return vec4(bent, 1.0 - lost / float(sample_count()));
 }

@@ -13,6 +13,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
 #include "ssao.glsl"
@@ -37,7 +38,7 @@ float literal_blocking(ivec2 texel, vec3 position)
     float turn = TWO_PI * interleaved_gradient_noise(uvec2(texel), params.noise_index);
     vec2 rotation = vec2(cos(turn), sin(turn));
     float factor = 0.0;
-    for (uint k = 0u; k < params.sample_count; ++k) {
+    for (uint k = 0u; k < sample_count(); ++k) {
         vec3 p = table_point(k);
         p.xy = vec2(p.x * rotation.x - p.y * rotation.y, p.x * rotation.y + p.y * rotation.x);
         vec3 point = position + radius * p;
@@ -45,7 +46,7 @@ float literal_blocking(ivec2 texel, vec3 position)
         float dz = scale * max(0.0, scene_z - point.z);
         factor += scene_z > 0.0 ? 1.0 / (1.0 + dz * dz) : 0.0;
     }
-    return factor / float(params.sample_count);
+    return factor / float(sample_count());
 }
 
 float hidden(vec3 position, vec3 normal, vec3 offset)
@@ -65,7 +66,7 @@ float rescaled_blocking(ivec2 texel, vec3 position, vec3 normal)
 {
     float turn = TWO_PI * interleaved_gradient_noise(uvec2(texel), params.noise_index);
     float shift = r2_noise(uvec2(texel), params.noise_index);
-    uint pairs = (params.sample_count + 1u) / 2u;
+    uint pairs = (sample_count() + 1u) / 2u;
     float blocked = 0.0;
     for (uint k = 0u; k < pairs; ++k) {
         /* z over (0,1), the antipode over (-1,0) */
@@ -80,7 +81,7 @@ float rescaled_blocking(ivec2 texel, vec3 position, vec3 normal)
 
 vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
 {
-    if (params.sphere_form == VKAO_GLSL_SPHERE_RESCALED)
+    if (!flag(VKAO_FLAG_SPHERE_LITERAL))
         return vec4(vec3(0.0), min(1.0, 2.0 * (1.0 - rescaled_blocking(texel, position, normal))));
     return vec4(vec3(0.0), 1.0 - literal_blocking(texel, position));
 }

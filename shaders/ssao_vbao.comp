@@ -18,6 +18,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
 #include "ssao.glsl"
@@ -26,33 +27,37 @@
 const float SECTORS = 31.0;
 
 /* Least squares, largest error .0014: below half a sector. */
-float g(float c)
+vec2 g(vec2 c)
 {
-    float c2 = c * c;
+    vec2 c2 = c * c;
     return c * (0.99183605 + c2 * (-0.11897914 - 0.08610474 * c2));
 }
 
-/* Sector bound of cosine c is k.x + k.y c^2 + k.z g(c), inside the side's mass. */
-struct Side {
-    vec3 k;
-    float low; /* cosine of the tangent plane */
-    float mass;
+/* Sector bound of cosine c is k.x + y c^2 + z g(c), inside the side's mass. Vectors hold both sides. */
+struct Masks {
+    vec2 low; /* cosine of the tangent plane */
+    vec2 mass;
+    vec2 x, y, z;
 };
 
-Side make_side(Slice s, float side)
+Masks make_masks(Slice s)
 {
-    Side r;
-    float sn = side * s.sin_n;
-    float below = 0.5 * s.cos_n * sn * sn - sn * g(sn);
-    r.low = -sn;
-    r.mass = max(0.5 * s.cos_n + sn * g(1.0) - below, 1.0e-4);
-    r.k = vec3(-below, 0.5 * s.cos_n, sn) * (SECTORS / r.mass);
-    return r;
+    Masks m;
+    vec2 sn = SIDES * s.sin_n;
+    m.low = -sn;
+    vec2 below = 0.5 * s.cos_n * m.low * m.low + sn * g(m.low);
+    m.mass = max(0.5 * s.cos_n + sn * g(vec2(1.0)) - below, vec2(1.0e-4));
+    vec2 scale = SECTORS / m.mass;
+    m.x = VKAO_VBAO_ROUND - below * scale;
+    m.y = 0.5 * s.cos_n * scale;
+    m.z = sn * scale;
+    return m;
 }
 
-int sector(Side r, float c)
+ivec2 sector(Masks m, vec2 c)
 {
-    return c <= r.low ? 0 : clamp(int(r.k.x + VKAO_VBAO_ROUND + r.k.y * c * c + r.k.z * g(c)), 0, 31);
+    c = max(c, m.low);
+    return ivec2(clamp(m.x + c * (m.y * c) + m.z * g(c), vec2(0.0), vec2(SECTORS)));
 }
 
 vec2 perpendicular(float c)
@@ -60,48 +65,53 @@ vec2 perpendicular(float c)
     return vec2(sqrt(max(0.0, 1.0 - c * c)), c);
 }
 
-/* x: weighted share of the side's mass that is hidden. yz: its moment along O and V. */
-vec3 hidden_mass(Slice s, ivec2 texel, vec3 position, vec3 to_eye, float side, float jitter)
+/* x: weighted share of the slice's mass that is hidden. yz: its moment along O and V. */
+vec3 hidden_mass(Slice s, vec2 texel, float jitter)
 {
     float radius = params.normal_x.w;
-    float reach = radius * (params.falloff == VKAO_GLSL_FALLOFF_SMOOTH ? VKAO_VBAO_REACH_SMOOTH : VKAO_VBAO_REACH_THRESHOLD);
-    float tangent = side * s.sin_n / max(s.cos_n, 0.02);
-    float bias = params.normal_y.w / radius;
-    float guard = 2.0 * depth_error(position.z);
-    Side r = make_side(s, side);
-    uint mask = 0u;
-    vec2 previous = vec2(0.0);
-    float previous_cosine = -2.0;
-    vec3 hidden = vec3(0.0);
-    for (uint t = 0u; t < step_count(); ++t) {
-        ivec2 at = step_texel(s, texel, side, t, jitter, reach);
-        float z = load_view_z(at);
-        if (z > 0.0) {
-            vec2 p = slice_point(s, view_position(vec2(at), z) - position, to_eye, side, guard);
-            vec2 gap = p - previous;
-            bool joined = abs(gap.y + gap.x * tangent) < VKAO_VBAO_JOIN * abs(gap.x);
-            bool above = p.y + p.x * tangent > 0.0;
-            float front_x = !joined && above ? max(p.x - VKAO_VBAO_GAP_FRONT * gap.x, 1.0e-4 * radius) : p.x;
-            float front = p.y * inversesqrt(front_x * front_x + p.y * p.y);
-            if (joined)
-                front = max(front, previous_cosine);
-            previous_cosine = p.y * inversesqrt(dot(p, p));
-            float depth = params.normal_z.w * (VKAO_THICKNESS_BASE * radius + VKAO_THICKNESS_SLOPE * min(p.x, radius));
-            vec2 back_edge = vec2(p.x + VKAO_VBAO_GAP_BACK * gap.x, p.y - depth);
-            float back = back_edge.y * inversesqrt(dot(back_edge, back_edge));
-            int high = sector(r, front - bias), low = min(sector(r, back), high);
-            uint bits = (1u << high) - (1u << low);
-            uint fresh = bits & ~mask;
-            mask |= bits;
-            float near_y = clamp(0.0, p.y - depth, p.y);
-            float w = falloff_weight(p.x * p.x + near_y * near_y, radius) * float(bitCount(fresh));
-            hidden.x += w;
-            if (BENT_NORMALS)
-                hidden.yz += w * vec2(side, 1.0) * perpendicular(clamp(0.5 * (front + max(back, r.low)), -1.0, 1.0));
-            previous = p;
+    float reach = radius * (flag(VKAO_FLAG_THRESHOLD) ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH);
+    vec2 tangent = SIDES * (s.sin_n / max(s.cos_n, 0.02));
+    Masks m = make_masks(s);
+    ivec2 mask = ivec2(0);
+    vec2 last_x = vec2(0.0), last_height = vec2(0.0), last_front = vec2(-2.0);
+    vec2 hidden = vec2(0.0);
+    vec3 moment = vec3(0.0);
+    vec2 next = step_offset(s, 0u, jitter, reach), next_z = load_sides(texel, next);
+    [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
+        vec2 offset = next, z = next_z, x, y;
+        next = step_offset(s, t + 1u, jitter, reach);
+        if (STEPS == 0u || t + 1u < STEPS)
+            next_z = load_sides(texel, next);
+        slice_points(s, offset, z, x, y);
+        bvec2 seen = greaterThan(z, vec2(0.0));
+        vec2 gap = x - last_x, height = y + x * tangent;
+        bvec2 joined = lessThan(abs(height - last_height), VKAO_VBAO_JOIN * abs(gap));
+        vec2 moved = mix(vec2(0.0), min(VKAO_VBAO_GAP_FRONT * gap, x - 1.0e-4 * radius), greaterThan(height, vec2(0.0)));
+        vec2 front_x = mix(x - moved, x, joined);
+        vec2 front = y * inversesqrt(front_x * front_x + y * y);
+        front = mix(front, max(front, last_front), joined);
+        vec2 thick_y = y - (params.thickness_base + params.thickness_slope * min(x, vec2(radius)));
+        vec2 back_x = x + VKAO_VBAO_GAP_BACK * gap;
+        vec2 back = thick_y * inversesqrt(back_x * back_x + thick_y * thick_y);
+        ivec2 high = sector(m, front - params.bias_cosine), low = min(sector(m, back), high);
+        ivec2 bits = (ivec2(1) << high) - (ivec2(1) << low);
+        bits = mix(ivec2(0), bits, seen);
+        ivec2 fresh = bits & ~mask;
+        mask |= bits;
+        vec2 near_y = clamp(vec2(0.0), thick_y, y);
+        vec2 w = falloff_weight(x * x + near_y * near_y) * vec2(bitCount(fresh));
+        hidden += w;
+        if (BENT_NORMALS) {
+            vec2 middle = clamp(0.5 * (front + max(back, m.low)), vec2(-1.0), vec2(1.0));
+            w *= m.mass;
+            moment.yz += w.x * perpendicular(middle.x) + w.y * vec2(-1.0, 1.0) * perpendicular(middle.y);
         }
+        last_x = mix(last_x, x, seen);
+        last_height = mix(last_height, height, seen);
+        last_front = mix(last_front, front, seen);
     }
-    return hidden * (r.mass / SECTORS);
+    moment.x = dot(hidden, m.mass);
+    return moment / SECTORS;
 }
 
 vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
@@ -110,10 +120,9 @@ vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
     vec2 noise = slice_noise(texel);
     vec3 bent = vec3(0.0);
     float lost = 0.0;
-    for (uint k = 0u; k < slice_count(); ++k) {
-        Slice s = make_slice(PI * (float(k) + noise.x) / float(slice_count()), position, normal, to_eye);
-        vec3 hidden = hidden_mass(s, texel, position, to_eye, 1.0, noise.y) +
-                      hidden_mass(s, texel, position, to_eye, -1.0, noise.y);
+    [[unroll]] for (uint k = 0u; k < slice_count(); ++k) {
+        Slice s = make_slice((float(k) + noise.x) * (1.0 / float(slice_count())), position, normal, to_eye);
+        vec3 hidden = hidden_mass(s, vec2(texel), noise.y);
         lost += s.normal_length * hidden.x;
         bent += s.normal_length * (hidden.y * s.outward + hidden.z * to_eye);
     }

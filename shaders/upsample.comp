@@ -1,21 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
  * AO of every second texel of every second row -> all texels: joint bilateral upsampling (Kopf et al. 2007). A texel
- * takes from its up to four half-resolution neighbours by bilinear weight, times the same depth and normal weights as
- * the blur. Depth is continued by the slope at the full-resolution texel. Where no neighbour lies on its surface, the
- * four beyond are asked, and the least wrong one decides. */
+ * takes from the one, two or four half-resolution texels that it coincides with or lies between, by the depth and normal
+ * weights of the blur. Depth is continued by the slope at the full-resolution texel. Where no neighbour lies on its
+ * surface, the least wrong one decides. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #define VKAO_GLSL
 #include "params.h"
 
-layout(constant_id = VKAO_CONSTANT_BENT_NORMALS) const bool BENT_NORMALS = false;
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_upsample_block params; };
 layout(binding = VKAO_BINDING_NOISY_READ) uniform texture2D half_image;
 #include "view.glsl"
-#define VKAO_DEPTH_ENCODING (params.encodings >> 16)
 #include "depth.glsl"
 #include "finish.glsl"
 
@@ -36,25 +34,24 @@ vec4 upsampled(ivec2 texel, float z)
 {
     vec2 slope = vec2(slope_along(texel, ivec2(1, 0), z), slope_along(texel, ivec2(0, 1), z));
     float edge = params.normal_x.w / (params.normal_z.w > 0.0 ? params.normal_z.w : z);
-    uint encoding = params.encodings & 0xffu;
-    vec3 normal = params.normal_y.w > 0.0 ? decode_normal(texel, encoding) : vec3(0.0);
+    vec3 normal = flag(VKAO_FLAG_BLUR_NORMALS) ? decode_normal(texel) : vec3(0.0);
     vec4 sum = vec4(0.0);
     float weights = 0.0;
-    for (int j = -1; j <= 2; ++j) {
-        for (int i = -1; i <= 2; ++i) {
+    /* Even texels are of half resolution; the others lie in the middle of two or four. */
+    ivec2 odd = texel & 1;
+    for (int j = 0; j <= odd.y; ++j) {
+        for (int i = 0; i <= odd.x; ++i) {
             ivec2 at = (texel >> 1) + ivec2(i, j);
             float half_z = load_view_z(at);
             if (half_z <= 0.0)
                 continue;
-            vec2 offset = vec2(2 * at - texel);
-            float off = edge * abs(half_z - z - dot(slope, offset));
-            vec2 tent = max(vec2(0.0), 1.0 - 0.5 * abs(offset));
-            float w = tent.x * tent.y * max(0.0, 1.0 - off);
-            vec3 other = normal == vec3(0.0) ? vec3(0.0) : decode_normal(2 * at, encoding);
+            float off = edge * abs(half_z - z - dot(slope, vec2(2 * at - texel)));
+            float w = max(0.0, 1.0 - off);
+            vec3 other = normal == vec3(0.0) ? vec3(0.0) : decode_normal(2 * at);
             if (other != vec3(0.0))
                 w *= pow(max(dot(normal, other), 1.0e-6), params.normal_y.w);
             /* Far below any honest weight: decides only if there is none. */
-            w += 1.0e-6 / ((1.0 + off * off) * (1.0 + dot(offset, offset)));
+            w += 1.0e-6 / (1.0 + off * off);
             vec4 v = texelFetch(half_image, at, 0);
             sum += w * (BENT_NORMALS ? v : v.xxxx);
             weights += w;

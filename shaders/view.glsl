@@ -4,7 +4,14 @@
 #ifndef VKAO_VIEW_GLSL_
 #define VKAO_VIEW_GLSL_
 
+#include "flags.glsl"
+
+#ifdef VKAO_BUFFERS
+#include "buffers.glsl"
+layout(binding = VKAO_BINDING_Z_TEXELS, r32f) uniform readonly imageBuffer view_z_texels;
+#else
 layout(binding = VKAO_BINDING_VIEW_Z, VKAO_VIEW_Z_FORMAT) uniform readonly image2D view_z_image;
+#endif
 layout(binding = VKAO_BINDING_NORMALS) uniform texture2D normals_image;
 
 ivec2 unpack_texel(uint packed_texel)
@@ -17,10 +24,28 @@ bool in_rect(ivec2 texel, uvec2 rect)
     return all(greaterThanEqual(texel, unpack_texel(rect.x))) && all(lessThan(texel, unpack_texel(rect.y)));
 }
 
-/* View z, 0 = background or outside the valid texels. */
+/* A texel of the valid ones or of the border around them. */
+float fetch_view_z(ivec2 texel)
+{
+#ifdef VKAO_BUFFERS
+    return imageLoad(view_z_texels, z_row(texel.y) + texel.x).x;
+#else
+    return imageLoad(view_z_image, texel + VKAO_VIEW_Z_BORDER).x;
+#endif
+}
+
+/* View z, 0 = background or outside the valid texels: prepare writes a border of zeros around them. */
 float load_view_z(ivec2 texel)
 {
-    return in_rect(texel, params.valid) ? imageLoad(view_z_image, texel).x : 0.0;
+    ivec2 low = unpack_texel(params.valid.x), high = unpack_texel(params.valid.y);
+    return fetch_view_z(clamp(texel, low - 1, high));
+}
+
+/* The same for any float that is an integer, however far out. */
+float load_view_z_at(vec2 texel)
+{
+    vec2 low = vec2(unpack_texel(params.valid.x) - 1), high = vec2(unpack_texel(params.valid.y));
+    return fetch_view_z(ivec2(clamp(texel, low, high)));
 }
 
 vec3 decode_octahedral(vec2 e)
@@ -45,11 +70,11 @@ vec3 decode_direction(vec3 n, uint encoding)
 }
 
 /* texel is the image's, also where the grid is coarser. */
-vec3 decode_normal(ivec2 texel, uint encoding)
+vec3 decode_normal(ivec2 texel)
 {
-    if (encoding == VKAO_GLSL_NORMALS_FROM_DEPTH)
+    if (normal_encoding() == VKAO_GLSL_NORMALS_FROM_DEPTH)
         return vec3(0.0);
-    return decode_direction(texelFetch(normals_image, texel, 0).xyz, encoding);
+    return decode_direction(texelFetch(normals_image, texel, 0).xyz, normal_encoding());
 }
 
 #ifdef VKAO_UNPROJECT
@@ -58,19 +83,19 @@ vec3 decode_normal(ivec2 texel, uint encoding)
 vec3 view_position(vec2 texel, float z)
 {
     vec2 xy = texel * params.unproject.xy + params.unproject.zw;
-    return vec3(params.orthographic != 0u ? xy : xy * z, z);
+    return vec3(orthographic() ? xy : xy * z, z);
 }
 
 vec2 project_to_texel(vec3 position)
 {
-    vec2 xy = params.orthographic != 0u ? position.xy : position.xy / position.z;
+    vec2 xy = orthographic() ? position.xy : position.xy / position.z;
     return (xy - params.unproject.zw) / params.unproject.xy;
 }
 
 /* Unit vector from the position to the eye. */
 vec3 direction_to_eye(vec3 position)
 {
-    return params.orthographic != 0u ? vec3(0.0, 0.0, -1.0) : -normalize(position);
+    return orthographic() ? vec3(0.0, 0.0, -1.0) : -normalize(position);
 }
 
 /* Surface tangent along one screen axis. Of the two neighbour pairs, the one whose straight continuation meets the
@@ -79,8 +104,8 @@ vec3 tangent_from_depth(ivec2 texel, ivec2 axis, vec3 center)
 {
     float near_side = load_view_z(texel - axis), far_side = load_view_z(texel + axis);
     vec4 z = vec4(load_view_z(texel - 2 * axis), near_side, far_side, load_view_z(texel + 2 * axis));
-    vec4 line = params.orthographic != 0u ? z : 1.0 / max(z, 1.0e-30);
-    float middle = params.orthographic != 0u ? center.z : 1.0 / center.z;
+    vec4 line = orthographic() ? z : 1.0 / max(z, 1.0e-30);
+    float middle = orthographic() ? center.z : 1.0 / center.z;
     /* Without a second neighbour the first one alone decides, by how far it is off. */
     float before = z.x > 0.0 ? abs(2.0 * line.y - line.x - middle) : abs(line.y - middle);
     float after = z.w > 0.0 ? abs(2.0 * line.z - line.w - middle) : abs(line.z - middle);
@@ -101,13 +126,15 @@ vec3 normal_from_depth(ivec2 texel, vec3 center)
 /* Stored directions to view space. */
 vec3 to_view(vec3 stored)
 {
+    if (flag(VKAO_FLAG_NORMALS_ALIGNED))
+        return vec3(params.normal_x.x, params.normal_y.y, params.normal_z.z) * stored;
     return vec3(dot(params.normal_x.xyz, stored), dot(params.normal_y.xyz, stored), dot(params.normal_z.xyz, stored));
 }
 
 /* Unit view-space normal that faces the eye, of a texel of the grid. */
 vec3 view_normal(ivec2 texel, vec3 center)
 {
-    vec3 stored = decode_normal(texel << params.grid_shift, VKAO_NORMAL_ENCODING);
+    vec3 stored = decode_normal(texel << grid_shift());
     vec3 n = to_view(stored);
     if (stored == vec3(0.0))
         n = normal_from_depth(texel, center);

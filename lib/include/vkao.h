@@ -106,6 +106,34 @@ typedef enum vkao_ssao_method {
 
 /* --- Context: one per VkDevice --- */
 
+typedef struct vkao_view vkao_view;
+typedef struct vkao_ssao_params vkao_ssao_params;
+typedef struct vkao_blur_params vkao_blur_params;
+
+/* In what the stages hand each other their results, where the caller has no image for them. The results are the same
+ * but for rounding below 1/1000. */
+typedef enum vkao_scratch_layout {
+    VKAO_SCRATCH_AUTO = 0,    /* BUFFERS on CPUs without half_view_z, else IMAGES */
+    VKAO_SCRATCH_IMAGES = 1,  /* caches of GPUs are made for them */
+    VKAO_SCRATCH_BUFFERS = 2, /* several texels per invocation; far faster on CPUs. Not with half_view_z */
+    VKAO_SCRATCH_LAYOUT_MAX_ENUM = 0x7fffffff
+} vkao_scratch_layout;
+
+/* Settings to compile pipelines for specially, loops unrolled and choices made: worth a factor of two on CPUs, little
+ * on GPUs. A recording uses them if all of this is the same: of the view the encodings, perspective or orthographic,
+ * which depth is far, and whether normal_to_view only turns axes round; of ssao the method, falloff, sphere_form and
+ * counts; of blur the radius, whether normal_power is 0, and whether intensity and power are both 1. All other members
+ * are free. A recording that fits no variant uses the general pipelines. */
+typedef struct vkao_variant {
+    uint32_t struct_size;
+    VkBool32 half_resolution; /* as in vkao_frame_info */
+    VkBool32 bent_normals;    /* VK_TRUE: for frames with images.bent_normals */
+    uint32_t reserved;        /* zero */
+    const vkao_view *view;
+    const vkao_ssao_params *ssao;
+    const vkao_blur_params *blur; /* NULL = no BLUR */
+} vkao_variant;
+
 /* Pipelines and layouts. Immutable once created; owns no device memory.
  * Thread-safety: any number of threads may use one context at once; destroying it is the exception. */
 typedef struct vkao_context vkao_context;
@@ -142,7 +170,12 @@ typedef struct vkao_context_info {
      * sees, and details of less than 1/1000 of their distance get lost. Needs shaderStorageImageExtendedFormats among
      * enabled_features. Default: 32-bit floats */
     VkBool32 half_view_z;
-    uint32_t reserved; /* zero */
+    uint32_t variant_count;
+    const vkao_variant *variants; /* variant_count of them, or NULL; read during vkao_context_create only */
+    /* VK_TRUE: compile nothing but the variants and COMPOSITE, for the shortest start. Recording SSAO or BLUR with
+     * other settings is then an error. */
+    VkBool32 variants_only;
+    vkao_scratch_layout scratch_layout; /* Default AUTO */
 } vkao_context_info;
 
 /* Sets the members that vkao needs to VK_TRUE, leaves the others alone. Call before vkCreateDevice. */
@@ -269,7 +302,7 @@ typedef enum vkao_view_axis {
 
 /* Texels at or beyond the far plane, not in front of the camera, or not finite are background: AO = 1, and
  * they occlude nothing. */
-typedef struct vkao_view {
+struct vkao_view {
     uint32_t struct_size;
     vkao_depth_encoding depth_encoding;
     vkao_normal_encoding normal_encoding;
@@ -293,7 +326,7 @@ typedef struct vkao_view {
     /* Of images.bent_normals. 0 = as normal_encoding, or XYZ_SNORM if that is FROM_DEPTH. */
     vkao_normal_encoding bent_encoding;
     uint32_t reserved_too; /* zero */
-} vkao_view;
+};
 
 static inline vkao_view vkao_view_default(void)
 {
@@ -323,7 +356,7 @@ typedef enum vkao_sphere_form {
     VKAO_SPHERE_FORM_MAX_ENUM = 0x7fffffff
 } vkao_sphere_form;
 
-typedef struct vkao_ssao_params {
+struct vkao_ssao_params {
     uint32_t struct_size;
     vkao_ssao_method method;
     vkao_falloff falloff;
@@ -344,7 +377,7 @@ typedef struct vkao_ssao_params {
      * from .12 radius by .60 of the distance to the side. 0 = 1. Default 1 */
     float thickness;
     uint32_t reserved_too; /* zero */
-} vkao_ssao_params;
+};
 
 static inline vkao_ssao_params vkao_ssao_params_default(void)
 {
@@ -366,7 +399,7 @@ static inline vkao_ssao_params vkao_ssao_params_default(void)
  * surface that the local depth slope continues, and the more their normal turns away. It also ends the chain:
  * intensity and power belong here because they are right only after the noise is gone. radius 0 applies
  * intensity and power alone. */
-typedef struct vkao_blur_params {
+struct vkao_blur_params {
     uint32_t struct_size;
     uint32_t radius; /* [0,16] texels on each side. Default 4 */
     /* [0,10000] edge stopping: a tap whose view z is off the continued slope by more than 1 / sharpness of its own
@@ -378,7 +411,7 @@ typedef struct vkao_blur_params {
     float intensity;   /* [0,8] scale of occlusion: 1 - intensity * (1 - visibility), clamped. Default 1: physical */
     float power;       /* (0,8] exponent on visibility, after intensity. Default 1: physical */
     uint32_t reserved; /* zero */
-} vkao_blur_params;
+};
 
 static inline vkao_blur_params vkao_blur_params_default(void)
 {

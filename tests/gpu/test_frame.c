@@ -110,6 +110,7 @@ static void valid_part_equals_a_cropped_image(void **state)
     const struct scene scene = scene_corner();
     struct lens lens = lens_perspective(0.6, 0.45);
     make(&large);
+    large.formats[SLOT_NOISY] = VK_FORMAT_UNDEFINED;
     large.view.valid = (VkRect2D){{0, 0}, {52, 39}};
     picture_render_scene(&large, &scene, &lens, VK_FORMAT_R32_SFLOAT,
                          VK_FORMAT_R32G32B32A32_SFLOAT);
@@ -201,7 +202,8 @@ static void stage_by_stage_equals_all(void **state)
     picture_free(&stages);
 }
 
-/* The images that one stage hands to the next may be scratch. */
+/* The images that one stage hands to the next may be scratch, which a CPU keeps in buffers: a byte
+ * per texel of noisy AO, so a hundredth of it, is rounded before the blur takes its mean. */
 static void scratch_images_give_the_same_output(void **state)
 {
     (void)state;
@@ -212,8 +214,8 @@ static void scratch_images_give_the_same_output(void **state)
     scratch.formats[SLOT_AO] = scratch.formats[SLOT_NOISY] = VK_FORMAT_UNDEFINED;
     picture_run(&own);
     picture_run(&scratch);
-    check_equal("output", scratch.values[SLOT_OUTPUT], own.values[SLOT_OUTPUT],
-                picture_texels(&own) * 4);
+    check_close("output", scratch.values[SLOT_OUTPUT], own.values[SLOT_OUTPUT],
+                picture_texels(&own) * 4, 5e-4, 3e-3);
     picture_free(&own);
     picture_free(&scratch);
 }

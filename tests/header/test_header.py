@@ -58,7 +58,7 @@ def defaults_are_those_the_comments_state():
     """'Default N' in a field's comment is what *_default() gives it, and every number has one."""
     checked = 0
     for name, body in default_functions():
-        struct = re.search(rf"typedef struct {name} \{{(.*?)\n\}} {name};", HEADER, re.S).group(1)
+        struct = re.search(rf"struct {name} \{{(.*?)\n\}}(?: {name})?;", HEADER, re.S).group(1)
         stated = {}
         # A field is documented behind it on its line, or in the comment before it.
         comment = r"(/\*(?:(?!\*/).)*\*/)?"

@@ -16,13 +16,16 @@ static double visibility(const struct ref_scene *scene, const vkao_ssao_params *
     for (uint32_t i = 0; i < 2 * params->slice_count; ++i) {
         struct ref_slice slice;
         struct ref_sample sample;
+        const double side = i % 2 ? -1.0 : 1.0;
         double horizon = asin((double)params->bias);
         ref_slice_init(&slice, scene, params, x, y, p, n, i / 2);
         for (uint32_t t = 0; t < params->step_count; ++t) {
-            if (!ref_slice_sample(&slice, i % 2 ? -1.0 : 1.0, t, (double)params->radius, &sample))
+            if (!ref_slice_sample(&slice, side, t, (double)params->radius, &sample))
                 continue;
-            double elevation =
-                asin(fmax(-1.0, fmin(1.0, (ref_dot(n, sample.v) - slice.guard) / sample.distance)));
+            /* Over the tangent plane, of the point that the sample is taken to be. */
+            double height = slice.length *
+                            (side * sin(slice.angle) * sample.out + cos(slice.angle) * sample.up);
+            double elevation = asin(fmax(-1.0, fmin(1.0, height / sample.distance)));
             double weight = ref_falloff(params, sample.distance);
             if (weight > 0.0 && elevation > horizon) {
                 occluded += weight * (sin(elevation) - sin(horizon));

@@ -30,7 +30,7 @@ void ref_slice_turn(struct ref_slice *slice, double angle);
 struct ref_sample {
     double v[3];     /* from the shaded point */
     double out, up;  /* in the slice, out on that side */
-    double distance; /* |v| */
+    double distance; /* of that point: hypot(out, up) */
 };
 /* reach in scene units. False where nothing is known. */
 bool ref_slice_sample(const struct ref_slice *slice, double side, uint32_t step, double reach,

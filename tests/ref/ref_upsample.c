@@ -78,26 +78,24 @@ static double normal_weight(const struct upsample *u, int x, int y, int other_x,
     return pow(fmax(0.0, ref_dot(a, b)), (double)u->params->normal_power);
 }
 
-/* Bilinear weight * max(0, 1 - off) * max(0, n.n')^power over the neighbours, off being how far a
+/* Of the one, two or four neighbours that bilinear weights leave, all alike, the mean by max(0, 1 - off) * max(0, n.n')^power over the neighbours, off being how far a
  * neighbour's depth is from the plane that the slopes continue, in units of depth / sharpness. A
- * ghost of a weight for all sixteen around decides where those are all 0: it falls with off and
- * with the distance. */
+ * ghost of a weight, which falls with off, decides where those are all 0. */
 static double upsampled(const struct upsample *u, const double *value, int x, int y)
 {
     double z = ref_scene_z(u->full, x, y), sum = 0.0, weights = 0.0;
     double sx = slope(u->full, x, y, 1, 0), sy = slope(u->full, x, y, 0, 1);
     double scale = (double)u->params->sharpness / (u->full->view.orthographic ? u->width : z);
-    for (int j = y / 2 - 1; j <= y / 2 + 2; ++j) {
-        for (int i = x / 2 - 1; i <= x / 2 + 2; ++i) {
+    for (int j = y / 2; j <= (y + 1) / 2; ++j) {
+        for (int i = x / 2; i <= (x + 1) / 2; ++i) {
             double other = ref_scene_z(u->half, i, j);
             if (isnan(other))
                 continue;
             double dx = 2.0 * i - x, dy = 2.0 * j - y;
             double off = scale * fabs(other - z - sx * dx - sy * dy);
-            double w = fmax(0.0, 1.0 - fabs(dx) / 2.0) * fmax(0.0, 1.0 - fabs(dy) / 2.0) *
-                       fmax(0.0, 1.0 - off);
+            double w = fmax(0.0, 1.0 - off);
             w *= normal_weight(u, x, y, 2 * i, 2 * j);
-            w += 1.0e-6 / ((1.0 + off * off) * (1.0 + dx * dx + dy * dy));
+            w += 1.0e-6 / (1.0 + off * off);
             sum += w * value[(size_t)j * u->half->width + (size_t)i];
             weights += w;
         }

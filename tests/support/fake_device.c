@@ -154,6 +154,21 @@ FAKE_CREATE(ImageView, IMAGE_VIEW, {
         fake_misuse(fake, "vkCreateImageView: not the image's format");
 })
 FAKE_DESTROY(ImageView, IMAGE_VIEW)
+FAKE_CREATE(Buffer, BUFFER, {
+    call->size = object->bytes = info->size;
+    object->usage = info->usage;
+})
+FAKE_DESTROY(Buffer, BUFFER)
+FAKE_CREATE(BufferView, BUFFER_VIEW, {
+    const struct fake_object *buffer =
+        use(fake, call->name, VK_OBJECT_TYPE_BUFFER, number(info->buffer));
+    object->parent = number(info->buffer);
+    if (buffer && !buffer->memory)
+        fake_misuse(fake, "vkCreateBufferView: the buffer has no memory");
+    if (buffer && (!info->range || info->offset + info->range > buffer->bytes))
+        fake_misuse(fake, "vkCreateBufferView: beyond the buffer");
+})
+FAKE_DESTROY(BufferView, BUFFER_VIEW)
 FAKE_DESTROY(Pipeline, PIPELINE)
 
 static VKAPI_ATTR VkResult VKAPI_CALL fake_CreateComputePipelines(
@@ -203,6 +218,18 @@ static VKAPI_ATTR void VKAPI_CALL fake_UpdateDescriptorSets(
     for (uint32_t i = 0; i < count && i < FAKE_WRITES; ++i) {
         struct fake_object *set = use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET,
                                       number(writes[i].dstSet));
+        if (writes[i].descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER) {
+            const VkDescriptorBufferInfo *info = writes[i].pBufferInfo;
+            const struct fake_object *buffer =
+                use(fake, call->name, VK_OBJECT_TYPE_BUFFER, number(info->buffer));
+            if (buffer && (!info->range || info->offset + info->range > buffer->bytes))
+                fake_misuse(fake, "vkUpdateDescriptorSets: beyond the buffer");
+            continue;
+        }
+        if (writes[i].descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER) {
+            use(fake, call->name, VK_OBJECT_TYPE_BUFFER_VIEW, number(writes[i].pTexelBufferView[0]));
+            continue;
+        }
         uint64_t view = number(writes[i].pImageInfo->imageView);
         use(fake, call->name, VK_OBJECT_TYPE_IMAGE_VIEW, view);
         if (set && writes[i].dstBinding < FAKE_WRITES)
@@ -228,6 +255,42 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetImageMemoryRequirements(VkDevice devic
         .alignment = fake->image_alignment,
         .memoryTypeBits = fake->image_type_bits,
     };
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_GetBufferMemoryRequirements(VkDevice device, VkBuffer buffer,
+                                                                   VkMemoryRequirements *out)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    fake_note(fake, "vkGetBufferMemoryRequirements")->handle = number(buffer);
+    const struct fake_object *object = use(fake, "vkGetBufferMemoryRequirements",
+                                           VK_OBJECT_TYPE_BUFFER, number(buffer));
+    *out = (VkMemoryRequirements){
+        .size = object ? object->bytes : 0,
+        .alignment = fake->image_alignment,
+        .memoryTypeBits = fake->image_type_bits,
+    };
+}
+
+static VKAPI_ATTR VkResult VKAPI_CALL fake_BindBufferMemory(VkDevice device, VkBuffer buffer,
+                                                            VkDeviceMemory memory,
+                                                            VkDeviceSize offset)
+{
+    struct fake_vulkan *fake = fake_of(device);
+    struct fake_call *call = fake_note(fake, "vkBindBufferMemory");
+    if (fails(fake, call->name))
+        return fake->fail_result;
+    struct fake_object *object = use(fake, call->name, VK_OBJECT_TYPE_BUFFER, number(buffer));
+    use(fake, call->name, VK_OBJECT_TYPE_DEVICE_MEMORY, number(memory));
+    if (offset % fake->image_alignment)
+        fake_misuse(fake, "vkBindBufferMemory: offset %llu", (unsigned long long)offset);
+    if (object && object->memory)
+        fake_misuse(fake, "vkBindBufferMemory: the buffer has memory");
+    if (object)
+        object->memory = number(memory);
+    call->handle = number(buffer);
+    call->memory = number(memory);
+    call->offset = offset;
+    return VK_SUCCESS;
 }
 
 static VKAPI_ATTR VkResult VKAPI_CALL fake_AllocateMemory(VkDevice device,
@@ -402,6 +465,9 @@ const struct fake_entry fake_device_functions[FAKE_DEVICE_FUNCTIONS] = {
     ENTRY(GetImageMemoryRequirements), ENTRY(AllocateMemory),
     ENTRY(FreeMemory),                ENTRY(BindImageMemory),
     ENTRY(CreateImageView),           ENTRY(DestroyImageView),
+    ENTRY(CreateBuffer),              ENTRY(DestroyBuffer),
+    ENTRY(GetBufferMemoryRequirements), ENTRY(BindBufferMemory),
+    ENTRY(CreateBufferView),          ENTRY(DestroyBufferView),
     ENTRY(CmdPipelineBarrier),        ENTRY(CmdBindPipeline),
     ENTRY(CmdBindDescriptorSets),     ENTRY(CmdPushConstants),
     ENTRY(CmdDispatch),

@@ -7,7 +7,7 @@
 
 #include "fake_vulkan.h"
 
-enum { FAKE_DEBUG_FUNCTIONS = 3, FAKE_DEVICE_FUNCTIONS = 25 };
+enum { FAKE_DEBUG_FUNCTIONS = 3, FAKE_DEVICE_FUNCTIONS = 31 };
 
 struct fake_entry {
     const char *name;

@@ -55,7 +55,11 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetPhysicalDeviceProperties(VkPhysicalDev
     *out = (VkPhysicalDeviceProperties){
         .apiVersion = fake->api_version,
         .deviceName = "fake",
-        .limits = {.maxImageDimension2D = fake->max_dimension, .maxPushConstantsSize = 128},
+        .deviceType = fake->device_type,
+        .limits = {.maxImageDimension2D = fake->max_dimension,
+                   .maxPushConstantsSize = 128,
+                   .maxTexelBufferElements = UINT32_C(1) << 27,
+                   .maxStorageBufferRange = UINT32_C(1) << 27},
     };
 }
 
@@ -74,7 +78,10 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetPhysicalDeviceFormatProperties(VkPhysi
     const VkFormatFeatureFlags all = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT |
                                      VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
     fake_note(fake_of(device), "vkGetPhysicalDeviceFormatProperties");
-    *out = (VkFormatProperties){.optimalTilingFeatures = all, .linearTilingFeatures = all};
+    *out = (VkFormatProperties){.optimalTilingFeatures = all,
+                                .linearTilingFeatures = all,
+                                .bufferFeatures =
+                                    VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT};
     for (size_t i = 0; i < fake->format_count; ++i) {
         if (fake->formats[i].format == format) {
             out->optimalTilingFeatures = fake->formats[i].optimal;

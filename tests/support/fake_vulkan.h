@@ -14,7 +14,7 @@ enum {
     FAKE_OBJECTS = 4096,
     FAKE_CALLS = 2048,
     FAKE_BARRIERS = 8,
-    FAKE_WRITES = 16,
+    FAKE_WRITES = 22,
     FAKE_PUSH_BYTES = 128,
     FAKE_FORMATS = 8,
     FAKE_NAMES = 64
@@ -62,7 +62,9 @@ struct fake_object {
     bool alive, of_caller;
     const VkAllocationCallbacks *allocator;
     void *host; /* what the driver holds through the callbacks */
-    uint64_t parent; /* image of a view, pool of a set */
+    uint64_t parent; /* image or buffer of a view, pool of a set */
+    VkDeviceSize bytes; /* of a buffer */
+    VkBufferUsageFlags usage;
     VkImageCreateInfo image;
     uint64_t memory; /* bound to an image */
     uint64_t views[FAKE_WRITES]; /* descriptors of a set, by binding */
@@ -74,6 +76,7 @@ struct fake_vulkan {
 
     /* Told by the test. fake_init sets a capable device. */
     uint32_t api_version, max_dimension;
+    VkPhysicalDeviceType device_type;
     VkPhysicalDeviceMemoryProperties memory;
     VkDeviceSize image_alignment;
     uint32_t image_type_bits;

@@ -32,14 +32,14 @@ static struct use use_of(const struct world *w, uint64_t pipeline)
 {
     const bool bent = w->frame_info.images->bent_normals.format;
     for (size_t i = 0; i < PIPELINE_COUNT * 2; ++i) {
-        if ((uint64_t)w->ctx->pipelines[i / 2][i % 2] != pipeline)
+        if ((uint64_t)w->ctx->pipelines.general[i / 2][i % 2] != pipeline)
             continue;
         struct use use = uses[i / 2 < PIPELINE_SSAO ? i / 2 : PIPELINE_SSAO];
         if (i / 2 == PIPELINE_BLUR_Y && w->frame_info.half_resolution)
             use.writes = BIT(NOISY_WRITE);
         if (i % 2 && (use.writes & BIT(AO_WRITE)))
             use.writes |= BIT(BENT_WRITE);
-        const bool has_both = w->ctx->pipelines[i / 2][1];
+        const bool has_both = w->ctx->pipelines.general[i / 2][1];
         assert_int_equal(i % 2, has_both && bent && (w->frame_info.stages & VKAO_STAGE_BLUR));
         return use;
     }
@@ -256,14 +256,14 @@ static void only_prepare_changes_layouts(void **state)
     world_close(&w);
 }
 
-/* Groups cover the rect and not one more; the rect that shaders test is the rect itself. */
-static void check_cover(const struct world *w, size_t index, struct vkao_rect want,
+/* Groups cover the rect and a border, and not one more; the rect that shaders test is the rect itself. */
+static void check_cover(const struct world *w, size_t index, struct vkao_rect want, uint32_t border,
                         size_t rect_offset)
 {
     const struct fake_call *dispatch = fake_nth(&w->fake, "vkCmdDispatch", index);
     const struct fake_call *push = fake_nth(&w->fake, "vkCmdPushConstants", index);
     assert_non_null(dispatch);
-    const uint32_t width = want.x1 - want.x0, height = want.y1 - want.y0;
+    const uint32_t width = want.x1 - want.x0 + 2 * border, height = want.y1 - want.y0 + 2 * border;
     assert_true(dispatch->groups[0] * VKAO_GROUP_WIDTH >= width);
     assert_true((dispatch->groups[0] - 1) * VKAO_GROUP_WIDTH < width);
     assert_true(dispatch->groups[1] * VKAO_GROUP_HEIGHT >= height);
@@ -326,11 +326,12 @@ static void dispatch_covers_the_rect_exactly(void **state)
         w.view.valid = cases[i].valid;
         w.view.rect = cases[i].rect;
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
-        check_cover(&w, 0, cases[i].prepare, offsetof(struct vkao_prepare_block, valid));
-        check_cover(&w, 1, cases[i].ssao, offsetof(struct vkao_ssao_block, rect));
-        check_cover(&w, 2, cases[i].blur_x, offsetof(struct vkao_blur_block, rect));
-        check_cover(&w, 3, cases[i].rest, offsetof(struct vkao_blur_block, rect));
-        check_cover(&w, 4, cases[i].rest, offsetof(struct vkao_composite_block, rect));
+        check_cover(&w, 0, cases[i].prepare, VKAO_VIEW_Z_BORDER,
+                    offsetof(struct vkao_prepare_block, valid));
+        check_cover(&w, 1, cases[i].ssao, 0, offsetof(struct vkao_ssao_block, rect));
+        check_cover(&w, 2, cases[i].blur_x, 0, offsetof(struct vkao_blur_block, rect));
+        check_cover(&w, 3, cases[i].rest, 0, offsetof(struct vkao_blur_block, rect));
+        check_cover(&w, 4, cases[i].rest, 0, offsetof(struct vkao_composite_block, rect));
         world_close(&w);
     }
 }

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Pipelines of a context: for each stage a general one, and those of the variants that the caller named. */
+#ifndef VKAO_PIPELINE_H_
+#define VKAO_PIPELINE_H_
+
+#include "view.h"
+#include "vk.h"
+
+#define VKAO_METHOD_COUNT 6
+
+enum pipeline {
+    PIPELINE_PREPARE,
+    PIPELINE_BLUR_X,
+    PIPELINE_BLUR_Y,
+    PIPELINE_UPSAMPLE,
+    PIPELINE_PACKED_BLUR_X, /* the same for AO in buffers */
+    PIPELINE_PACKED_BLUR_Y,
+    PIPELINE_PACKED_UPSAMPLE,
+    PIPELINE_COMPOSITE,
+    PIPELINE_DEBUG,
+    PIPELINE_SSAO, /* + vkao_ssao_method */
+    PIPELINE_COUNT = PIPELINE_SSAO + VKAO_METHOD_COUNT
+};
+
+/* What a pipeline is compiled for: specialization constants VKAO_CONSTANT_FLAGS and those after it, in their order.
+ * Zero counts and VKAO_FLAGS_UNKNOWN are left to the push constants. */
+struct pipeline_key {
+    uint32_t flags, slices, steps, samples, radius;
+};
+
+struct pipeline_variant {
+    enum pipeline which;
+    VkBool32 bent;
+    struct pipeline_key key;
+    VkPipeline pipeline;
+};
+
+struct pipelines {
+    /* [1] also computes bent normals. Null for methods that were not asked for, or know no bent normals. */
+    VkPipeline general[PIPELINE_COUNT][2];
+    struct pipeline_variant *variants;
+    uint32_t variant_count;
+};
+
+/* Creates what the info asks for; info is checked. On failure the rest is for pipelines_destroy. */
+vkao_result pipelines_create(vkao_context *ctx, const vkao_context_info *info);
+void pipelines_destroy(vkao_context *ctx);
+
+/* The variant for exactly this key, else the general pipeline; VK_NULL_HANDLE if there is none. */
+VkPipeline pipeline_find(const vkao_context *ctx, enum pipeline which, bool bent,
+                         struct pipeline_key key);
+
+/* What a pipeline of that stage is told of a recording. */
+struct pipeline_key pipeline_key(enum pipeline which, uint32_t flags, const vkao_ssao_params *ssao,
+                                 const vkao_blur_params *blur);
+/* Flags of shaders/params.h, of a view on the grid that the stages run on. ssao and blur may be NULL. */
+uint32_t recording_flags(const struct view_constants *grid, bool packed,
+                         const vkao_ssao_params *ssao, const vkao_blur_params *blur);
+/* Texels of one invocation. */
+VkExtent2D pipeline_texels(const vkao_context *ctx, enum pipeline which);
+
+#endif

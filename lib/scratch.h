@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a frame needs between its stages, in one block of device memory: images, or for CPUs a buffer in their place
+ * (shaders/params.h says how texels lie in it). */
+#ifndef VKAO_SCRATCH_H_
+#define VKAO_SCRATCH_H_
+
+#include "vk.h"
+
+enum scratch_slot {
+    SCRATCH_VIEW_Z,
+    SCRATCH_NOISY,   /* if the SSAO stage feeds BLUR and the caller gave no ao_noisy */
+    SCRATCH_HALFWAY, /* between the two directions of the blur */
+    SCRATCH_AO,      /* if COMPOSITE reads AO and the caller gave no ao */
+    SCRATCH_COUNT
+};
+
+struct scratch_image {
+    VkFormat format; /* UNDEFINED = not needed */
+    VkExtent2D extent;
+    VkImage image;
+    VkImageView view;
+    VkDeviceSize offset;
+};
+
+enum scratch_part { PART_VIEW_Z, PART_PACKED, PART_HALFWAY, PART_BLURRED, PART_COUNT };
+
+struct scratch_buffer {
+    uint32_t stride; /* texels in a row */
+    struct {
+        VkDeviceSize offset, bytes; /* in the buffer; 0 bytes = not needed */
+    } parts[PART_COUNT];
+    VkDeviceSize bytes; /* 0 = not needed */
+    VkBuffer buffer;
+    VkBufferView views[PART_COUNT]; /* as texels: PART_VIEW_Z and PART_PACKED */
+    VkDeviceSize offset;            /* in the memory */
+};
+
+struct scratch {
+    struct scratch_image images[SCRATCH_COUNT];
+    struct scratch_buffer buffer;
+};
+
+/* Creates what a checked frame needs, unbound, and lays it out in one block. On failure the rest is for
+ * scratch_destroy. */
+vkao_result scratch_create(const vkao_frame *frame, struct scratch *scratch,
+                           VkMemoryRequirements *out);
+vkao_result scratch_bind(const vkao_context *ctx, struct scratch *scratch, VkDeviceMemory memory,
+                         VkDeviceSize offset);
+void scratch_destroy(const vkao_context *ctx, struct scratch *scratch);
+
+#endif

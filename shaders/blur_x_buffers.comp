@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * blur.comp, horizontally, from packed noisy AO to the ring: VKAO_BLUR_X_WIDTH texels of a row per invocation, from one
+ * window of them and their neighbours. */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_samplerless_texture_functions : require
+#define VKAO_GLSL
+#include "params.h"
+
+layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
+layout(push_constant) uniform Block { vkao_blur_block params; };
+layout(binding = VKAO_BINDING_Z_WORDS) readonly buffer ViewZ { vec4 view_z[]; };
+layout(binding = VKAO_BINDING_PACKED_WORDS) readonly buffer Packed { uint packed_ao[]; };
+layout(binding = VKAO_BINDING_HALFWAY_WORDS) writeonly buffer Halfway { uint halfway[]; };
+#include "view.glsl"
+#include "blur_window.glsl"
+
+const int REACH = (RADIUS + 3) & ~3; /* windows begin and end at whole words */
+const int WINDOW = VKAO_BLUR_X_WIDTH + 2 * REACH;
+
+float fetch_code(ivec2 texel)
+{
+    int i = buffer_row(texel.y) + texel.x;
+    return float(int(packed_ao[i >> 2] >> ((i & 3) << 3)) & 255);
+}
+
+/* For any radius, tap by tap. */
+float blurred_slowly(ivec2 texel)
+{
+    int radius = int(params.radius);
+    float z = surface_z(fetch_view_z(texel)), edge = edge_stop(z, params.sharpness, params.reference_z);
+    float slope = local_slope(surface_z(load_view_z(texel - ivec2(1, 0))), z,
+                              surface_z(load_view_z(texel + ivec2(1, 0))));
+    bool use_normals = flag(VKAO_FLAG_BLUR_NORMALS);
+    vec4 normal = use_normals ? window_normal(texel) : vec4(0.0);
+    float sum = fetch_code(texel), weights = 1.0;
+    for (int k = -radius; k <= radius; ++k) {
+        ivec2 at = texel + ivec2(k, 0);
+        float w = tap_weight(k, gaussian(k, max(radius, 1)), z, slope, edge, surface_z(load_view_z(at)));
+        w = k == 0 ? 0.0 : use_normals ? w * normal_weight(normal, window_normal(at), params.normal_power) : w;
+        sum += w * fetch_code(at);
+        weights += w;
+    }
+    return sum / weights;
+}
+
+void blur_window(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
+{
+    float z[WINDOW], code[WINDOW];
+    vec4 normal[WINDOW];
+    bool use_normals = flag(VKAO_FLAG_BLUR_NORMALS);
+    int z_word = (z_row(texel.y) + texel.x - REACH) >> 2, code_word = (buffer_row(texel.y) + texel.x - REACH) >> 2;
+    [[unroll]] for (int j = 0; j < WINDOW / 4; ++j) {
+        vec4 z4 = view_z[z_word + j];
+        int word = int(packed_ao[code_word + j]);
+        [[unroll]] for (int i = 0; i < 4; ++i) {
+            z[4 * j + i] = surface_z(z4[i]);
+            code[4 * j + i] = float((word >> (8 * i)) & 255);
+            if (use_normals)
+                normal[4 * j + i] = window_normal(texel + ivec2(4 * j + i - REACH, 0));
+        }
+    }
+    [[unroll]] for (int i = 0; i < VKAO_BLUR_X_WIDTH; ++i) {
+        int c = REACH + i;
+        float slope = local_slope(z[c - 1], z[c], z[c + 1]), edge = edge_stop(z[c], params.sharpness, params.reference_z);
+        float sum = code[c], weights = 1.0;
+        [[unroll]] for (int k = -RADIUS; k <= RADIUS; ++k) {
+            if (k == 0)
+                continue;
+            float w = tap_weight(k, gaussian(k, RADIUS), z[c], slope, edge, z[c + k]);
+            if (use_normals)
+                w *= normal_weight(normal[c], normal[c + k], params.normal_power);
+            sum += w * code[c + k];
+            weights += w;
+        }
+        result[i] = sum / weights;
+    }
+}
+
+void main()
+{
+    ivec2 low = unpack_texel(params.rect.x), high = unpack_texel(params.rect.y);
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) * ivec2(VKAO_BLUR_X_WIDTH, 1);
+    texel += ivec2(round_down(low.x, VKAO_BLUR_X_WIDTH), low.y);
+    if (any(greaterThanEqual(texel, high)))
+        return;
+    float result[VKAO_BLUR_X_WIDTH];
+    if (RADIUS != 0) {
+        blur_window(texel, result);
+    } else {
+        for (int i = 0; i < VKAO_BLUR_X_WIDTH; ++i)
+            result[i] = blurred_slowly(texel + ivec2(i, 0));
+    }
+    int word = (ring_row(texel.y) * int(params.stride) + VKAO_BUFFER_PAD + texel.x) >> 1;
+    [[unroll]] for (int i = 0; i < VKAO_BLUR_X_WIDTH / 2; ++i) {
+        ivec2 fine = ivec2(vec2(result[2 * i], result[2 * i + 1]) * VKAO_CODE_FINE + 0.5);
+        halfway[word + i] = uint(fine.x | fine.y << 16);
+    }
+}

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * blur.comp, vertically, from the ring to the AO image, or at half resolution to the buffer that upsampling reads:
+ * VKAO_BLUR_Y_WIDTH columns of VKAO_BLUR_Y_HEIGHT rows per invocation. */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_samplerless_texture_functions : require
+#define VKAO_GLSL
+#include "params.h"
+
+layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
+layout(push_constant) uniform Block { vkao_blur_block params; };
+layout(binding = VKAO_BINDING_Z_WORDS) readonly buffer ViewZ { vec4 view_z[]; };
+layout(binding = VKAO_BINDING_HALFWAY_WORDS) readonly buffer Halfway { uvec2 halfway[]; };
+layout(binding = VKAO_BINDING_BLURRED_WORDS) writeonly buffer Blurred { uvec2 blurred_ao[]; };
+#include "view.glsl"
+#include "blur_window.glsl"
+#include "finish.glsl"
+
+const int WINDOW = VKAO_BLUR_Y_HEIGHT + 2 * RADIUS;
+
+vec4 load_z(ivec2 texel)
+{
+    int low = int(params.valid.x >> 16), high = int(params.valid.y >> 16);
+    vec4 z = view_z[(z_row(clamp(texel.y, low - 1, high)) + texel.x) >> 2];
+    return mix(vec4(BACKGROUND_Z), z, greaterThan(z, vec4(0.0)));
+}
+
+/* Relative to what is open. */
+vec4 load_codes(ivec2 texel)
+{
+    ivec2 word = ivec2(halfway[(ring_row(texel.y) * int(params.stride) + VKAO_BUFFER_PAD + texel.x) >> 2]);
+    return vec4(ivec4(word.x & 0xffff, (word.x >> 16) & 0xffff, word.y & 0xffff, (word.y >> 16) & 0xffff) -
+                VKAO_CODE_OPEN);
+}
+
+vec4 tap_weights(int k, int radius, vec4 z, vec4 slope, vec4 edge, vec4 tap_z)
+{
+    return gaussian(k, radius) * max(vec4(0.0), 1.0 - edge * abs(tap_z - z - slope * float(k)));
+}
+
+vec4 normal_weights(ivec2 texel, ivec2 tap)
+{
+    vec4 w;
+    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i)
+        w[i] = normal_weight(window_normal(texel + ivec2(i, 0)), window_normal(tap + ivec2(i, 0)), params.normal_power);
+    return w;
+}
+
+struct Column {
+    vec4 z, slope, edge;
+};
+
+Column make_column(vec4 before, vec4 z, vec4 after)
+{
+    Column c;
+    c.z = z;
+    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) {
+        c.slope[i] = local_slope(before[i], z[i], after[i]);
+        c.edge[i] = edge_stop(z[i], params.sharpness, params.reference_z);
+    }
+    return c;
+}
+
+/* For any radius, tap by tap. */
+vec4 blurred_slowly(ivec2 texel)
+{
+    int radius = int(params.radius);
+    Column c = make_column(load_z(texel - ivec2(0, 1)), load_z(texel), load_z(texel + ivec2(0, 1)));
+    vec4 sum = load_codes(texel), weights = vec4(1.0);
+    for (int k = -radius; k <= radius; ++k) {
+        ivec2 at = texel + ivec2(0, k);
+        vec4 w = tap_weights(k, max(radius, 1), c.z, c.slope, c.edge, load_z(at));
+        w = k == 0 ? vec4(0.0) : flag(VKAO_FLAG_BLUR_NORMALS) ? w * normal_weights(texel, at) : w;
+        /* Rows beyond the valid ones are not in the ring; they weigh nothing, but no number times nothing is. */
+        sum += mix(vec4(0.0), w * load_codes(at), greaterThan(w, vec4(0.0)));
+        weights += w;
+    }
+    return sum / weights;
+}
+
+/* Four texels of a row. */
+void put(ivec2 texel, vec4 z, vec4 fine)
+{
+    ivec2 low = unpack_texel(params.rect.x), high = unpack_texel(params.rect.y);
+    if (flag(VKAO_FLAG_HALF_RESOLUTION)) {
+        ivec4 v = ivec4(fine + (float(VKAO_CODE_OPEN) + 0.5));
+        if (texel.y < high.y)
+            blurred_ao[(buffer_row(texel.y) + texel.x) >> 2] = uvec2(v.xz | v.yw << 16);
+        return;
+    }
+    vec4 ao = fine * (1.0 / (VKAO_CODE_SCALE * VKAO_CODE_FINE)) + 1.0;
+    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) {
+        int x = texel.x + i;
+        if (x >= low.x && x < high.x && texel.y < high.y)
+            finish(ivec2(x, texel.y), vec4(0.0, 0.0, 0.0, ao[i]), z[i] >= BACKGROUND_Z);
+    }
+}
+
+void blur_window(ivec2 texel)
+{
+    vec4 z[WINDOW], fine[WINDOW], normal[WINDOW * VKAO_BLUR_Y_WIDTH];
+    bool use_normals = flag(VKAO_FLAG_BLUR_NORMALS);
+    [[unroll]] for (int j = 0; j < WINDOW; ++j) {
+        ivec2 at = texel + ivec2(0, j - RADIUS);
+        z[j] = load_z(at);
+        fine[j] = load_codes(at);
+        [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i)
+            if (use_normals)
+                normal[VKAO_BLUR_Y_WIDTH * j + i] = window_normal(at + ivec2(i, 0));
+    }
+    [[unroll]] for (int row = 0; row < VKAO_BLUR_Y_HEIGHT; ++row) {
+        int c = RADIUS + row;
+        Column column = make_column(z[c - 1], z[c], z[c + 1]);
+        vec4 sum = fine[c], weights = vec4(1.0);
+        [[unroll]] for (int k = -RADIUS; k <= RADIUS; ++k) {
+            if (k == 0)
+                continue;
+            vec4 w = tap_weights(k, RADIUS, z[c], column.slope, column.edge, z[c + k]);
+            [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i)
+                if (use_normals)
+                    w[i] *= normal_weight(normal[VKAO_BLUR_Y_WIDTH * c + i], normal[VKAO_BLUR_Y_WIDTH * (c + k) + i],
+                                          params.normal_power);
+            sum += w * fine[c + k];
+            weights += w;
+        }
+        put(texel + ivec2(0, row), z[c], sum / weights);
+    }
+}
+
+void main()
+{
+    ivec2 low = unpack_texel(params.rect.x), high = unpack_texel(params.rect.y);
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) * ivec2(VKAO_BLUR_Y_WIDTH, VKAO_BLUR_Y_HEIGHT);
+    texel += ivec2(round_down(low.x, VKAO_BLUR_Y_WIDTH), low.y);
+    if (any(greaterThanEqual(texel, high)))
+        return;
+    if (RADIUS != 0) {
+        blur_window(texel);
+    } else {
+        for (int row = 0; row < VKAO_BLUR_Y_HEIGHT; ++row)
+            put(texel + ivec2(0, row), load_z(texel + ivec2(0, row)), blurred_slowly(texel + ivec2(0, row)));
+    }
+}

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The flags of shaders/params.h, from the variant's constant or from the push constants. The includer defines params
+ * before. */
+#ifndef VKAO_FLAGS_GLSL_
+#define VKAO_FLAGS_GLSL_
+
+layout(constant_id = VKAO_CONSTANT_FLAGS) const uint FLAGS = VKAO_FLAGS_UNKNOWN;
+layout(constant_id = VKAO_CONSTANT_BENT_NORMALS) const bool BENT_NORMALS = false;
+
+uint flags()
+{
+    return FLAGS != VKAO_FLAGS_UNKNOWN ? FLAGS : params.flags;
+}
+
+bool flag(uint bit)
+{
+    return (flags() & bit) != 0u;
+}
+
+bool orthographic()
+{
+    return flag(VKAO_FLAG_ORTHOGRAPHIC);
+}
+
+uint normal_encoding()
+{
+    return (flags() >> VKAO_FLAG_NORMALS_SHIFT) & 7u;
+}
+
+uint bent_encoding()
+{
+    return (flags() >> VKAO_FLAG_BENT_SHIFT) & 7u;
+}
+
+uint depth_encoding()
+{
+    return (flags() >> VKAO_FLAG_DEPTH_SHIFT) & 3u;
+}
+
+/* texel << grid_shift() is the image's. */
+uint grid_shift()
+{
+    return flag(VKAO_FLAG_HALF_RESOLUTION) ? 1u : 0u;
+}
+
+#endif

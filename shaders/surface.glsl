@@ -1,0 +1,40 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What blur and upsampling in buffers share: depths continued by their slope, and normals. */
+#ifndef VKAO_SURFACE_GLSL_
+#define VKAO_SURFACE_GLSL_
+
+/* What stands for the z of background: no slope leads there, and it is off any surface. */
+const float BACKGROUND_Z = 1.0e30;
+
+float surface_z(float z)
+{
+    return z > 0.0 ? z : BACKGROUND_Z;
+}
+
+/* The smaller of the two neighbour differences, per texel. */
+float local_slope(float before, float z, float after)
+{
+    float a = z - before, b = after - z;
+    float slope = abs(a) < abs(b) ? a : b;
+    return abs(slope) < 0.1 * BACKGROUND_Z ? slope : 0.0;
+}
+
+/* 1 / the distance off the continued slope at which a tap counts nothing; never 0, so that background never counts. */
+float edge_stop(float z, float sharpness, float reference_z)
+{
+    return max(sharpness / (reference_z > 0.0 ? reference_z : z), 1.0e-20);
+}
+
+/* w is 1 where there is no normal: then the others decide. */
+float normal_weight(vec4 normal, vec4 other, float power)
+{
+    float c = max(max(dot(normal.xyz, other.xyz), 1.0e-6), max(normal.w, other.w));
+    if (flag(VKAO_FLAG_NORMAL_POWER_8)) {
+        float c2 = c * c, c4 = c2 * c2;
+        return c4 * c4;
+    }
+    return pow(c, power);
+}
+
+#endif

@@ -1,0 +1,146 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * upsample.comp for AO in buffers: VKAO_UPSAMPLE_WIDTH by VKAO_UPSAMPLE_HEIGHT texels of the image at once. A texel of an
+ * even column and row is one of half resolution; the others lie between two or four of them. Their weights are those of
+ * the blur; where no neighbour lies on the texel's surface, the least wrong ones decide. */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_samplerless_texture_functions : require
+#define VKAO_GLSL
+#include "params.h"
+
+layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
+layout(push_constant) uniform Block { vkao_upsample_block params; };
+layout(binding = VKAO_BINDING_Z_WORDS) readonly buffer ViewZ { vec4 view_z[]; };
+layout(binding = VKAO_BINDING_BLURRED_WORDS) readonly buffer Blurred { uvec2 blurred_ao[]; };
+#include "view.glsl"
+#include "depth.glsl"
+#include "finish.glsl"
+#include "surface.glsl"
+
+/* One more of each than there are columns, so that the last odd one has a neighbour. */
+const int COLUMNS = VKAO_UPSAMPLE_WIDTH + 1;
+const int HALF_COLUMNS = VKAO_UPSAMPLE_WIDTH / 2 + 1;
+
+/* Relative to what is open. */
+vec4 unpack_codes(uvec2 words)
+{
+    ivec2 w = ivec2(words);
+    return vec4(ivec4(w.x & 0xffff, (w.x >> 16) & 0xffff, w.y & 0xffff, (w.y >> 16) & 0xffff) - VKAO_CODE_OPEN);
+}
+
+/* Of half-resolution row y: view z and AO in a window that begins at x, a multiple of 4. */
+void load_half_row(ivec2 texel, out float z[HALF_COLUMNS], out float fine[HALF_COLUMNS])
+{
+    int y = clamp(texel.y, int(params.valid.x >> 16) - 1, int(params.valid.y >> 16));
+    int z_word = (z_row(y) + texel.x) >> 2, code_word = (buffer_row(min(y, int(params.valid.y >> 16) - 1)) + texel.x) >> 2;
+    vec4 z4 = view_z[z_word], codes = unpack_codes(blurred_ao[code_word]);
+    [[unroll]] for (int i = 0; i < HALF_COLUMNS - 1; ++i) {
+        z[i] = surface_z(z4[i]);
+        fine[i] = codes[i];
+    }
+    z[HALF_COLUMNS - 1] = surface_z(view_z[z_word + 1].x);
+    fine[HALF_COLUMNS - 1] = float((int(blurred_ao[code_word + 1].x) & 0xffff) - VKAO_CODE_OPEN);
+}
+
+float full_z(ivec2 texel)
+{
+    ivec2 low = unpack_texel(params.full_valid.x), high = unpack_texel(params.full_valid.y);
+    ivec2 inside = clamp(texel, low, high - 1);
+    float z = view_z_from_depth(inside);
+    return inside == texel ? surface_z(z) : BACKGROUND_Z;
+}
+
+vec4 full_normal(ivec2 texel)
+{
+    ivec2 low = unpack_texel(params.full_valid.x), high = unpack_texel(params.full_valid.y);
+    vec3 n = decode_normal(clamp(texel, low, high - 1));
+    return vec4(n, n == vec3(0.0) ? 1.0 : 0.0);
+}
+
+struct Mean {
+    float sum, weights;
+};
+
+/* off: how far the neighbour lies off the texel's surface. */
+void add(inout Mean mean, float off, float normals, float fine)
+{
+    /* The second term is far below any honest weight: it decides only if there is none. */
+    float w = max(0.0, 1.0 - off) * normals + 1.0e-6 / (1.0 + off * off);
+    mean.sum += w * fine;
+    mean.weights += w;
+}
+
+/* One of the neighbours at (+-dx, +-dy) of a texel. */
+struct Neighbour {
+    float z, fine;
+    vec4 normal;
+};
+
+float blend(int dx, int dy, float z, vec4 normal, vec2 slope, Neighbour n[4])
+{
+    float edge = edge_stop(z, params.normal_x.w, params.normal_z.w);
+    Mean mean = Mean(0.0, 0.0);
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        vec2 side = vec2((i & 1) * 2 - 1, (i >> 1) * 2 - 1) * vec2(dx, dy);
+        if ((dx == 0 && (i & 1) == 1) || (dy == 0 && i >= 2))
+            continue;
+        float off = edge * abs(n[i].z - z - dot(slope, side));
+        float w = 1.0;
+        if (flag(VKAO_FLAG_BLUR_NORMALS))
+            w = normal_weight(normal, n[i].normal, params.normal_y.w);
+        add(mean, off, w, n[i].fine);
+    }
+    /* A lone texel before the sky is open. */
+    return mean.weights > 0.0 ? mean.sum / mean.weights : 0.0;
+}
+
+void put(ivec2 texel, float z, float fine)
+{
+    ivec2 low = unpack_texel(params.rect.x), high = unpack_texel(params.rect.y);
+    float ao = fine * (1.0 / (VKAO_CODE_SCALE * VKAO_CODE_FINE)) + 1.0;
+    if (all(greaterThanEqual(texel, low)) && all(lessThan(texel, high)))
+        finish(texel, vec4(0.0, 0.0, 0.0, ao), z >= BACKGROUND_Z);
+}
+
+void main()
+{
+    ivec2 low = unpack_texel(params.rect.x), high = unpack_texel(params.rect.y);
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) * ivec2(VKAO_UPSAMPLE_WIDTH, VKAO_UPSAMPLE_HEIGHT);
+    texel += ivec2(round_down(low.x, VKAO_UPSAMPLE_WIDTH), round_down(low.y, VKAO_UPSAMPLE_HEIGHT));
+    if (any(greaterThanEqual(texel, high)))
+        return;
+    /* Half-resolution rows above and below, the two rows of the image and the one below them, which is half's again. */
+    float half_z[2][HALF_COLUMNS], fine[2][HALF_COLUMNS], z[3][COLUMNS];
+    vec4 normal[3][COLUMNS];
+    load_half_row(texel >> 1, half_z[0], fine[0]);
+    load_half_row((texel >> 1) + ivec2(0, 1), half_z[1], fine[1]);
+    [[unroll]] for (int i = 0; i < COLUMNS; ++i) {
+        [[unroll]] for (int row = 0; row < 3; ++row) {
+            bool is_half = (i & 1) == 0 && row != 1;
+            z[row][i] = is_half ? half_z[row / 2][i / 2] : full_z(texel + ivec2(i, row));
+            normal[row][i] = flag(VKAO_FLAG_BLUR_NORMALS) ? full_normal(texel + ivec2(i, row)) : vec4(0.0);
+        }
+    }
+    [[unroll]] for (int i = 0; i < VKAO_UPSAMPLE_WIDTH; ++i) {
+        ivec2 at = texel + ivec2(i, 0), below = at + ivec2(0, 1);
+        bool even = (i & 1) == 0;
+        int left = even ? i : i - 1, right = even ? i : i + 1;
+        Neighbour n[4];
+        [[unroll]] for (int k = 0; k < 4; ++k) {
+            int column = (k & 1) == 0 ? left : right;
+            n[k] = Neighbour(half_z[k >> 1][column / 2], fine[k >> 1][column / 2], normal[(k >> 1) * 2][column]);
+        }
+        vec2 slope = vec2(0.0, local_slope(z[0][i], z[1][i], z[2][i]));
+        if (even) {
+            put(at, z[0][i], fine[0][i / 2]);
+            put(below, z[1][i], blend(0, 1, z[1][i], normal[1][i], slope, n));
+        } else {
+            slope.x = local_slope(z[1][i - 1], z[1][i], z[1][i + 1]);
+            vec2 across = vec2(local_slope(z[0][i - 1], z[0][i], z[0][i + 1]), 0.0);
+            put(at, z[0][i], blend(1, 0, z[0][i], normal[0][i], across, n));
+            put(below, z[1][i], blend(1, 1, z[1][i], normal[1][i], slope, n));
+        }
+    }
+}
