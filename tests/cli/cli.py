@@ -152,6 +152,11 @@ def limit_file_size(size):
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 
+def beside_vkao(*names):
+    """Another program of the same build, from the folder of vkao."""
+    return os.path.join(os.path.dirname(_settings.vkao), *names)
+
+
 class Scratch:
     """A directory of one case; commands run in it."""
 
@@ -173,10 +178,10 @@ class Scratch:
             file.write(data if isinstance(data, bytes) else data.encode())
         return self.path(name)
 
-    def start(self, *arguments, env=None, **more):
+    def start(self, *arguments, env=None, program=None, **more):
         more = {'stdout': subprocess.PIPE, **more}
-        return subprocess.Popen([_settings.vkao, *arguments], cwd=self.directory, text=True,
-                                stdin=subprocess.DEVNULL, stderr=subprocess.PIPE,
+        return subprocess.Popen([program or _settings.vkao, *arguments], cwd=self.directory,
+                                text=True, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE,
                                 env={**os.environ, **(env or {})}, **more)
 
     def run(self, *arguments, timeout=TIMEOUT, **more):

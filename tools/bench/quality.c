@@ -119,6 +119,24 @@ static bool score(const struct scene *scene, int falloff, const float *ao, const
     return true;
 }
 
+/* Nothing but the resolution differs: blur.radius counts the texels of either. */
+static bool compare_with_full(struct bench *b, struct scene *scene, struct ao_job job,
+                              const float *half, struct quality_cell *cell, struct tool_error *err)
+{
+    struct ao_result full;
+    job.half_resolution = false;
+    if (!run_once(b, scene, &job, &full, err))
+        return false;
+    const struct image_pair pair = {.width = scene->gbuffer.width,
+                                    .height = scene->gbuffer.height,
+                                    .result = half,
+                                    .truth = full.ao,
+                                    .mask = scene->foreground};
+    cell->full_rmse = metrics_rmse(&pair);
+    ao_result_free(&full);
+    return true;
+}
+
 static bool measure(struct bench *b, struct scene *scene, const struct config *config, int falloff,
                     const float *raymarch, struct quality_cell *cell, struct tool_error *err)
 {
@@ -135,6 +153,8 @@ static bool measure(struct bench *b, struct scene *scene, const struct config *c
     if (ok)
         cell->ms = metrics_quantile(times, b->options->runs, 0.5);
     ok = ok && score(scene, falloff, result.ao, raymarch, cell, err);
+    if (ok && job.half_resolution)
+        ok = compare_with_full(b, scene, job, result.ao, cell, err);
     free(times);
     ao_result_free(&result);
     return ok;
@@ -194,17 +214,17 @@ static bool measure_falloff(struct bench *b, struct scene *scene, int falloff,
     const struct config_list *configs = &b->quality.configs;
     float *raymarch = NULL;
     bool ok = true;
+    for (size_t c = 0; c < configs->count; c++)
+        image->cells[falloff][c].estimator_rmse = image->cells[falloff][c].full_rmse = NAN;
     /* First: the others are compared with it. */
     for (size_t c = 0; ok && c < configs->count; c++)
         if (configs->rows[c].is_yardstick)
             ok = converge(b, scene, &configs->rows[c], falloff, &raymarch,
                           &image->cells[falloff][c], err);
     for (size_t c = 0; ok && c < configs->count; c++) {
-        struct quality_cell *cell = &image->cells[falloff][c];
-        if (configs->rows[c].is_yardstick)
-            continue;
-        cell->estimator_rmse = NAN;
-        ok = measure(b, scene, &configs->rows[c], falloff, raymarch, cell, err);
+        if (!configs->rows[c].is_yardstick)
+            ok = measure(b, scene, &configs->rows[c], falloff, raymarch, &image->cells[falloff][c],
+                         err);
     }
     free(raymarch);
     return ok;
@@ -360,7 +380,8 @@ static void print_help(void)
                     "G-buffers X.exr, their cameras X.camera.json and their truth X.gt.exr\n"
                     "(X.VIEW.gt.exr for stereo) with the channels AO_falloff and AO_threshold.\n"
                     "RMSE, mean absolute error, bias, p99 and SSIM are those of visibility over\n"
-                    "the foreground; intensity and power are 1.\n\n");
+                    "the foreground; intensity and power are 1. Of half resolution, the RMSE\n"
+                    "against the same setting at full resolution is stated too.\n\n");
     arguments_help(&arguments, &text);
     if (text.data && !text.out_of_memory)
         fputs(text.data, stdout);

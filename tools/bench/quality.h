@@ -19,7 +19,8 @@ enum { FALLOFFS = 2 }; /* vkao_falloff */
 struct quality_cell {
     struct error_scores truth; /* against ray tracing through the scene itself */
     double estimator_rmse;     /* against raymarch; of raymarch its own noise. NAN = not measured */
-    double ms; /* GPU time of all stages: the median; of raymarch the sum of its passes */
+    double full_rmse; /* of half resolution: against the same setting at full. NAN = is at full */
+    double ms;        /* GPU time of all stages: the median; of raymarch the sum of its passes */
     double ms_per_megatexel;
 };
 

@@ -30,6 +30,7 @@ struct quality_cell quality_mean(const struct quality *q, int falloff, size_t co
         logs.truth.mae += log_of(c->truth.mae);
         logs.truth.p99 += log_of(c->truth.p99);
         logs.estimator_rmse += isnan(c->estimator_rmse) ? NAN : log_of(c->estimator_rmse);
+        logs.full_rmse += isnan(c->full_rmse) ? NAN : log_of(c->full_rmse);
         logs.ms += log_of(c->ms);
         logs.ms_per_megatexel += log_of(c->ms_per_megatexel);
         mean.truth.bias += c->truth.bias;
@@ -43,6 +44,7 @@ struct quality_cell quality_mean(const struct quality *q, int falloff, size_t co
     mean.truth.bias /= n;
     mean.truth.ssim /= n;
     mean.estimator_rmse = exp(logs.estimator_rmse / n);
+    mean.full_rmse = exp(logs.full_rmse / n);
     mean.ms = exp(logs.ms / n);
     mean.ms_per_megatexel = exp(logs.ms_per_megatexel / n);
     return mean;
@@ -50,28 +52,37 @@ struct quality_cell quality_mean(const struct quality *q, int falloff, size_t co
 
 /* --- Text --- */
 
-static void format_estimator(const struct config *config, double rmse, char *text, size_t size)
+/* Columns that not every setting has something for. */
+struct partial_columns {
+    char estimator[32], full[32];
+};
+
+static struct partial_columns partial_columns(const struct config *config,
+                                              const struct quality_cell *cell)
 {
+    struct partial_columns columns = {"-", "-"};
     /* Of raymarch it is the noise that is left: in brackets, since it is another thing. */
-    if (isnan(rmse))
-        snprintf(text, size, "-");
-    else
-        snprintf(text, size, config->is_yardstick ? "(%.4f)" : "%.4f", rmse);
+    if (!isnan(cell->estimator_rmse))
+        snprintf(columns.estimator, sizeof columns.estimator,
+                 config->is_yardstick ? "(%.4f)" : "%.4f", cell->estimator_rmse);
+    if (!isnan(cell->full_rmse))
+        snprintf(columns.full, sizeof columns.full, "%.4f", cell->full_rmse);
+    return columns;
 }
 
 static void add_means(const struct quality *q, int falloff, struct text *text)
 {
-    text_add(text, "%-15s %-28s %7s %7s %8s %7s %7s %9s %9s\n", "setting", "", "RMSE", "MAE",
-             "bias", "p99", "SSIM", "raymarch", "ms/Mtexel");
+    text_add(text, "%-15s %-28s %7s %7s %8s %7s %7s %9s %9s %9s\n", "setting", "", "RMSE", "MAE",
+             "bias", "p99", "SSIM", "raymarch", "full res.", "ms/Mtexel");
     for (size_t c = 0; c < q->configs.count; c++) {
         const struct config *config = &q->configs.rows[c];
         const struct quality_cell m = quality_mean(q, falloff, c);
-        char description[64], estimator[32];
+        const struct partial_columns partial = partial_columns(config, &m);
+        char description[64];
         config_describe(config, description, sizeof description);
-        format_estimator(config, m.estimator_rmse, estimator, sizeof estimator);
-        text_add(text, "%-15s %-28s %7.4f %7.4f %+8.4f %7.4f %7.4f %9s %9.4g\n", config->name,
+        text_add(text, "%-15s %-28s %7.4f %7.4f %+8.4f %7.4f %7.4f %9s %9s %9.4g\n", config->name,
                  description, m.truth.rmse, m.truth.mae, m.truth.bias, m.truth.p99, m.truth.ssim,
-                 estimator, m.ms_per_megatexel);
+                 partial.estimator, partial.full, m.ms_per_megatexel);
     }
 }
 
@@ -116,8 +127,9 @@ void quality_text(const struct quality *q, struct text *text)
     text_add(text,
              "\nErrors are of visibility against ray-traced truth; the column raymarch is the "
              "RMSE\nagainst converged ray marching through the same depth image (of raymarch "
-             "itself,\nin brackets, its noise). Bias and SSIM are arithmetic means, the rest "
-             "geometric.\n");
+             "itself,\nin brackets, its noise), the column full res. that of half resolution "
+             "against the\nsame setting at full resolution. Bias and SSIM are arithmetic means, "
+             "the rest geometric.\n");
 }
 
 /* --- Markdown --- */
@@ -130,17 +142,18 @@ void quality_markdown(const struct quality *q, struct text *text)
         text_add(text, "%sFalloff %s, %zu image%s, %s:\n\n", text->length ? "\n" : "",
                  falloff_name(f), q->count, q->count == 1 ? "" : "s", q->device);
         text_add(text, "| setting | | RMSE | mean abs. | bias | p99 | SSIM | RMSE against raymarch "
-                       "| ms per megatexel |\n");
-        text_add(text, "|---|---|---:|---:|---:|---:|---:|---:|---:|\n");
+                       "| RMSE of half against full resolution | ms per megatexel |\n");
+        text_add(text, "|---|---|---:|---:|---:|---:|---:|---:|---:|---:|\n");
         for (size_t c = 0; c < q->configs.count; c++) {
             const struct config *config = &q->configs.rows[c];
             const struct quality_cell m = quality_mean(q, f, c);
-            char description[64], estimator[32];
+            const struct partial_columns partial = partial_columns(config, &m);
+            char description[64];
             config_describe(config, description, sizeof description);
-            format_estimator(config, m.estimator_rmse, estimator, sizeof estimator);
-            text_add(text, "| %s | %s | %.4f | %.4f | %+.4f | %.4f | %.4f | %s | %.4g |\n",
+            text_add(text, "| %s | %s | %.4f | %.4f | %+.4f | %.4f | %.4f | %s | %s | %.4g |\n",
                      config->name, description, m.truth.rmse, m.truth.mae, m.truth.bias,
-                     m.truth.p99, m.truth.ssim, estimator, m.ms_per_megatexel);
+                     m.truth.p99, m.truth.ssim, partial.estimator, partial.full,
+                     m.ms_per_megatexel);
         }
     }
 }
@@ -168,6 +181,7 @@ static void add_cell(cJSON *array, const struct config *config, int falloff,
     add_number(object, "ssim", cell->truth.ssim);
     add_number(object, config->is_yardstick ? "noise" : "rmse_against_raymarch",
                cell->estimator_rmse);
+    add_number(object, "rmse_against_full_resolution", cell->full_rmse);
     add_number(object, "ms", cell->ms);
     add_number(object, "ms_per_megatexel", cell->ms_per_megatexel);
 }
