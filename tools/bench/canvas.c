@@ -37,6 +37,20 @@ static void blend(struct canvas *canvas, int64_t x, int64_t y, double coverage, 
         pixel[i] = (uint8_t)lround(pixel[i] + (values[i] - pixel[i]) * part);
 }
 
+/* How much of the pixel that begins at p lies in [low,high). */
+static double overlap(double p, double low, double high)
+{
+    return fmax(0, fmin(p + 1, high) - fmax(p, low));
+}
+
+void canvas_fill(struct canvas *canvas, struct point from, struct point to, struct rgb color)
+{
+    for (int64_t y = (int64_t)floor(from.y); (double)y < to.y; y++)
+        for (int64_t x = (int64_t)floor(from.x); (double)x < to.x; x++)
+            blend(canvas, x, y, overlap((double)x, from.x, to.x) * overlap((double)y, from.y, to.y),
+                  color);
+}
+
 /* --- Lines and markers: coverage from the distance to the outline --- */
 
 /* Distance of p to the segment from a to b; *along is how far it lies along the segment. */

@@ -29,6 +29,8 @@ enum marker { MARKER_DISC, MARKER_SQUARE, MARKER_DIAMOND, MARKER_TRIANGLE, MARKE
 bool canvas_create(struct canvas *canvas, uint32_t width, uint32_t height, struct tool_error *err);
 void canvas_free(struct canvas *canvas);
 
+/* Between two corners, smooth at the edges. */
+void canvas_fill(struct canvas *canvas, struct point from, struct point to, struct rgb color);
 /* dash: pixels drawn and then left out, in turn; 0 = solid. */
 void canvas_line(struct canvas *canvas, struct point from, struct point to, double thickness,
                  double dash, struct rgb color);

@@ -6,5 +6,6 @@
 #define VKAO_BENCH_COMMANDS_H_
 
 int command_quality(int argc, char **argv);
+int command_speed(int argc, char **argv);
 
 #endif

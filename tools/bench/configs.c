@@ -60,10 +60,11 @@ const char *config_method_name(const struct config *config)
     return methods[config->method].name;
 }
 
-static bool add(struct config_list *list, const struct config *config, struct tool_error *err)
+static bool add(const char *option, struct config_list *list, const struct config *config,
+                struct tool_error *err)
 {
     if (list->count == MAX_CONFIGS)
-        return fail(err, EXIT_USAGE, "--methods names more than %d settings", (int)MAX_CONFIGS);
+        return fail(err, EXIT_USAGE, "%s names more than %d settings", option, (int)MAX_CONFIGS);
     for (size_t i = 0; i < list->count; i++)
         if (strcmp(list->rows[i].name, config->name) == 0)
             return true;
@@ -103,32 +104,42 @@ static bool parse_setting(const char *name, struct config *config)
     return false;
 }
 
-static bool add_named(struct config_list *list, const char *name, struct tool_error *err)
+/* By its name, its method, or, of a preset, what stands behind the method: "fast". */
+static bool is_called(const struct config *row, const char *name)
+{
+    const char *method = config_method_name(row);
+    return strcmp(row->name, name) == 0 || strcmp(method, name) == 0 ||
+           (row->is_preset && strcmp(row->name + strlen(method) + 1, name) == 0);
+}
+
+static bool add_named(const char *option, struct config_list *list, const char *name,
+                      struct tool_error *err)
 {
     bool found = false;
     struct config free_form;
     for (size_t i = 0; i < DEFAULT_COUNT; i++) {
         const struct config *row = &default_set[i];
-        if (strcmp(row->name, name) != 0 && strcmp(config_method_name(row), name) != 0)
+        if (!is_called(row, name))
             continue;
         found = true;
-        if (!add(list, row, err))
+        if (!add(option, list, row, err))
             return false;
     }
     if (found)
         return true;
     if (parse_setting(name, &free_form))
-        return add(list, &free_form, err);
+        return add(option, list, &free_form, err);
     struct text known = {0};
     for (size_t i = 0; i < DEFAULT_COUNT; i++)
         text_add(&known, "%s%s", i ? ", " : "", default_set[i].name);
     fail_hint(err, "known: %s; or METHOD-SAMPLES, METHOD-SLICESxSTEPS",
               known.data ? known.data : "");
     text_free(&known);
-    return fail(err, EXIT_USAGE, "--methods: no setting '%s'", name);
+    return fail(err, EXIT_USAGE, "%s: no setting '%s'", option, name);
 }
 
-bool configs_choose(const char *names, struct config_list *list, struct tool_error *err)
+bool configs_choose(const char *option, const char *names, struct config_list *list,
+                    struct tool_error *err)
 {
     *list = (struct config_list){0};
     for (size_t i = 0; !names && i < DEFAULT_COUNT; i++)
@@ -138,10 +149,10 @@ bool configs_choose(const char *names, struct config_list *list, struct tool_err
         size_t length = strcspn(names, ",");
         snprintf(name, sizeof name, "%.*s", (int)length, names);
         names += length + (names[length] == ',');
-        if (*name && !add_named(list, name, err))
+        if (*name && !add_named(option, list, name, err))
             return false;
     }
-    return list->count > 0 || fail(err, EXIT_USAGE, "--methods names nothing");
+    return list->count > 0 || fail(err, EXIT_USAGE, "%s names nothing", option);
 }
 
 uint32_t configs_method_mask(const struct config_list *list)

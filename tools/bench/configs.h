@@ -30,10 +30,11 @@ struct config_list {
     size_t count;
 };
 
-/* names: comma-separated, each a row of the default set, a method (all its rows of that set), or
- * any setting: METHOD-SAMPLES, METHOD-SLICESxSTEPS, raymarch-RAYSxSTEPS. NULL = the default set.
- * Errors: EXIT_USAGE. */
-bool configs_choose(const char *names, struct config_list *list, struct tool_error *err);
+/* names: comma-separated, each a row of the default set, a preset ("fast"), a method (all its rows
+ * of that set), or any setting: METHOD-SAMPLES, METHOD-SLICESxSTEPS, raymarch-RAYSxSTEPS. NULL =
+ * the default set. option: the one that the names came with, for messages. Errors: EXIT_USAGE. */
+bool configs_choose(const char *option, const char *names, struct config_list *list,
+                    struct tool_error *err);
 /* Rays that converge when averaged over noise patterns. */
 struct config config_yardstick(void);
 uint32_t configs_method_mask(const struct config_list *list);

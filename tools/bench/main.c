@@ -4,19 +4,18 @@
 #include "commands.h"
 
 #include "error.h"
-#include "exr_file.h"
 #include "report.h"
 #include "vkao.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 static const struct command {
     const char *name, *help;
     int (*run)(int argc, char **argv);
 } commands[] = {
     {"quality", "error against ray-traced truth over a folder of G-buffers", command_quality},
+    {"speed", "time of every stage, at any size, beside other programs", command_speed},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };
 
@@ -65,8 +64,6 @@ static int run(int argc, char **argv)
 int main(int argc, char **argv)
 {
     struct tool_error err = {0};
-    long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    exr_set_threads(processors > 1 ? (int)(processors < 64 ? processors : 64) : 0);
     int code = run(argc, argv);
     /* A full disk behind 'vkao-bench quality > x' shows only here. */
     if ((fflush(stdout) != 0 || ferror(stdout)) && code == EXIT_OK) {

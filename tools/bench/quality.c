@@ -7,9 +7,10 @@
 
 #include "ao.h"
 #include "arguments.h"
-#include "atomic_file.h"
 #include "corpus.h"
+#include "exr_file.h"
 #include "gpu.h"
+#include "json.h"
 #include "quality.h"
 #include "report.h"
 
@@ -17,6 +18,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum falloff_choice { FALLOFF_BOTH, FALLOFF_ONLY_SMOOTH, FALLOFF_ONLY_THRESHOLD };
 
@@ -312,20 +314,6 @@ static bool measure_all(struct bench *b, struct tool_error *err)
 
 /* --- Output --- */
 
-static bool write_file(const char *path, const char *content, struct tool_error *err)
-{
-    struct atomic_file file = {0};
-    if (!content)
-        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
-    if (!atomic_file_open(&file, path, true, err))
-        return false;
-    if (atomic_file_write(&file, content, strlen(content), err) &&
-        atomic_file_write(&file, "\n", 1, err))
-        return atomic_file_commit(&file, err);
-    atomic_file_abort(&file);
-    return false;
-}
-
 static bool put_out(const struct bench *b, struct tool_error *err)
 {
     const struct quality_options *o = b->options;
@@ -338,11 +326,7 @@ static bool put_out(const struct bench *b, struct tool_error *err)
     if (ok)
         fputs(text.data, stdout);
     text_free(&text);
-    if (ok && o->json) {
-        char *json = quality_json(&b->quality);
-        ok = write_file(o->json, json, err);
-        free(json);
-    }
+    ok = ok && (!o->json || json_write(o->json, quality_json(&b->quality), err));
     return ok && (!o->plot || quality_plot(&b->quality, o->plot, err));
 }
 
@@ -354,7 +338,9 @@ static bool prepare(struct bench *b, struct tool_error *err)
     struct quality *q = &b->quality;
     const struct config yardstick = config_yardstick();
     const struct gpu_options gpu = {.device = o->device};
-    if (!configs_choose(o->methods, &q->configs, err))
+    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+    exr_set_threads(processors > 1 ? (int)(processors < 64 ? processors : 64) : 0);
+    if (!configs_choose("--methods", o->methods, &q->configs, err))
         return false;
     if (!o->no_raymarch) {
         if (q->configs.count == MAX_CONFIGS)

@@ -9,6 +9,7 @@
 #include "metrics.h"
 #include "text.h"
 
+#include <cjson/cJSON.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -49,8 +50,8 @@ const char *falloff_name(int falloff);
 
 void quality_text(const struct quality *quality, struct text *text);
 void quality_markdown(const struct quality *quality, struct text *text);
-/* malloc'ed, NULL if memory runs out. */
-char *quality_json(const struct quality *quality);
+/* For json_write, which deletes it. */
+cJSON *quality_json(const struct quality *quality);
 /* Error over time, log-log, one panel per falloff. Errors: EXIT_OUTPUT, EXIT_MEMORY. */
 bool quality_plot(const struct quality *quality, const char *path, struct tool_error *err);
 

@@ -3,6 +3,7 @@
  * Error over time: a point per setting, lower and further left is better. */
 #include "quality.h"
 
+#include "axis.h"
 #include "canvas.h"
 #include "png_file.h"
 
@@ -18,11 +19,11 @@ enum {
     TOP = 70,
     BOTTOM = 90,
     RADIUS = 9,
-    SCALE = 2,
+    SCALE = AXIS_TEXT_SCALE,
     MAX_TAKEN = 4096
 };
 
-static const struct rgb ink = {40, 40, 46}, faint = {226, 226, 232}, grey = {120, 120, 130};
+static const struct rgb grey = {120, 120, 130};
 
 /* By vkao_ssao_method; colours that stay apart for colour-blind eyes (Okabe and Ito). */
 static const struct style {
@@ -41,11 +42,6 @@ struct rect {
     double x0, y0, x1, y1;
 };
 
-struct axis {
-    double low, high;  /* of the values */
-    double start, end; /* of the pixels */
-};
-
 struct panel {
     struct canvas *canvas;
     const struct quality *quality;
@@ -57,88 +53,13 @@ struct panel {
     size_t taken_count;
 };
 
-static double place(const struct axis *axis, double value)
-{
-    double t = log(value / axis->low) / log(axis->high / axis->low);
-    return axis->start + t * (axis->end - axis->start);
-}
-
-/* --- Axes --- */
-
-static void include(struct axis *axis, double value)
-{
-    if (!(value > 0) || !isfinite(value))
-        return;
-    axis->low = value < axis->low ? value : axis->low;
-    axis->high = value > axis->high ? value : axis->high;
-}
-
-/* Room around the points, and at least a factor of two. */
-static void widen(struct axis *axis, double factor)
-{
-    if (!(axis->low <= axis->high))
-        axis->low = axis->high = 1;
-    double middle = sqrt(axis->low * axis->high);
-    axis->low = fmin(axis->low / factor, middle / 1.42);
-    axis->high = fmax(axis->high * factor, middle * 1.42);
-}
-
-static void draw_tick(struct panel *p, const struct axis *axis, double value, bool labelled)
-{
-    char label[32];
-    bool across = axis == &p->x;
-    double at = place(axis, value);
-    struct point from = {across ? at : p->x.start, across ? p->y.start : at};
-    struct point to = {across ? at : p->x.end, across ? p->y.end : at};
-    canvas_line(p->canvas, from, to, 1, labelled ? 0 : 2, faint);
-    if (!labelled)
-        return;
-    snprintf(label, sizeof label, "%g", value);
-    double width = canvas_text_width(label, SCALE);
-    struct point text = {at - width / 2, p->y.start + 12};
-    if (!across)
-        text = (struct point){p->x.start - width - 10, at - canvas_text_height(SCALE) / 2};
-    canvas_text(p->canvas, label, text, SCALE, ink);
-}
-
-static void draw_ticks(struct panel *p, const struct axis *axis)
-{
-    double decades = log10(axis->high / axis->low);
-    for (int exponent = (int)floor(log10(axis->low)); pow(10, exponent) <= axis->high; exponent++) {
-        for (int digit = 1; digit <= 9; digit++) {
-            double value = digit * pow(10, exponent);
-            bool round = digit == 1 || digit == 2 || digit == 5;
-            /* On a short axis every digit has room; on a long one the powers of ten alone. */
-            bool labelled = decades < 0.6 || (decades < 2.5 ? round : digit == 1);
-            if (value >= axis->low && value <= axis->high)
-                draw_tick(p, axis, value, labelled);
-        }
-    }
-}
-
 static void draw_frame(struct panel *p)
 {
     char title[128];
     static const char across[] = "GPU time, ms per megatexel", up[] = "RMSE against ray-traced AO";
-    struct point corner[4] = {{p->x.start, p->y.start},
-                              {p->x.end, p->y.start},
-                              {p->x.end, p->y.end},
-                              {p->x.start, p->y.end}};
-    draw_ticks(p, &p->x);
-    draw_ticks(p, &p->y);
-    for (int i = 0; i < 4; i++)
-        canvas_line(p->canvas, corner[i], corner[(i + 1) % 4], 1.5, 0, grey);
     snprintf(title, sizeof title, "Falloff %s, mean of %zu image%s", falloff_name(p->falloff),
              p->quality->count, p->quality->count == 1 ? "" : "s");
-    double centre = (p->x.start + p->x.end) / 2, middle = (p->y.start + p->y.end) / 2;
-    canvas_text(p->canvas, title,
-                (struct point){centre - canvas_text_width(title, SCALE) / 2, TOP - 34}, SCALE, ink);
-    canvas_text(p->canvas, across,
-                (struct point){centre - canvas_text_width(across, SCALE) / 2, p->y.start + 40},
-                SCALE, ink);
-    canvas_text_upwards(p->canvas, up,
-                        (struct point){p->offset + 14, middle + canvas_text_width(up, SCALE) / 2},
-                        SCALE, ink);
+    axes_draw(p->canvas, &p->x, &p->y, title, across, up);
 }
 
 /* --- Points --- */
@@ -190,8 +111,8 @@ static void take_line(struct panel *p, struct point from, struct point to)
 
 static struct point point_of(const struct panel *p, size_t config)
 {
-    return (struct point){place(&p->x, p->means[config].ms_per_megatexel),
-                          place(&p->y, p->means[config].truth.rmse)};
+    return (struct point){axis_place(&p->x, p->means[config].ms_per_megatexel),
+                          axis_place(&p->y, p->means[config].truth.rmse)};
 }
 
 static void draw_label(struct panel *p, size_t config)
@@ -273,11 +194,11 @@ static void set_axes(struct panel *p)
     for (size_t c = 0; c < configs->count; c++) {
         p->means[c] = quality_mean(p->quality, p->falloff, c);
         if (!configs->rows[c].is_yardstick)
-            include(&p->x, p->means[c].ms_per_megatexel);
-        include(&p->y, p->means[c].truth.rmse);
+            axis_include(&p->x, p->means[c].ms_per_megatexel);
+        axis_include(&p->y, p->means[c].truth.rmse);
     }
-    widen(&p->x, 1.3);
-    widen(&p->y, 1.12);
+    axis_widen(&p->x, 1.3);
+    axis_widen(&p->y, 1.12);
     p->x.start = p->offset + LEFT;
     p->x.end = p->offset + PANEL_WIDTH - RIGHT;
     p->y.start = PANEL_HEIGHT - BOTTOM;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "quality.h"
 
-#include <cjson/cJSON.h>
+#include "json.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -160,13 +161,6 @@ void quality_markdown(const struct quality *q, struct text *text)
 
 /* --- JSON --- */
 
-static void add_number(cJSON *object, const char *name, double value)
-{
-    char digits[32];
-    snprintf(digits, sizeof digits, "%.6g", value);
-    cJSON_AddRawToObject(object, name, isfinite(value) ? digits : "null");
-}
-
 static void add_cell(cJSON *array, const struct config *config, int falloff,
                      const struct quality_cell *cell)
 {
@@ -174,16 +168,16 @@ static void add_cell(cJSON *array, const struct config *config, int falloff,
     cJSON_AddItemToArray(array, object);
     cJSON_AddStringToObject(object, "setting", config->name);
     cJSON_AddStringToObject(object, "falloff", falloff_name(falloff));
-    add_number(object, "rmse", cell->truth.rmse);
-    add_number(object, "mae", cell->truth.mae);
-    add_number(object, "bias", cell->truth.bias);
-    add_number(object, "p99", cell->truth.p99);
-    add_number(object, "ssim", cell->truth.ssim);
-    add_number(object, config->is_yardstick ? "noise" : "rmse_against_raymarch",
-               cell->estimator_rmse);
-    add_number(object, "rmse_against_full_resolution", cell->full_rmse);
-    add_number(object, "ms", cell->ms);
-    add_number(object, "ms_per_megatexel", cell->ms_per_megatexel);
+    json_add_number(object, "rmse", cell->truth.rmse);
+    json_add_number(object, "mae", cell->truth.mae);
+    json_add_number(object, "bias", cell->truth.bias);
+    json_add_number(object, "p99", cell->truth.p99);
+    json_add_number(object, "ssim", cell->truth.ssim);
+    json_add_number(object, config->is_yardstick ? "noise" : "rmse_against_raymarch",
+                    cell->estimator_rmse);
+    json_add_number(object, "rmse_against_full_resolution", cell->full_rmse);
+    json_add_number(object, "ms", cell->ms);
+    json_add_number(object, "ms_per_megatexel", cell->ms_per_megatexel);
 }
 
 static void add_settings(cJSON *root, const struct quality *q)
@@ -200,7 +194,7 @@ static void add_settings(cJSON *root, const struct quality *q)
     }
 }
 
-char *quality_json(const struct quality *q)
+cJSON *quality_json(const struct quality *q)
 {
     cJSON *root = cJSON_CreateObject();
     cJSON_AddStringToObject(root, "device", q->device);
@@ -216,7 +210,7 @@ char *quality_json(const struct quality *q)
         cJSON_AddNumberToObject(object, "width", image->width);
         cJSON_AddNumberToObject(object, "height", image->height);
         cJSON_AddNumberToObject(object, "foreground", (double)image->foreground);
-        add_number(object, "radius", (double)image->radius);
+        json_add_number(object, "radius", (double)image->radius);
         cJSON *results = cJSON_AddArrayToObject(object, "results");
         for (int f = 0; f < FALLOFFS; f++)
             for (size_t c = 0; q->has_falloff[f] && c < q->configs.count; c++)
@@ -229,7 +223,5 @@ char *quality_json(const struct quality *q)
             add_cell(means, &q->configs.rows[c], f, &mean);
         }
     }
-    char *json = cJSON_Print(root);
-    cJSON_Delete(root);
-    return json;
+    return root;
 }

@@ -27,16 +27,6 @@ struct ao_session {
     VkQueryPool timestamps; /* two, around the stages; VK_NULL_HANDLE if the queue has none */
 };
 
-static bool library_failed(struct tool_error *err, const char *call, vkao_result result)
-{
-    enum exit_code code = EXIT_DEVICE;
-    if (result == VKAO_ERROR_OUT_OF_HOST_MEMORY || result == VKAO_ERROR_OUT_OF_DEVICE_MEMORY)
-        code = EXIT_MEMORY;
-    else if (result == VKAO_ERROR_INVALID_ARGUMENT)
-        code = EXIT_BUG; /* options were checked before: the tool built something wrong */
-    return fail(err, code, "%s: %s", call, vkao_result_string(result));
-}
-
 static bool create_timestamps(struct ao_session *session, struct tool_error *err)
 {
     if (session->gpu->timestamp_bits == 0)
@@ -137,7 +127,7 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
                                            },
                                            &session->frame);
     if (result != VKAO_SUCCESS)
-        return library_failed(err, "vkao_frame_create", result);
+        return gpu_library_failed(err, "vkao_frame_create", result);
     session->extent = extent;
     session->has_normals = job->normals != NULL;
     session->has_color = job->color != NULL;
@@ -195,7 +185,7 @@ static bool record_and_run(struct ao_session *session, const struct ao_job *job,
     bool submitted = gpu_submit(session->gpu, cmd, err);
     *gpu_ms = now_ms() - start;
     if (result != VKAO_SUCCESS)
-        return library_failed(err, "vkao_cmd_all", result);
+        return gpu_library_failed(err, "vkao_cmd_all", result);
     return submitted && (!session->timestamps || read_timestamps(session, gpu_ms, err));
 }
 

@@ -319,28 +319,43 @@ static void print_log(void *user_data, vkao_log_level level, const char *message
     fprintf(stderr, "vkao: %s\n", message);
 }
 
-vkao_context *gpu_context(struct gpu *gpu, uint32_t method_mask, struct tool_error *err)
+bool gpu_library_failed(struct tool_error *err, const char *call, vkao_result result)
+{
+    enum exit_code code = EXIT_DEVICE;
+    if (result == VKAO_ERROR_OUT_OF_HOST_MEMORY || result == VKAO_ERROR_OUT_OF_DEVICE_MEMORY)
+        code = EXIT_MEMORY;
+    else if (result == VKAO_ERROR_INVALID_ARGUMENT)
+        code = EXIT_BUG; /* options were checked before: the tool built something wrong */
+    return fail(err, code, "%s: %s", call, vkao_result_string(result));
+}
+
+vkao_context_info gpu_context_info(const struct gpu *gpu, uint32_t method_mask)
+{
+    return (vkao_context_info){
+        .struct_size = sizeof(vkao_context_info),
+        .method_mask = method_mask,
+        .instance = gpu->instance,
+        .physical_device = gpu->physical_device,
+        .device = gpu->device,
+        .get_instance_proc_addr = vkGetInstanceProcAddr,
+        .get_device_proc_addr = vkGetDeviceProcAddr,
+        .enabled_features = &gpu->features,
+        .log = print_log,
+        .debug_labels = gpu->messenger != VK_NULL_HANDLE,
+    };
+}
+
+vkao_context *gpu_context_create(const vkao_context_info *info, struct tool_error *err)
 {
     vkao_context *ctx = NULL;
-    vkao_result result = vkao_context_create(
-        &(vkao_context_info){
-            .struct_size = sizeof(vkao_context_info),
-            .method_mask = method_mask,
-            .instance = gpu->instance,
-            .physical_device = gpu->physical_device,
-            .device = gpu->device,
-            .get_instance_proc_addr = vkGetInstanceProcAddr,
-            .get_device_proc_addr = vkGetDeviceProcAddr,
-            .enabled_features = &gpu->features,
-            .log = print_log,
-            .debug_labels = gpu->messenger != VK_NULL_HANDLE,
-        },
-        &ctx);
-    if (result == VKAO_SUCCESS)
-        return ctx;
-    bool memory =
-        result == VKAO_ERROR_OUT_OF_DEVICE_MEMORY || result == VKAO_ERROR_OUT_OF_HOST_MEMORY;
-    fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "vkao_context_create: %s",
-         vkao_result_string(result));
-    return NULL;
+    vkao_result result = vkao_context_create(info, &ctx);
+    if (result != VKAO_SUCCESS)
+        gpu_library_failed(err, "vkao_context_create", result);
+    return ctx;
+}
+
+vkao_context *gpu_context(struct gpu *gpu, uint32_t method_mask, struct tool_error *err)
+{
+    const vkao_context_info info = gpu_context_info(gpu, method_mask);
+    return gpu_context_create(&info, err);
 }

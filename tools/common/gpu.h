@@ -67,6 +67,9 @@ bool gpu_image_download(struct gpu *gpu, struct gpu_image *image, void *data, ui
 vkao_image gpu_image_slot(const struct gpu_image *image);
 /* 0 for formats that the tools do not use. */
 uint32_t gpu_format_bytes(VkFormat format);
+/* Memory of a type that fits need and has all flags; free it with vkFreeMemory. */
+bool gpu_allocate(struct gpu *gpu, const VkMemoryRequirements *need, VkMemoryPropertyFlags flags,
+                  VkDeviceMemory *memory, struct tool_error *err);
 
 /* A command buffer in recording state; gpu_submit ends, runs, waits for and frees it. */
 VkCommandBuffer gpu_begin(struct gpu *gpu, struct tool_error *err);
@@ -76,5 +79,10 @@ void gpu_full_barrier(VkCommandBuffer cmd);
 
 /* A vkao context on this device; log lines go to stderr. method_mask as in vkao_context_info. */
 vkao_context *gpu_context(struct gpu *gpu, uint32_t method_mask, struct tool_error *err);
+/* The two halves of gpu_context, for those who change something in between. */
+vkao_context_info gpu_context_info(const struct gpu *gpu, uint32_t method_mask);
+vkao_context *gpu_context_create(const vkao_context_info *info, struct tool_error *err);
+/* The error of a library call that returned result. */
+bool gpu_library_failed(struct tool_error *err, const char *call, vkao_result result);
 
 #endif

@@ -15,8 +15,8 @@ static bool vk_ok(struct tool_error *err, const char *call, VkResult result)
                 (int)result);
 }
 
-static bool allocate(struct gpu *gpu, const VkMemoryRequirements *need, VkMemoryPropertyFlags flags,
-                     VkDeviceMemory *memory, struct tool_error *err)
+bool gpu_allocate(struct gpu *gpu, const VkMemoryRequirements *need, VkMemoryPropertyFlags flags,
+                  VkDeviceMemory *memory, struct tool_error *err)
 {
     uint32_t type = 0;
     while (type < gpu->memory.memoryTypeCount &&
@@ -148,7 +148,7 @@ bool gpu_image_create(struct gpu *gpu, VkFormat format, VkExtent2D extent, VkIma
         return vk_ok(err, "vkCreateImage", result);
     }
     vkGetImageMemoryRequirements(gpu->device, image->image, &need);
-    bool ok = allocate(gpu, &need, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, &image->memory, err) &&
+    bool ok = gpu_allocate(gpu, &need, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, &image->memory, err) &&
               vk_ok(err, "vkBindImageMemory",
                     vkBindImageMemory(gpu->device, image->image, image->memory, 0));
     if (ok) {
@@ -219,9 +219,9 @@ static bool staging_create(struct gpu *gpu, uint64_t bytes, VkBufferUsageFlags u
         return vk_ok(err, "vkCreateBuffer", result);
     }
     vkGetBufferMemoryRequirements(gpu->device, s->buffer, &need);
-    if (allocate(gpu, &need,
-                 VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
-                 &s->memory, err) &&
+    if (gpu_allocate(gpu, &need,
+                     VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+                     &s->memory, err) &&
         vk_ok(err, "vkBindBufferMemory",
               vkBindBufferMemory(gpu->device, s->buffer, s->memory, 0)) &&
         vk_ok(err, "vkMapMemory",

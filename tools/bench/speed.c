@@ -1,0 +1,406 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * vkao-bench speed: what each stage costs, in runs that take turns, beside any other program. */
+#include "speed.h"
+
+#include "arguments.h"
+#include "commands.h"
+#include "json.h"
+#include "report.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { THREADS_AS_THEY_ARE = 1 << 16 };
+
+struct speed_options {
+    const char *size, *configs, *preset, *method, *vs, *json, *plot, *dump, *device;
+    unsigned slices, steps, samples; /* 0 = the method's default */
+    unsigned sky, threads, runs;
+    float radius;
+    bool composite, bent_normals, half_view_z, start, scaling, memory, text, markdown, quiet, help;
+};
+
+#define AT(member) offsetof(struct speed_options, member)
+
+/* One option a row; the values in the help are the defaults of default_options. */
+static const struct argument rows[] = {
+    {"size", "LIST", "comma-separated: WxH, 720p, 1080p (default), 2160p or 8k", ARGUMENT_TEXT,
+     AT(size), 0, 0, NULL},
+    {"configs", "LIST",
+     "comma-separated: names from the table, methods, METHOD-SAMPLES or METHOD-SLICESxSTEPS. "
+     "Default: four presets and six settings",
+     ARGUMENT_TEXT, AT(configs), 0, 0, NULL},
+    {"preset", "LIST", "fast, default, high, best", ARGUMENT_TEXT, AT(preset), 0, 0, NULL},
+    {"method", "LIST", "sphere, hemisphere, hbao, gtao, vbao, raymarch; with the next three",
+     ARGUMENT_TEXT, AT(method), 0, 0, NULL},
+    {"slices", "N", "of hbao, gtao and vbao (1)", ARGUMENT_COUNT, AT(slices), 1, 64, NULL},
+    {"steps", "N", "of hbao, gtao, vbao and raymarch (10)", ARGUMENT_COUNT, AT(steps), 1, 256,
+     NULL},
+    {"samples", "N", "of sphere and hemisphere, rays of raymarch (16)", ARGUMENT_COUNT, AT(samples),
+     1, 64, NULL},
+    {"radius", "R", "scene units; the room is 10 deep (0.5)", ARGUMENT_NUMBER, AT(radius), 0, 0,
+     NULL},
+    {"sky", "PERCENT", "rows that show sky, from the top (0)", ARGUMENT_COUNT, AT(sky), 0, 100,
+     NULL},
+    {"composite", NULL, "also multiply a colour image with it", ARGUMENT_FLAG, AT(composite), 0, 0,
+     NULL},
+    {"bent-normals", NULL, "also write bent normals: gtao, vbao, raymarch", ARGUMENT_FLAG,
+     AT(bent_normals), 0, 0, NULL},
+    {"half-view-z", NULL, "keep view z in 16-bit floats", ARGUMENT_FLAG, AT(half_view_z), 0, 0,
+     NULL},
+    {"threads", "N", "of Mesa lavapipe (LP_NUM_THREADS), for --vs too; others ignore it",
+     ARGUMENT_COUNT, AT(threads), 0, 256, NULL},
+    {"runs", "N", "of each setting, taking turns, after one that does not count (9)",
+     ARGUMENT_COUNT, AT(runs), 1, MAX_RUNS, NULL},
+    {"vs", "COMMAND",
+     "run it in turn with every run of all settings, and take the lines 'NAME med X ms' that it "
+     "prints, or the list that --json writes",
+     ARGUMENT_TEXT, AT(vs), 0, 0, NULL},
+    {"start", NULL,
+     "instead: vkao_context_create and the first two frames of a process, with an empty (cold) and "
+     "a filled (warm) shader cache on disk",
+     ARGUMENT_FLAG, AT(start), 0, 0, NULL},
+    {"scaling", NULL,
+     "instead: growth with pixels, samples and radius. Default setting: vbao-default",
+     ARGUMENT_FLAG, AT(scaling), 0, 0, NULL},
+    {"memory", NULL, "instead: scratch memory of frames. Default sizes: all four names",
+     ARGUMENT_FLAG, AT(memory), 0, 0, NULL},
+    {"dump", "PREFIX", "write the room to PREFIX_z32.npy and PREFIX_n8.npy first", ARGUMENT_TEXT,
+     AT(dump), 0, 0, NULL},
+    {"text", NULL, "print tables (default, unless another output goes there)", ARGUMENT_FLAG,
+     AT(text), 0, 0, NULL},
+    {"markdown", NULL, "print Markdown tables", ARGUMENT_FLAG, AT(markdown), 0, 0, NULL},
+    {"json", "FILE", "write all medians; - = standard output", ARGUMENT_TEXT, AT(json), 0, 0, NULL},
+    {"plot", "FILE.png", "draw the stages of every setting, or the growth", ARGUMENT_TEXT, AT(plot),
+     0, 0, NULL},
+    {"device", "NAME", "auto, cpu, a number from 'vkao devices' or part of a name", ARGUMENT_TEXT,
+     AT(device), 0, 0, NULL},
+    {"quiet", NULL, "no progress", ARGUMENT_FLAG, AT(quiet), 0, 0, NULL},
+    {"help", NULL, "print this", ARGUMENT_FLAG, AT(help), 0, 0, NULL},
+};
+static const struct argument_list arguments = {rows, sizeof rows / sizeof rows[0]};
+
+static const struct speed_options default_options = {
+    .radius = ROOM_RADIUS, .threads = THREADS_AS_THEY_ARE, .runs = 9, .device = "auto"};
+
+struct bench {
+    const struct speed_options *options;
+    struct report report;
+    struct config_list configs;
+    VkExtent2D sizes[MAX_SIZES];
+    size_t size_count;
+    struct speed_device device;
+    struct speed speed;
+    struct speed_vs vs;
+    struct speed_start starts[MAX_CONFIGS];
+};
+
+/* --- What to measure --- */
+
+static bool parse_size(const char *name, VkExtent2D *size)
+{
+    static const struct {
+        const char *name;
+        VkExtent2D size;
+    } known[] = {
+        {"720p", {1280, 720}},
+        {"1080p", {1920, 1080}},
+        {"2160p", {3840, 2160}},
+        {"8k", {7680, 4320}},
+    };
+    int end = 0;
+    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
+        if (text_equal_nocase(known[i].name, name)) {
+            *size = known[i].size;
+            return true;
+        }
+    }
+    return sscanf(name, "%5ux%5u%n", &size->width, &size->height, &end) == 2 && !name[end] &&
+           size->width >= 1 && size->width <= 65535 && size->height >= 1 && size->height <= 65535;
+}
+
+static bool choose_sizes(struct bench *b, const char *names, struct tool_error *err)
+{
+    while (*names) {
+        char name[64];
+        size_t length = strcspn(names, ",");
+        snprintf(name, sizeof name, "%.*s", (int)length, names);
+        names += length + (names[length] == ',');
+        if (!*name)
+            continue;
+        if (b->size_count == MAX_SIZES)
+            return fail(err, EXIT_USAGE, "--size names more than %d sizes", (int)MAX_SIZES);
+        if (!parse_size(name, &b->sizes[b->size_count++]))
+            return fail(err, EXIT_USAGE, "--size is '%s', want WxH, 720p, 1080p, 2160p or 8k",
+                        name);
+    }
+    return b->size_count > 0 || fail(err, EXIT_USAGE, "--size names nothing");
+}
+
+/* --method and its numbers, in the names of settings. */
+static bool name_methods(const struct speed_options *o, struct text *names, struct tool_error *err)
+{
+    const vkao_ssao_params params = vkao_ssao_params_default();
+    const unsigned slices = o->slices ? o->slices : params.slice_count;
+    const unsigned steps = o->steps ? o->steps : params.step_count;
+    const unsigned samples = o->samples ? o->samples : params.sample_count;
+    const char *rest = o->method;
+    if (!rest && (o->slices || o->steps || o->samples))
+        return fail(err, EXIT_USAGE, "--slices, --steps and --samples belong to --method");
+    while (rest && *rest) {
+        int length = (int)strcspn(rest, ",");
+        bool has_samples = strncmp(rest, "sphere", 6) == 0 || strncmp(rest, "hemisphere", 10) == 0;
+        bool is_raymarch = strncmp(rest, "raymarch", 8) == 0;
+        if (has_samples)
+            text_add(names, ",%.*s-%u", length, rest, samples);
+        else
+            text_add(names, ",%.*s-%ux%u", length, rest, is_raymarch ? samples : slices, steps);
+        rest += length + (rest[length] == ',');
+    }
+    return true;
+}
+
+static bool choose_configs(struct bench *b, struct tool_error *err)
+{
+    const struct speed_options *o = b->options;
+    struct text names = {0};
+    const char *option = o->configs ? "--configs" : o->preset ? "--preset" : "--method";
+    if (o->configs)
+        text_add(&names, ",%s", o->configs);
+    if (o->preset)
+        text_add(&names, ",%s", o->preset);
+    if (o->scaling && !o->configs && !o->preset && !o->method)
+        text_add(&names, "vbao-default");
+    bool ok = name_methods(o, &names, err);
+    if (names.out_of_memory)
+        ok = fail(err, EXIT_MEMORY, "out of memory");
+    ok = ok && configs_choose(option, names.data, &b->configs, err);
+    text_free(&names);
+    for (size_t i = 0; ok && o->bent_normals && i < b->configs.count; i++) {
+        const struct config *c = &b->configs.rows[i];
+        if (c->method != VKAO_SSAO_GTAO && c->method != VKAO_SSAO_VBAO &&
+            c->method != VKAO_SSAO_RAYMARCH)
+            ok = fail(err, EXIT_USAGE, "--bent-normals: %s has none", c->name);
+    }
+    return ok;
+}
+
+/* --- Measuring --- */
+
+static bool add_rows(struct bench *b, VkExtent2D size, struct tool_error *err)
+{
+    for (size_t c = 0; c < b->configs.count; c++)
+        if (!speed_add_row(&b->speed, &b->configs.rows[c], size, b->options->radius, err))
+            return false;
+    return true;
+}
+
+static bool measure_size(struct bench *b, VkExtent2D size, struct tool_error *err)
+{
+    const struct speed_options *o = b->options;
+    struct speed_images images = {0};
+    struct room room = {0};
+    size_t first = b->speed.count;
+    report_note(&b->report, "%u x %u: %zu setting%s, %u run%s", size.width, size.height,
+                b->configs.count, b->configs.count == 1 ? "" : "s", o->runs,
+                o->runs == 1 ? "" : "s");
+    bool ok = speed_size_check(&b->device, size, err) &&
+              room_create(size.width, size.height, o->sky, &room, err) &&
+              (!o->dump || room_dump(&room, o->dump, err)) &&
+              speed_images_create(&b->device, &room, &images, err);
+    room_free(&room);
+    ok = ok && add_rows(b, size, err) &&
+         speed_measure(&b->device, &b->speed, first, &images, &b->vs, err);
+    speed_images_destroy(&b->device, &images);
+    return ok;
+}
+
+/* A size that the device cannot hold is left out, if there are others. */
+static bool measure_sizes(struct bench *b, struct tool_error *err)
+{
+    for (size_t i = 0; i < b->size_count; i++) {
+        struct tool_error once = {0};
+        size_t before = b->speed.count;
+        if (measure_size(b, b->sizes[i], &once))
+            continue;
+        bool is_limit = once.code == EXIT_MEMORY || once.code == EXIT_DEVICE;
+        if (!is_limit || b->size_count == 1 || b->speed.count != before) {
+            *err = once;
+            return false;
+        }
+        report_note(&b->report, "%u x %u left out: %s", b->sizes[i].width, b->sizes[i].height,
+                    once.message);
+    }
+    if (b->speed.count == 0)
+        return fail(err, EXIT_DEVICE, "no size fits the device");
+    return true;
+}
+
+static bool open_device(struct bench *b, struct tool_error *err)
+{
+    const struct speed_options *o = b->options;
+    const struct speed_features features = {
+        .composite = o->composite, .bent_normals = o->bent_normals, .half_view_z = o->half_view_z};
+    if (!speed_device_create(o->device, configs_method_mask(&b->configs), features, &b->device,
+                             err))
+        return false;
+    snprintf(b->speed.device, sizeof b->speed.device, "%s", b->device.gpu.properties.deviceName);
+    return true;
+}
+
+static bool measure_starts(struct bench *b, struct tool_error *err)
+{
+    const struct speed_options *o = b->options;
+    for (size_t c = 0; c < b->configs.count; c++) {
+        report_note(&b->report, "%s: %u starts", b->configs.rows[c].name, 2 * o->runs);
+        if (!speed_start_measure(o->device, &b->configs.rows[c], b->sizes[0], o->runs,
+                                 b->speed.device, &b->starts[c], err))
+            return false;
+    }
+    return true;
+}
+
+static bool measure(struct bench *b, struct tool_error *err)
+{
+    const struct speed_options *o = b->options;
+    bool ok = true;
+    if (o->start)
+        return measure_starts(b, err);
+    if (!open_device(b, err))
+        return false;
+    if (o->scaling)
+        ok = speed_scaling(&b->device, &b->configs.rows[0], b->sizes[0], o->sky, &b->speed, err);
+    else
+        ok = measure_sizes(b, err);
+    speed_finish(&b->speed);
+    return ok;
+}
+
+/* --- Command --- */
+
+static bool check(const struct bench *b, struct tool_error *err)
+{
+    const struct speed_options *o = b->options;
+    const bool instead = o->start || o->scaling || o->memory;
+    if (o->start + o->scaling + o->memory > 1)
+        return fail(err, EXIT_USAGE, "--start, --scaling and --memory exclude one another");
+    if (instead && (o->vs || o->dump))
+        return fail(err, EXIT_USAGE,
+                    "--vs and --dump do not go with --start, --scaling or --memory");
+    if (o->plot && (o->start || o->memory))
+        return fail(err, EXIT_USAGE, "--plot does not go with --start or --memory");
+    if (o->json && o->memory)
+        return fail(err, EXIT_USAGE, "--json does not go with --memory");
+    if (o->vs && b->size_count > 1)
+        return fail(err, EXIT_USAGE, "--vs compares at one --size");
+    if (o->dump && b->size_count > 1)
+        return fail(err, EXIT_USAGE, "--dump writes one --size");
+    if ((o->start || o->scaling) && b->size_count > 1)
+        return fail(err, EXIT_USAGE, "--start and --scaling take one --size");
+    if (o->scaling && b->configs.count > 1)
+        return fail(err, EXIT_USAGE, "--scaling takes one setting");
+    return true;
+}
+
+static bool prepare(struct bench *b, struct tool_error *err)
+{
+    const struct speed_options *o = b->options;
+    const char *sizes = o->memory ? "720p,1080p,2160p,8k" : "1080p";
+    if (!choose_sizes(b, o->size ? o->size : sizes, err) || !choose_configs(b, err) ||
+        !check(b, err))
+        return false;
+    if (o->threads != THREADS_AS_THEY_ARE) {
+        char number[16];
+        snprintf(number, sizeof number, "%u", o->threads);
+        setenv("LP_NUM_THREADS", number, 1); /* lavapipe reads it when it starts */
+        snprintf(b->speed.threads, sizeof b->speed.threads, ", LP_NUM_THREADS %s", number);
+    }
+    b->speed.runs = o->runs;
+    b->speed.radius = o->radius;
+    b->vs.command = o->vs;
+    return true;
+}
+
+static bool add_report(const struct bench *b, bool markdown, struct text *text,
+                       struct tool_error *err)
+{
+    const struct speed_options *o = b->options;
+    if (o->memory)
+        return speed_memory(o->device, b->sizes, b->size_count, markdown, text, err);
+    if (o->start)
+        speed_start_report(b->starts, b->configs.count, &b->speed, b->sizes[0], markdown, text);
+    else if (o->scaling)
+        speed_scaling_report(&b->speed, markdown, text);
+    else if (markdown)
+        speed_markdown(&b->speed, text);
+    else
+        speed_text(&b->speed, &b->vs, text);
+    return true;
+}
+
+static bool put_out(const struct bench *b, struct tool_error *err)
+{
+    const struct speed_options *o = b->options;
+    const bool json_on_stdout = o->json && strcmp(o->json, "-") == 0;
+    struct text text = {0};
+    bool ok = true;
+    if (o->text || !(o->markdown || json_on_stdout))
+        ok = add_report(b, false, &text, err);
+    if (ok && o->markdown)
+        ok = add_report(b, true, &text, err);
+    if (text.out_of_memory)
+        ok = fail(err, EXIT_MEMORY, "out of memory");
+    if (ok && text.data)
+        fputs(text.data, stdout);
+    text_free(&text);
+    if (ok && o->json)
+        ok = json_write(o->json,
+                        o->start ? speed_start_json(b->starts, b->configs.count, o->runs)
+                                 : speed_json(&b->speed, &b->vs),
+                        err);
+    if (ok && o->plot)
+        ok = (o->scaling ? speed_scaling_plot : speed_plot)(&b->speed, o->plot, err);
+    return ok;
+}
+
+static void print_help(void)
+{
+    struct text text = {0};
+    text_add(&text,
+             "Usage: vkao-bench speed [OPTION]...\n\n"
+             "Device time of every stage, by timestamps. The scene is a furnished room,\n"
+             "computed at any size: view z 2 to 9, horizontal field of view 60 degrees.\n"
+             "Depth is R32_SFLOAT view z, normals R8G8B8A8_SNORM, AO R8_UNORM; all stay on\n"
+             "the device. Settings take turns, so that a busy machine slows all of them.\n\n");
+    arguments_help(&arguments, &text);
+    if (text.data && !text.out_of_memory)
+        fputs(text.data, stdout);
+    text_free(&text);
+}
+
+int command_speed(int argc, char **argv)
+{
+    struct speed_options options = default_options;
+    struct bench b = {.options = &options};
+    struct tool_error err = {0};
+    const char *positional;
+    bool ok = arguments_parse(&arguments, argc, argv, &options, &positional, &err);
+    if (ok && options.help) {
+        print_help();
+        return EXIT_OK;
+    }
+    if (ok && positional)
+        ok = fail(&err, EXIT_USAGE, "'%s' is no option", positional);
+    b.report.verbosity = options.quiet ? REPORT_QUIET : REPORT_NORMAL;
+    ok = ok && prepare(&b, &err) && (options.memory || measure(&b, &err)) && put_out(&b, &err);
+    if (!ok && err.code == EXIT_USAGE)
+        fail_hint(&err, "'vkao-bench speed --help' explains the options");
+    if (!ok)
+        report_error(&err);
+    speed_device_destroy(&b.device);
+    speed_vs_free(&b.vs);
+    speed_free(&b.speed);
+    return ok ? EXIT_OK : err.code;
+}

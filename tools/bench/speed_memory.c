@@ -1,0 +1,97 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * How much scratch memory frames take, in the words of vkao_frame_scratch. */
+#include "speed.h"
+
+#include <vulkan/vulkan.h>
+
+static const struct kind {
+    const char *name;
+    bool bent_normals, ao_in_scratch, half_resolution, half_view_z;
+} kinds[] = {
+    {.name = "AO"},
+    {.name = "AO, half view z", .half_view_z = true},
+    {.name = "AO, half resolution", .half_resolution = true},
+    {.name = "AO, both halves", .half_resolution = true, .half_view_z = true},
+    {.name = "bent normals", .bent_normals = true},
+    {.name = "bent normals, half resolution", .bent_normals = true, .half_resolution = true},
+    {.name = "composite, no AO image", .ao_in_scratch = true},
+    {.name = "composite, half resolution", .ao_in_scratch = true, .half_resolution = true},
+};
+enum { KINDS = sizeof kinds / sizeof kinds[0] };
+
+static bool query(const vkao_context *ctx, const struct kind *kind, VkExtent2D extent, double *mb,
+                  struct tool_error *err)
+{
+    const struct speed_features features = {.composite = kind->ao_in_scratch,
+                                            .bent_normals = kind->bent_normals};
+    VkMemoryRequirements need;
+    vkao_images images;
+    vkao_frame_info info;
+    speed_frame_info(features, extent, kind->half_resolution, NULL, &images, &info);
+    if (kind->ao_in_scratch)
+        images.ao = (vkao_image){0};
+    vkao_result result = vkao_frame_scratch(ctx, &info, &need);
+    if (result != VKAO_SUCCESS)
+        return gpu_library_failed(err, "vkao_frame_scratch", result);
+    *mb = (double)need.size * 1e-6;
+    return true;
+}
+
+static void add_head(const VkExtent2D *sizes, size_t count, bool markdown, struct text *text)
+{
+    text_add(text, markdown ? "| scratch, MB |" : "%-32s", "scratch, MB");
+    for (size_t i = 0; i < count; i++)
+        text_add(text, markdown ? " %u × %u |" : "  %5u x %-5u", sizes[i].width, sizes[i].height);
+    text_add(text, markdown ? "\n|---|" : "\n");
+    for (size_t i = 0; markdown && i < count; i++)
+        text_add(text, "---:|%s", i + 1 == count ? "\n" : "");
+}
+
+static bool add_kinds(vkao_context *const contexts[2], const VkExtent2D *sizes, size_t count,
+                      bool markdown, struct text *text, struct tool_error *err)
+{
+    for (size_t k = 0; k < KINDS; k++) {
+        const vkao_context *ctx = contexts[kinds[k].half_view_z];
+        if (!ctx)
+            continue;
+        text_add(text, markdown ? "| %s |" : "%-32s", kinds[k].name);
+        for (size_t i = 0; i < count; i++) {
+            double mb = 0;
+            if (!query(ctx, &kinds[k], sizes[i], &mb, err))
+                return false;
+            text_add(text, markdown ? " %.1f |" : " %11.2f  ", mb);
+        }
+        text_add(text, "\n");
+    }
+    return true;
+}
+
+bool speed_memory(const char *device, const VkExtent2D *sizes, size_t count, bool markdown,
+                  struct text *text, struct tool_error *err)
+{
+    const struct gpu_options options = {.device = device};
+    vkao_context *contexts[2] = {0}; /* by half_view_z; NULL: the device cannot */
+    struct gpu gpu;
+    if (!gpu_create(&options, &gpu, err))
+        return false;
+    bool ok = true;
+    for (int half = 0; ok && half < 2; half++) {
+        vkao_context_info info = gpu_context_info(&gpu, 1u << VKAO_SSAO_VBAO);
+        info.half_view_z = (VkBool32)half;
+        if (half && !gpu.features.shaderStorageImageExtendedFormats)
+            continue;
+        contexts[half] = gpu_context_create(&info, err);
+        ok = contexts[half] != NULL;
+    }
+    if (ok && !markdown)
+        text_add(text, "%s, 10^6 bytes\n", gpu.properties.deviceName);
+    if (ok) {
+        add_head(sizes, count, markdown, text);
+        ok = add_kinds(contexts, sizes, count, markdown, text, err);
+    }
+    for (int half = 0; half < 2; half++)
+        vkao_context_destroy(contexts[half]);
+    gpu_destroy(&gpu);
+    return ok;
+}
