@@ -148,6 +148,19 @@ def mode_comp_is_colour_times_ao_and_keeps_alpha(scratch):
 
 
 @case
+def comp_takes_strength_and_tint(scratch):
+    write_exr(scratch.path('in.exr'), gbuffer(color=True))
+    ao = reference(scratch)
+    scratch.render('in.exr', '-o', 'comp.exr', '--mode', 'comp', '--pixel-type', 'float',
+                   '--strength', 0.75, '--tint', '0.5,0.25,0', *VIEW)
+    comp = read_parts(scratch.path('comp.exr'))[0]
+    shown = 1 + 0.75 * (ao - 1)
+    for name, tint in (('R', 0.5), ('G', 0.25), ('B', 0)):
+        wanted = SCENE.color()[name].astype(np.float32) * (tint + shown * (1 - tint))
+        check_close(comp[name], wanted, 1e-6, 1e-6, name)
+
+
+@case
 def comp_without_alpha_writes_none(scratch):
     write_exr(scratch.path('in.exr'), {**gbuffer(), **SCENE.color(alpha=False)})
     scratch.render('in.exr', '-o', 'comp.exr', '--mode', 'comp', *VIEW)

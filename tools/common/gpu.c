@@ -43,8 +43,28 @@ static bool has_layer(const char *name)
     return found;
 }
 
-static bool create_instance(struct gpu *gpu, bool validation, struct tool_error *err)
+enum { MAX_INSTANCE_EXTENSIONS = 16 };
+
+/* Those of the window system, and debug utils for validation. */
+static bool list_extensions(const struct gpu_options *options,
+                            const char *names[MAX_INSTANCE_EXTENSIONS], uint32_t *count,
+                            struct tool_error *err)
 {
+    const struct gpu_presentation *p = options->presentation;
+    *count = 0;
+    if (p && p->instance_extension_count >= MAX_INSTANCE_EXTENSIONS)
+        return fail(err, EXIT_BUG, "%u instance extensions", p->instance_extension_count);
+    for (uint32_t i = 0; p && i < p->instance_extension_count; i++)
+        names[(*count)++] = p->instance_extensions[i];
+    if (options->validation)
+        names[(*count)++] = VK_EXT_DEBUG_UTILS_EXTENSION_NAME;
+    return true;
+}
+
+static bool create_instance(struct gpu *gpu, const struct gpu_options *options,
+                            struct tool_error *err)
+{
+    const bool validation = options->validation;
     const VkDebugUtilsMessengerCreateInfoEXT messenger = {
         .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
         .messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
@@ -65,7 +85,10 @@ static bool create_instance(struct gpu *gpu, bool validation, struct tool_error 
         .pEnabledValidationFeatures = enables,
     };
     const char *layers[] = {validation_layer};
-    const char *extensions[] = {VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+    const char *extensions[MAX_INSTANCE_EXTENSIONS];
+    uint32_t extension_count;
+    if (!list_extensions(options, extensions, &extension_count, err))
+        return false;
     if (validation && !has_layer(validation_layer)) {
         fail(err, EXIT_DEVICE, "Vulkan validation layer %s is not installed", validation_layer);
         return fail_hint(err, "install the package vulkan-validationlayers");
@@ -85,7 +108,7 @@ static bool create_instance(struct gpu *gpu, bool validation, struct tool_error 
                 },
             .enabledLayerCount = validation ? 1 : 0,
             .ppEnabledLayerNames = layers,
-            .enabledExtensionCount = validation ? 1 : 0,
+            .enabledExtensionCount = extension_count,
             .ppEnabledExtensionNames = extensions,
         },
         NULL, &gpu->instance);
@@ -151,9 +174,27 @@ static VkPhysicalDevice *list_devices(VkInstance instance, uint32_t *count, stru
     return NULL;
 }
 
-static bool pick_device(struct gpu *gpu, const char *wanted, struct tool_error *err)
+/* The queue family to work on, UINT32_MAX if the device has none. */
+static uint32_t find_family(const struct gpu *gpu, VkPhysicalDevice device,
+                            const struct gpu_presentation *presentation)
 {
+    VkQueueFamilyProperties families[32];
+    uint32_t count = 32;
+    VkQueueFlags wanted = VK_QUEUE_COMPUTE_BIT | (presentation ? VK_QUEUE_GRAPHICS_BIT : 0u);
+    vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families);
+    for (uint32_t i = 0; i < count; ++i) {
+        if ((families[i].queueFlags & wanted) == wanted &&
+            (!presentation || presentation->supported(gpu->instance, device, i)))
+            return i;
+    }
+    return UINT32_MAX;
+}
+
+static bool pick_device(struct gpu *gpu, const struct gpu_options *options, struct tool_error *err)
+{
+    const char *wanted = options->device;
     uint32_t count = 0;
+    bool any_fits = false;
     VkPhysicalDevice *devices = list_devices(gpu->instance, &count, err);
     if (!devices)
         return false;
@@ -162,6 +203,11 @@ static bool pick_device(struct gpu *gpu, const char *wanted, struct tool_error *
         VkPhysicalDeviceProperties p;
         vkGetPhysicalDeviceProperties(devices[i], &p);
         int score = device_fits(wanted, i, &p);
+        any_fits = any_fits || score > 0;
+        /* A device without a compute queue says so later; one that cannot present is passed over. */
+        if (options->presentation &&
+            find_family(gpu, devices[i], options->presentation) == UINT32_MAX)
+            continue;
         if (score > best) {
             best = score;
             gpu->physical_device = devices[i];
@@ -171,20 +217,22 @@ static bool pick_device(struct gpu *gpu, const char *wanted, struct tool_error *
     free(devices);
     if (best)
         return true;
+    if (any_fits) {
+        fail(err, EXIT_DEVICE, "no Vulkan device can present on this display");
+        return fail_hint(err, "vkao computes without a display");
+    }
     fail(err, EXIT_DEVICE, "no Vulkan 1.1 device fits --device %s", wanted ? wanted : "auto");
     return fail_hint(err, "vkao devices lists them");
 }
 
-static bool create_device(struct gpu *gpu, struct tool_error *err)
+static bool create_device(struct gpu *gpu, const struct gpu_options *options,
+                          struct tool_error *err)
 {
+    static const char *const swapchain[] = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
     VkQueueFamilyProperties families[32];
     uint32_t count = 32;
     vkGetPhysicalDeviceQueueFamilyProperties(gpu->physical_device, &count, families);
-    gpu->queue_family = UINT32_MAX;
-    for (uint32_t i = count; i-- > 0;) {
-        if (families[i].queueFlags & VK_QUEUE_COMPUTE_BIT)
-            gpu->queue_family = i;
-    }
+    gpu->queue_family = find_family(gpu, gpu->physical_device, options->presentation);
     if (gpu->queue_family == UINT32_MAX)
         return fail(err, EXIT_DEVICE, "%s has no compute queue", gpu->properties.deviceName);
     gpu->timestamp_bits = families[gpu->queue_family].timestampValidBits;
@@ -209,6 +257,8 @@ static bool create_device(struct gpu *gpu, struct tool_error *err)
                                    .queueCount = 1,
                                    .pQueuePriorities = &(float){1.0f},
                                },
+                           .enabledExtensionCount = options->presentation ? 1 : 0,
+                           .ppEnabledExtensionNames = swapchain,
                            .pEnabledFeatures = &gpu->features,
                        },
                        NULL, &gpu->device);
@@ -230,8 +280,8 @@ static bool create_device(struct gpu *gpu, struct tool_error *err)
 bool gpu_create(const struct gpu_options *options, struct gpu *gpu, struct tool_error *err)
 {
     *gpu = (struct gpu){.print_validation = true};
-    if (create_instance(gpu, options->validation, err) && pick_device(gpu, options->device, err) &&
-        create_device(gpu, err))
+    if (create_instance(gpu, options, err) && pick_device(gpu, options, err) &&
+        create_device(gpu, options, err))
         return true;
     gpu_destroy(gpu);
     return false;
@@ -260,7 +310,8 @@ bool gpu_list_devices(struct gpu_device_list *list, struct tool_error *err)
 {
     struct gpu gpu = {0};
     *list = (struct gpu_device_list){0};
-    bool ok = create_instance(&gpu, false, err);
+    const struct gpu_options compute = {0};
+    bool ok = create_instance(&gpu, &compute, err);
     VkPhysicalDevice *devices = ok ? list_devices(gpu.instance, &list->count, err) : NULL;
     if (devices)
         list->properties = calloc(list->count, sizeof *list->properties);

@@ -11,6 +11,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 struct gpu {
     VkInstance instance;
     VkPhysicalDevice physical_device;
@@ -27,11 +31,20 @@ struct gpu {
     bool print_validation;
 };
 
+/* What a device needs that shows pictures in a window; surface and swapchain are the caller's. */
+struct gpu_presentation {
+    const char *const *instance_extensions; /* of the window system */
+    uint32_t instance_extension_count;
+    /* Whether a queue family can present. The family also has graphics, and VK_KHR_swapchain is enabled. */
+    bool (*supported)(VkInstance instance, VkPhysicalDevice device, uint32_t queue_family);
+};
+
 struct gpu_options {
     /* NULL or "auto": a discrete GPU, else an integrated one, else the CPU. "cpu": a software device (lavapipe).
      * A number: index in `vkao devices`. Anything else: the first device whose name contains it. */
     const char *device;
     bool validation; /* core, synchronization and queue-submit validation; fails if the layer is missing */
+    const struct gpu_presentation *presentation; /* NULL: compute alone. Read during gpu_create only */
 };
 
 struct gpu_device_list {
@@ -71,6 +84,17 @@ uint32_t gpu_format_bytes(VkFormat format);
 bool gpu_allocate(struct gpu *gpu, const VkMemoryRequirements *need, VkMemoryPropertyFlags flags,
                   VkDeviceMemory *memory, struct tool_error *err);
 
+/* Host memory that the device copies from or to: visible, coherent, mapped as long as it lives. */
+struct gpu_buffer {
+    VkBuffer buffer;
+    VkDeviceMemory memory;
+    void *mapped;
+};
+
+bool gpu_buffer_create(struct gpu *gpu, uint64_t bytes, VkBufferUsageFlags usage, struct gpu_buffer *buffer,
+                       struct tool_error *err);
+void gpu_buffer_destroy(struct gpu *gpu, struct gpu_buffer *buffer);
+
 /* A command buffer in recording state; gpu_submit ends, runs, waits for and frees it. */
 VkCommandBuffer gpu_begin(struct gpu *gpu, struct tool_error *err);
 bool gpu_submit(struct gpu *gpu, VkCommandBuffer cmd, struct tool_error *err);
@@ -85,4 +109,7 @@ vkao_context *gpu_context_create(const vkao_context_info *info, struct tool_erro
 /* The error of a library call that returned result. */
 bool gpu_library_failed(struct tool_error *err, const char *call, vkao_result result);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -187,25 +187,21 @@ vkao_image gpu_image_slot(const struct gpu_image *image)
     return (vkao_image){image->view, VK_IMAGE_LAYOUT_GENERAL, image->format};
 }
 
-struct staging {
-    VkBuffer buffer;
-    VkDeviceMemory memory;
-    void *mapped;
-};
-
-static void staging_destroy(struct gpu *gpu, struct staging *s)
+void gpu_buffer_destroy(struct gpu *gpu, struct gpu_buffer *buffer)
 {
-    if (s->buffer)
-        vkDestroyBuffer(gpu->device, s->buffer, NULL);
-    if (s->memory)
-        vkFreeMemory(gpu->device, s->memory, NULL);
+    if (buffer->buffer)
+        vkDestroyBuffer(gpu->device, buffer->buffer, NULL);
+    if (buffer->memory)
+        vkFreeMemory(gpu->device, buffer->memory, NULL);
+    *buffer = (struct gpu_buffer){0};
 }
 
-static bool staging_create(struct gpu *gpu, uint64_t bytes, VkBufferUsageFlags usage,
-                           struct staging *s, struct tool_error *err)
+bool gpu_buffer_create(struct gpu *gpu, uint64_t bytes, VkBufferUsageFlags usage,
+                       struct gpu_buffer *buffer, struct tool_error *err)
 {
+    struct gpu_buffer *s = buffer;
     VkMemoryRequirements need;
-    *s = (struct staging){0};
+    *s = (struct gpu_buffer){0};
     VkResult result = vkCreateBuffer(gpu->device,
                                      &(VkBufferCreateInfo){
                                          .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
@@ -227,7 +223,7 @@ static bool staging_create(struct gpu *gpu, uint64_t bytes, VkBufferUsageFlags u
         vk_ok(err, "vkMapMemory",
               vkMapMemory(gpu->device, s->memory, 0, VK_WHOLE_SIZE, 0, &s->mapped)))
         return true;
-    staging_destroy(gpu, s);
+    gpu_buffer_destroy(gpu, s);
     return false;
 }
 
@@ -251,9 +247,9 @@ static bool check_bytes(const struct gpu_image *image, uint64_t bytes, struct to
 bool gpu_image_upload(struct gpu *gpu, struct gpu_image *image, const void *data, uint64_t bytes,
                       struct tool_error *err)
 {
-    struct staging staging;
+    struct gpu_buffer staging;
     if (!check_bytes(image, bytes, err) ||
-        !staging_create(gpu, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, &staging, err))
+        !gpu_buffer_create(gpu, bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT, &staging, err))
         return false;
     memcpy(staging.mapped, data, (size_t)bytes);
     VkCommandBuffer cmd = gpu_begin(gpu, err);
@@ -265,16 +261,16 @@ bool gpu_image_upload(struct gpu *gpu, struct gpu_image *image, const void *data
         gpu_full_barrier(cmd);
     }
     bool ok = cmd && gpu_submit(gpu, cmd, err);
-    staging_destroy(gpu, &staging);
+    gpu_buffer_destroy(gpu, &staging);
     return ok;
 }
 
 bool gpu_image_download(struct gpu *gpu, struct gpu_image *image, void *data, uint64_t bytes,
                         struct tool_error *err)
 {
-    struct staging staging;
+    struct gpu_buffer staging;
     if (!check_bytes(image, bytes, err) ||
-        !staging_create(gpu, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &staging, err))
+        !gpu_buffer_create(gpu, bytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &staging, err))
         return false;
     VkCommandBuffer cmd = gpu_begin(gpu, err);
     if (cmd) {
@@ -293,6 +289,6 @@ bool gpu_image_download(struct gpu *gpu, struct gpu_image *image, void *data, ui
     bool ok = cmd && gpu_submit(gpu, cmd, err);
     if (ok)
         memcpy(data, staging.mapped, (size_t)bytes);
-    staging_destroy(gpu, &staging);
+    gpu_buffer_destroy(gpu, &staging);
     return ok;
 }

@@ -154,7 +154,8 @@ static bool apply_defaults(struct options *options, struct tool_error *err)
 {
     *options = (struct options){.command = COMMAND_RENDER,
                                 .ssao = vkao_ssao_params_default(),
-                                .blur = vkao_blur_params_default()};
+                                .blur = vkao_blur_params_default(),
+                                .composite = vkao_composite_params_default()};
     /* What --quality fills unless it is given. */
     options->ssao.slice_count = options->ssao.step_count = 0;
     options->ssao.thickness = 0.0f;

@@ -46,6 +46,7 @@ struct options {
     vkao_ssao_params ssao; /* slice_count, step_count and thickness 0 until the preset
                               fills them */
     vkao_blur_params blur;
+    vkao_composite_params composite;
 
     const char *device;
     bool validation;
@@ -93,7 +94,7 @@ void options_help(struct text *text);
 
 /* Values of apply. */
 option_apply apply_flag, apply_text, apply_word, apply_float, apply_double, apply_uint,
-    apply_radius, apply_bias, apply_blur, apply_fov, apply_normal, apply_compression, apply_verbose,
-    apply_quiet;
+    apply_radius, apply_bias, apply_blur, apply_tint, apply_fov, apply_normal, apply_compression,
+    apply_verbose, apply_quiet;
 
 #endif

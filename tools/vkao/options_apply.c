@@ -135,6 +135,26 @@ bool apply_blur(struct options *options, const struct option_row *row, const cha
     return apply_uint(options, row, strcmp(argument, "off") == 0 ? "0" : argument, err);
 }
 
+bool apply_tint(struct options *options, const struct option_row *row, const char *argument,
+                struct tool_error *err)
+{
+    float *tint = member(options, row);
+    const char *from = argument;
+    for (int i = 0; i < 3; i++) {
+        char number[64];
+        double value;
+        int length = (int)strcspn(from, ",");
+        snprintf(number, sizeof number, "%.*s", length, from);
+        from += length;
+        bool ends_well = i < 2 ? *from++ == ',' : !*from;
+        if (!ends_well || !text_to_number(number, &value) || !in_range(&row->range, value))
+            return fail(err, EXIT_USAGE, "--%s is %s, want R,G,B, each >= 0 and <= 1", row->name,
+                        argument);
+        tint[i] = (float)value;
+    }
+    return true;
+}
+
 bool apply_fov(struct options *options, const struct option_row *row, const char *argument,
                struct tool_error *err)
 {

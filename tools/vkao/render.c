@@ -2,6 +2,7 @@
 #include "commands.h"
 
 #include "ao.h"
+#include "automatic.h"
 #include "gpu.h"
 #include "output.h"
 #include "placement.h"
@@ -9,7 +10,6 @@
 #include "views.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -76,7 +76,7 @@ static void device_name(const struct session *s, char *name, size_t size)
 
 /* --- Parameters --- */
 
-/* 5 % of the median distance, to two digits. One radius for all frames: AO must not flicker. */
+/* One radius for all frames: AO must not flicker. */
 static float choose_radius(struct session *s, const struct gbuffer *g)
 {
     if (!s->options->radius_is_auto)
@@ -85,21 +85,16 @@ static float choose_radius(struct session *s, const struct gbuffer *g)
         return s->auto_radius;
     if (!(g->median_z > 0))
         return 1.0f;
-    char digits[32];
-    snprintf(digits, sizeof digits, "%.2g", g->median_z * 0.05);
-    float radius = strtof(digits, NULL);
-    s->auto_radius = radius > 1e-18f ? radius : 1e-18f;
+    s->auto_radius = automatic_radius(g);
     return s->auto_radius;
 }
 
-/* Steps of half depth must not occlude one another. */
 static float choose_bias(const struct session *s, const struct gbuffer *g, float radius)
 {
     float bias = s->options->ssao.bias;
-    float step = (float)(g->depth_step / (double)radius);
-    if (s->options->bias_is_given || !(step > bias))
+    if (s->options->bias_is_given || !(automatic_bias(g, radius, bias) > bias))
         return bias;
-    bias = step < 1.0f ? step : 1.0f;
+    bias = automatic_bias(g, radius, bias);
     report_warn(s->report, "bias", "bias raised to %.2g for the steps of half depth", (double)bias);
     return bias;
 }
@@ -160,7 +155,7 @@ static bool compute(struct session *s, struct rendered_view *view, struct tool_e
         .view = g->view,
         .ssao = view->ssao,
         .blur = s->options->blur,
-        .composite = vkao_composite_params_default(),
+        .composite = s->options->composite,
         .half_resolution = s->options->half_resolution,
         .bent_normals = s->options->bent_normals,
     };

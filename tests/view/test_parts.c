@@ -1,0 +1,276 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The viewer's table of parameters against the command line of vkao, quoting, and the probe's
+ * arithmetic. */
+#include "options.h"
+#include "probe.h"
+#include "settings.h"
+#include "shell.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+#include <cmocka.h>
+
+static uint32_t state = 1;
+
+static double uniform(void)
+{
+    state = state * 1664525u + 1013904223u;
+    return (state >> 8) / 16777216.0;
+}
+
+/* --- Settings --- */
+
+static const struct option_row *find_option(const char *name)
+{
+    for (size_t i = 0; i < option_table_count; i++)
+        if (strcmp(option_table[i].name, name) == 0)
+            return &option_table[i];
+    return NULL;
+}
+
+static void every_option_of_the_table_is_one_of_vkao(void **unused)
+{
+    (void)unused;
+    for (size_t i = 0; i < param_count; i++) {
+        const struct option_row *row = params[i].option ? find_option(params[i].option) : NULL;
+        if (params[i].option && !row)
+            fail_msg("vkao has no --%s", params[i].option);
+        if (!row || params[i].kind == PARAM_CHOICE || params[i].kind == PARAM_COLOR)
+            continue;
+        if (params[i].low < row->range.low || params[i].high > row->range.high)
+            fail_msg("--%s is offered from %g to %g", params[i].option, params[i].low,
+                     params[i].high);
+    }
+}
+
+/* A field that the panel cannot change would be one that nobody sees. */
+static void every_field_of_the_header_has_a_row(void **unused)
+{
+    static const struct {
+        size_t offset, bytes;
+    } left_out[] = {
+        {offsetof(struct setting, ssao.struct_size), 4},
+        {offsetof(struct setting, ssao.reserved), 4},
+        {offsetof(struct setting, ssao.reserved_too), 4},
+        {offsetof(struct setting, blur.struct_size), 4},
+        {offsetof(struct setting, blur.reserved), 4},
+        {offsetof(struct setting, composite.struct_size), 4},
+        {offsetof(struct setting, composite.reserved), 4},
+    };
+    unsigned char covered[sizeof(struct setting)] = {0};
+    (void)unused;
+    for (size_t i = 0; i < param_count; i++)
+        memset(covered + params[i].offset, 1, params[i].kind == PARAM_COLOR ? 12 : 4);
+    for (size_t i = 0; i < sizeof left_out / sizeof *left_out; i++)
+        memset(covered + left_out[i].offset, 1, left_out[i].bytes);
+    for (size_t i = 0; i < sizeof covered; i++)
+        if (!covered[i])
+            fail_msg("byte %zu of struct setting is in no row", i);
+}
+
+static void defaults_are_in_the_range_offered(void **unused)
+{
+    struct setting s = setting_default();
+    (void)unused;
+    for (size_t i = 0; i < param_count; i++) {
+        const struct param *p = &params[i];
+        assert_true(param_is_default(p, &s));
+        double value = p->kind == PARAM_FLOAT  ? (double)*(float *)param_of(&s, p)
+                       : p->kind == PARAM_UINT ? *(uint32_t *)param_of(&s, p)
+                                               : p->low;
+        if (value < p->low || value > p->high)
+            fail_msg("the default of %s is %g", p->label, value);
+    }
+}
+
+static void randomise(const struct param *p, struct setting *s)
+{
+    double value = p->low + (p->high - p->low) * uniform();
+    int choices = 0;
+    switch (p->kind) {
+    case PARAM_FLOAT:
+        *(float *)param_of(s, p) = (float)value;
+        break;
+    case PARAM_UINT:
+        *(uint32_t *)param_of(s, p) = (uint32_t)(value + 0.5);
+        break;
+    case PARAM_CHOICE:
+        while (p->choices[choices].word)
+            choices++;
+        memcpy(param_of(s, p), &p->choices[(int)(uniform() * choices)].value, sizeof(int));
+        break;
+    case PARAM_SWITCH:
+        *(VkBool32 *)param_of(s, p) = uniform() < 0.5;
+        break;
+    case PARAM_COLOR:
+        for (int i = 0; i < 3; i++)
+            ((float *)param_of(s, p))[i] = (float)uniform();
+        break;
+    }
+}
+
+static void parse(char *line, struct options *options)
+{
+    char *words[64] = {(char[]){"vkao"}, (char[]){"in.exr"}, (char[]){"-oout.exr"}};
+    size_t count = 3;
+    struct tool_error err = {0};
+    for (char *word = strtok(line, " "); word && count < 63; word = strtok(NULL, " "))
+        words[count++] = word;
+    if (!options_parse((int)count, words, options, &err))
+        fail_msg("%s", err.message);
+}
+
+static void vkao_reads_back_what_save_writes(void **unused)
+{
+    (void)unused;
+    for (int round = 0; round < 2000; round++) {
+        struct setting s = setting_default();
+        struct text line = {0}, unsaid = {0};
+        struct options o;
+        for (size_t i = 0; i < param_count; i++)
+            if (uniform() < 0.4)
+                randomise(&params[i], &s);
+        setting_add_options(&s, VIEW_COMPOSITE, &line, &unsaid);
+        assert_non_null(line.data);
+        parse(line.data, &o);
+        const struct setting back = {
+            .ssao = o.ssao,
+            .blur = o.blur,
+            .composite = o.composite,
+            .half_resolution = o.half_resolution,
+        };
+        for (size_t i = 0; i < param_count; i++) {
+            const struct param *p = &params[i];
+            size_t bytes = p->kind == PARAM_COLOR ? 12 : 4;
+            if ((p->option || p->kind == PARAM_SWITCH) && !p->needs &&
+                memcmp(param_of_const(&back, p), param_of_const(&s, p), bytes) != 0)
+                fail_msg("%s is read back otherwise", p->label);
+            if (!p->option && !param_is_default(p, &s) && p->needs)
+                assert_non_null(strstr(unsaid.data, p->label));
+        }
+        assert_true(o.bias_is_given && !o.radius_is_auto);
+        text_free(&line);
+        text_free(&unsaid);
+    }
+}
+
+static void standard_setting_needs_radius_and_bias_alone(void **unused)
+{
+    struct setting s = setting_default();
+    struct text line = {0}, unsaid = {0};
+    (void)unused;
+    setting_add_options(&s, VIEW_AO, &line, &unsaid);
+    assert_string_equal(line.data, " --radius 0.5 --bias 0.005");
+    assert_null(unsaid.data);
+    text_free(&line);
+    setting_apply_preset(&s, VKAO_QUALITY_FAST);
+    setting_add_options(&s, VIEW_AO, &line, &unsaid);
+    assert_string_equal(line.data, " --quality fast --radius 0.5 --bias 0.005");
+    text_free(&line);
+}
+
+/* --- Quoting --- */
+
+static void shell_reads_back_what_was_quoted(void **unused)
+{
+    static const char *const words[] = {"plain",      "two words", "it's", "$HOME `ls` \\ \"x\"",
+                                        "*.exr",      "",          "a\tb", "~/x",
+                                        "--name=v=w", "!x#y;z&",   "'''",  "\xc3\xa9.exr"};
+    (void)unused;
+    for (size_t i = 0; i < sizeof words / sizeof *words; i++) {
+        struct text command = {0};
+        char back[256] = "";
+        text_add(&command, "printf %%s ");
+        text_add_quoted(&command, words[i]);
+        FILE *shell = popen(command.data, "r");
+        assert_non_null(shell);
+        size_t length = fread(back, 1, sizeof back - 1, shell);
+        back[length] = '\0';
+        assert_int_equal(pclose(shell), 0);
+        assert_string_equal(back, words[i]);
+        text_free(&command);
+    }
+}
+
+/* --- Probe --- */
+
+/* Matrices that engines use; columns. */
+static void fill_projection(int kind, float p[16])
+{
+    static const float perspective[16] = {1.2f, 0,     0,          0,  0, -2.1f, 0,           0,
+                                          0.1f, -0.2f, -1.001001f, -1, 0, 0,     -0.1001001f, 0};
+    static const float reversed[16] = {1.2f, 0,    0, 0, 0, 2.1f, 0,    0,
+                                       0.1f, 0.2f, 0, 1, 0, 0,    0.1f, 0};
+    static const float orthographic[16] = {0.2f, 0, 0,      0, 0,    -0.3f, 0,       0,
+                                           0,    0, -0.01f, 0, 0.1f, 0.05f, -0.001f, 1};
+    const float *all[] = {perspective, reversed, orthographic};
+    memcpy(p, all[kind], sizeof perspective);
+}
+
+static void probe_finds_the_point_that_was_projected(void **unused)
+{
+    const VkExtent2D extent = {320, 200};
+    (void)unused;
+    for (int round = 0; round < 3000; round++) {
+        const int kind = round % 3;
+        vkao_view view = vkao_view_default();
+        fill_projection(kind, view.projection);
+        view.depth_encoding = (vkao_depth_encoding)(round / 3 % 4);
+        view.axis = kind == 2 ? VKAO_VIEW_AXIS_NEGATIVE_Z : VKAO_VIEW_AXIS_FROM_MATRIX;
+        if (round % 2)
+            view.viewport = (VkRect2D){{-30, 12}, {400, 170}};
+        const VkRect2D port = round % 2 ? view.viewport : (VkRect2D){.extent = extent};
+        const double sign = kind == 1 ? 1 : -1, z = 0.5 + 40 * uniform();
+        const double point[3] = {(uniform() - 0.5) * z, (uniform() - 0.5) * z, sign * z};
+        double clip[4], found[3];
+        for (int row = 0; row < 4; row++) {
+            clip[row] = (double)view.projection[12 + row];
+            for (int column = 0; column < 3; column++)
+                clip[row] += (double)view.projection[column * 4 + row] * point[column];
+        }
+        double length = sqrt(point[0] * point[0] + point[1] * point[1] + z * z);
+        const double depths[] = {clip[2] / clip[3], z, kind == 2 ? z : length, 1 / z};
+        double column = (clip[0] / clip[3] + 1) / 2 * port.extent.width + port.offset.x - 0.5;
+        double row = (clip[1] / clip[3] + 1) / 2 * port.extent.height + port.offset.y - 0.5;
+        assert_true(unproject(&view, extent, column, row, depths[view.depth_encoding], found));
+        for (int i = 0; i < 3; i++)
+            if (!(fabs(found[i] - point[i]) < 1e-6 * z))
+                fail_msg("round %d: %g, want %g", round, found[i], point[i]);
+    }
+}
+
+static void probe_knows_background(void **unused)
+{
+    const VkExtent2D extent = {4, 4};
+    double position[3];
+    vkao_view view = vkao_view_default();
+    (void)unused;
+    fill_projection(0, view.projection);
+    assert_false(unproject(&view, extent, 1, 1, 1.0, position));
+    assert_false(unproject(&view, extent, 1, 1, NAN, position));
+    for (int e = VKAO_DEPTH_VIEW_Z; e <= VKAO_DEPTH_INVERSE_Z; e++) {
+        view.depth_encoding = (vkao_depth_encoding)e;
+        assert_false(unproject(&view, extent, 1, 1, 0.0, position));
+        assert_false(unproject(&view, extent, 1, 1, INFINITY, position));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_option_of_the_table_is_one_of_vkao),
+        cmocka_unit_test(every_field_of_the_header_has_a_row),
+        cmocka_unit_test(defaults_are_in_the_range_offered),
+        cmocka_unit_test(vkao_reads_back_what_save_writes),
+        cmocka_unit_test(standard_setting_needs_radius_and_bias_alone),
+        cmocka_unit_test(shell_reads_back_what_was_quoted),
+        cmocka_unit_test(probe_finds_the_point_that_was_projected),
+        cmocka_unit_test(probe_knows_background),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,189 @@
+/* SPDX-License-Identifier: MIT */
+#include "compute.h"
+
+#include <string.h>
+#include <vulkan/vulkan.h>
+
+const char *const stage_names[STAGES] = {"prepare", "ssao", "blur", "composite"};
+
+static bool library_ok(struct tool_error *err, const char *call, vkao_result result)
+{
+    enum exit_code code = EXIT_DEVICE;
+    if (result == VKAO_SUCCESS)
+        return true;
+    if (result == VKAO_ERROR_OUT_OF_HOST_MEMORY || result == VKAO_ERROR_OUT_OF_DEVICE_MEMORY)
+        code = EXIT_MEMORY;
+    else if (result == VKAO_ERROR_INVALID_ARGUMENT)
+        code = EXIT_BUG; /* the panel offers what is in range only */
+    return fail(err, code, "%s: %s", call, vkao_result_string(result));
+}
+
+/* --- Frame and images --- */
+
+static struct shape shape_of(const struct inputs *inputs, const struct setting *setting,
+                             enum view_kind view)
+{
+    struct shape s;
+    memset(&s, 0, sizeof s);
+    s.extent = inputs->extent;
+    s.half_resolution = setting->half_resolution;
+    s.bent = view == VIEW_BENT && method_has_bent(setting->ssao.method);
+    s.composite = view == VIEW_COMPOSITE || view == VIEW_DEPTH || view == VIEW_NORMALS || s.bent;
+    s.inputs = inputs->images;
+    if (view != VIEW_COMPOSITE) {
+        const vkao_image none = {0};
+        s.inputs.color = s.inputs.direct = s.inputs.albedo = s.inputs.specular = none;
+    }
+    return s;
+}
+
+bool computation_fits(const struct computation *c, const struct inputs *inputs,
+                      const struct setting *setting, enum view_kind view)
+{
+    const struct shape wanted = shape_of(inputs, setting, view);
+    return c->frame && memcmp(&wanted, &c->shape, sizeof wanted) == 0;
+}
+
+bool computation_create(struct computation *c, struct gpu *gpu, const vkao_context *ctx,
+                        const struct inputs *inputs, const struct setting *setting,
+                        enum view_kind view, struct tool_error *err)
+{
+    const VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+    const struct shape shape = shape_of(inputs, setting, view);
+    computation_destroy(c);
+    c->gpu = gpu;
+    c->shape = shape;
+    vkao_images images = shape.inputs;
+    bool ok = gpu_image_create(gpu, VK_FORMAT_R32_SFLOAT, shape.extent, usage, &c->ao, err) &&
+              (!shape.bent || gpu_image_create(gpu, VK_FORMAT_R32G32B32A32_SFLOAT, shape.extent,
+                                               usage, &c->bent, err)) &&
+              (!shape.composite || gpu_image_create(gpu, VK_FORMAT_R32G32B32A32_SFLOAT,
+                                                    shape.extent, usage, &c->output, err));
+    images.ao = gpu_image_slot(&c->ao);
+    if (shape.bent)
+        images.bent_normals = gpu_image_slot(&c->bent);
+    if (shape.composite)
+        images.output = gpu_image_slot(&c->output);
+    ok = ok &&
+         library_ok(err, "vkao_frame_create",
+                    vkao_frame_create(ctx,
+                                      &(vkao_frame_info){
+                                          .struct_size = sizeof(vkao_frame_info),
+                                          .stages = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR |
+                                                    (shape.composite ? VKAO_STAGE_COMPOSITE : 0u),
+                                          .extent = shape.extent,
+                                          .images = &images,
+                                          .half_resolution = shape.half_resolution,
+                                      },
+                                      &c->frame));
+    if (!ok)
+        computation_destroy(c);
+    return ok;
+}
+
+void computation_destroy(struct computation *c)
+{
+    if (!c->gpu)
+        return;
+    vkao_frame_destroy(c->frame);
+    gpu_image_destroy(c->gpu, &c->ao);
+    gpu_image_destroy(c->gpu, &c->bent);
+    gpu_image_destroy(c->gpu, &c->output);
+    *c = (struct computation){0};
+}
+
+/* --- Recording --- */
+
+static vkao_composite_params composite_of(const struct computation *c,
+                                          const struct setting *setting, enum view_kind view)
+{
+    vkao_composite_params p = setting->composite;
+    const bool color = c->shape.inputs.color.format != VK_FORMAT_UNDEFINED;
+    if (view == VIEW_DEPTH)
+        p.mode = VKAO_COMPOSITE_VIEW_Z;
+    else if (view == VIEW_NORMALS)
+        p.mode = VKAO_COMPOSITE_NORMALS;
+    else if (view == VIEW_BENT)
+        p.mode = VKAO_COMPOSITE_BENT_NORMALS;
+    else if (!color || (p.mode == VKAO_COMPOSITE_INDIRECT && !c->shape.inputs.direct.format))
+        p.mode = color ? VKAO_COMPOSITE_MULTIPLY : VKAO_COMPOSITE_AO_ONLY;
+    if (view != VIEW_COMPOSITE || !c->shape.inputs.albedo.format)
+        p.multi_bounce = VK_FALSE;
+    if (view != VIEW_COMPOSITE || !c->shape.inputs.specular.format)
+        p.specular = VKAO_SPECULAR_NONE;
+    return p;
+}
+
+static void barrier(VkCommandBuffer cmd, VkPipelineStageFlags from, VkPipelineStageFlags to,
+                    VkAccessFlags before, VkAccessFlags after)
+{
+    vkCmdPipelineBarrier(cmd, from, to, 0, 1,
+                         &(VkMemoryBarrier){
+                             .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                             .srcAccessMask = before,
+                             .dstAccessMask = after,
+                         },
+                         0, NULL, 0, NULL);
+}
+
+static void stamp(VkCommandBuffer cmd, VkQueryPool pool, uint32_t query)
+{
+    if (pool)
+        vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, pool, query);
+}
+
+bool computation_record(const struct computation *c, VkCommandBuffer cmd,
+                        const struct inputs *inputs, const struct setting *setting,
+                        enum view_kind view, VkQueryPool pool, uint32_t query,
+                        struct tool_error *err)
+{
+    const VkPipelineStageFlags compute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
+    const VkPipelineStageFlags readers =
+        VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+    const struct setting s = setting_for_view(setting, view);
+    const vkao_composite_params composite = composite_of(c, &s, view);
+    if (pool)
+        vkCmdResetQueryPool(cmd, pool, query, STAGES + 1);
+    /* The display and the probe of earlier frames read the results -> vkao writes them. */
+    barrier(cmd, readers | compute, compute, VK_ACCESS_SHADER_WRITE_BIT,
+            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+    stamp(cmd, pool, query);
+    vkao_result result = vkao_cmd_prepare(c->frame, cmd, &inputs->view);
+    stamp(cmd, pool, query + 1);
+    if (result == VKAO_SUCCESS)
+        result = vkao_cmd_ssao(c->frame, cmd, &inputs->view, &s.ssao);
+    stamp(cmd, pool, query + 2);
+    if (result == VKAO_SUCCESS)
+        result = vkao_cmd_blur(c->frame, cmd, &inputs->view, &s.blur);
+    stamp(cmd, pool, query + 3);
+    if (result == VKAO_SUCCESS && c->shape.composite)
+        result = vkao_cmd_composite(c->frame, cmd, &inputs->view, &composite);
+    stamp(cmd, pool, query + 4);
+    /* vkao wrote the results -> the display and the probe read them. */
+    barrier(cmd, compute, readers, VK_ACCESS_SHADER_WRITE_BIT,
+            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT);
+    return library_ok(err, "vkao", result);
+}
+
+bool read_stage_times(const struct gpu *gpu, VkQueryPool pool, uint32_t query,
+                      struct stage_times *times)
+{
+    uint64_t ticks[STAGES + 1];
+    uint64_t mask =
+        gpu->timestamp_bits < 64 ? (UINT64_C(1) << gpu->timestamp_bits) - 1 : UINT64_MAX;
+    VkResult result = vkGetQueryPoolResults(gpu->device, pool, query, STAGES + 1, sizeof ticks,
+                                            ticks, sizeof ticks[0], VK_QUERY_RESULT_64_BIT);
+    if (result != VK_SUCCESS)
+        return false;
+    /* Masked after the subtraction: the counter may have wrapped in between. */
+    for (int i = 0; i < STAGES; i++)
+        times->ms[i] = (double)((ticks[i + 1] - ticks[i]) & mask) *
+                       (double)gpu->properties.limits.timestampPeriod * 1e-6;
+    return true;
+}
+
+VkImageView computation_result(const struct computation *c, enum view_kind view)
+{
+    const bool shows_output = view != VIEW_RAW && view != VIEW_AO && view != VIEW_DIFFERENCE;
+    return shows_output ? c->output.view : c->ao.view;
+}

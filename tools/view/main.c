@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * vkao-view: ambient occlusion in a window. */
+#include "viewer.h"
+
+#include "atomic_file.h"
+
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+static void on_signal(int number)
+{
+    atomic_file_remove_pending();
+    _exit(128 + number);
+}
+
+static int print_version(void)
+{
+    uint32_t v = vkao_version();
+    printf("vkao-view %u.%u.%u\n", VK_API_VERSION_MAJOR(v), VK_API_VERSION_MINOR(v),
+           VK_API_VERSION_PATCH(v));
+    return EXIT_OK;
+}
+
+static int run(const struct arguments *arguments)
+{
+    struct tool_error err = {0};
+    struct viewer *viewer = calloc(1, sizeof *viewer);
+    if (!viewer) {
+        fail(&err, EXIT_MEMORY, "out of memory");
+        report_error(&err);
+        return err.code;
+    }
+    if (!viewer_open(viewer, arguments, &err) || !viewer_run(viewer, &err))
+        report_error(&err);
+    viewer_close(viewer);
+    /* Counted to the end: what outlives its device is reported as that goes. */
+    uint32_t messages = viewer->gpu.validation_messages;
+    free(viewer);
+    if (messages > 0 && err.code == EXIT_OK) {
+        fail(&err, EXIT_BUG, "%u messages of the validation layers", messages);
+        report_error(&err);
+    }
+    return err.code;
+}
+
+int main(int argc, char **argv)
+{
+    struct arguments arguments;
+    struct tool_error err = {0};
+    signal(SIGINT, on_signal);
+    signal(SIGTERM, on_signal);
+    if (!arguments_parse(argc, argv, &arguments, &err)) {
+        report_error(&err);
+        return err.code;
+    }
+    int code = EXIT_OK;
+    if (arguments.help)
+        fputs(arguments_help, stdout);
+    else if (arguments.version)
+        code = print_version();
+    else
+        code = run(&arguments);
+    if ((fflush(stdout) != 0 || ferror(stdout)) && code == EXIT_OK) {
+        fail(&err, EXIT_OUTPUT, "standard output: cannot write");
+        report_error(&err);
+        return err.code;
+    }
+    return code;
+}

@@ -1,0 +1,341 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the panel shows, and what it lets people change. */
+#include "viewer.h"
+
+#include "widgets.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* --- Parameters --- */
+
+static void describe(const struct param *p, char *text, size_t size)
+{
+    const struct setting standard = setting_default();
+    const void *at = param_of_const(&standard, p);
+    if (p->kind == PARAM_FLOAT)
+        snprintf(text, size, "%s\n\n%g to %g, default %g. Right click: default", p->help, p->low,
+                 p->high, (double)*(const float *)at);
+    else if (p->kind == PARAM_UINT)
+        snprintf(text, size, "%s\n\n%g to %g, default %u. Right click: default", p->help, p->low,
+                 p->high, *(const uint32_t *)at);
+    else
+        snprintf(text, size, "%s\n\nRight click: default", p->help);
+}
+
+static bool choice_row(const struct param *p, struct setting *s, unsigned there)
+{
+    int now, before;
+    const char *word = "";
+    memcpy(&now, param_of(s, p), sizeof now);
+    before = now;
+    for (const struct param_choice *c = p->choices; c->word; c++)
+        if (c->value == now)
+            word = c->word;
+    if (!ui_begin_choice(p->label, word))
+        return false;
+    for (const struct param_choice *c = p->choices; c->word; c++)
+        if (ui_choice(c->word, c->value == now, (c->needs & ~there) == 0))
+            now = c->value;
+    ui_end_choice();
+    memcpy(param_of(s, p), &now, sizeof now);
+    return now != before;
+}
+
+static bool widget_row(const struct param *p, struct setting *s, unsigned there)
+{
+    void *at = param_of(s, p);
+    bool on, changed;
+    switch (p->kind) {
+    case PARAM_FLOAT:
+        return ui_slider_float(p->label, at, (float)p->low, (float)p->high, p->logarithmic);
+    case PARAM_UINT:
+        return ui_slider_uint(p->label, at, (uint32_t)p->low, (uint32_t)p->high, p->logarithmic);
+    case PARAM_COLOR:
+        return ui_color(p->label, at);
+    case PARAM_CHOICE:
+        return choice_row(p, s, there);
+    case PARAM_SWITCH:
+        on = *(VkBool32 *)at;
+        changed = ui_checkbox(p->label, &on);
+        *(VkBool32 *)at = on;
+        return changed;
+    }
+    return false;
+}
+
+/* Whether it changed. A right click resets; the radius of a file is its automatic one. */
+static bool param_row(struct viewer *v, const struct param *p, struct setting *s)
+{
+    const unsigned there = viewer_images_there(v);
+    bool idle = (p->methods && !(p->methods & 1u << s->ssao.method)) || (p->needs & ~there);
+    char help[256];
+    ui_begin_disabled(idle);
+    bool changed = widget_row(p, s, there);
+    describe(p, help, sizeof help);
+    ui_help(help);
+    if (ui_clicked_right()) {
+        param_reset(p, s);
+        changed = true;
+    }
+    ui_end_disabled();
+    return changed;
+}
+
+static void param_sections(struct viewer *v)
+{
+    struct setting *s = &v->settings[v->active];
+    bool changed = false;
+    for (int g = 0; g < GROUP_COUNT; g++) {
+        const bool open = g != GROUP_COMPOSITE || v->view == VIEW_COMPOSITE;
+        if (!ui_section(group_names[g], open))
+            continue;
+        for (size_t i = 0; i < param_count; i++)
+            if ((int)params[i].group == g)
+                changed = param_row(v, &params[i], s) || changed;
+    }
+    if (changed)
+        viewer_mark_stale(v);
+}
+
+static void presets(struct viewer *v)
+{
+    static const struct {
+        const char *label;
+        vkao_quality quality;
+    } rows[] = {{"fast", VKAO_QUALITY_FAST},
+                {"default", VKAO_QUALITY_DEFAULT},
+                {"high", VKAO_QUALITY_HIGH},
+                {"best", VKAO_QUALITY_BEST}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        if (ui_button(rows[i].label)) {
+            setting_apply_preset(&v->settings[v->active], rows[i].quality);
+            viewer_mark_stale(v);
+        }
+        ui_same_line();
+    }
+    ui_text("preset");
+}
+
+/* --- Files, views, sides --- */
+
+static void file_rows(struct viewer *v)
+{
+    const struct source *s = &v->source;
+    const struct loaded_frame *l = &s->now;
+    if (!source_is_loaded(s)) {
+        ui_text("no file: drop an EXR file here");
+        return;
+    }
+    ui_paragraph(UI_PLAIN, l->path);
+    ui_text("%u x %u", l->gbuffer.width, l->gbuffer.height);
+    if (l->camera_path)
+        ui_help(l->camera_path);
+    if (s->plan.count > 1) {
+        uint32_t frame = (uint32_t)s->frame + 1;
+        if (ui_slider_uint("frame", &frame, 1, (uint32_t)s->plan.count, false) &&
+            frame != s->frame + 1)
+            viewer_load(v, frame - 1, l->view);
+    }
+    if (l->files.view_count > 1 && ui_begin_choice("eye", l->files.views[l->view].name)) {
+        size_t chosen = l->view;
+        for (size_t i = 0; i < l->files.view_count; i++)
+            if (ui_choice(l->files.views[i].name, i == l->view, true))
+                chosen = i;
+        ui_end_choice();
+        if (chosen != l->view)
+            viewer_load(v, s->frame, chosen);
+    }
+}
+
+static void live_rows(struct viewer *v)
+{
+    struct live *l = v->live;
+    const VkExtent2D used = live_used(l);
+    float scale = (float)l->scale;
+    ui_text("%s, %u x %u", live_scene_name(l->kind), used.width, used.height);
+    if (ui_slider_float("resolution", &scale, 0.25f, 1.0f, false))
+        l->scale = (double)scale;
+    ui_help("share of the window's resolution on each axis: vkao_view.valid alone changes, and "
+            "nothing is allocated anew");
+    ui_checkbox("orthographic", &l->camera.orthographic);
+    ui_same_line();
+    ui_checkbox("clock runs", &l->running);
+}
+
+static void view_rows(struct viewer *v)
+{
+    static const char *const labels[VIEW_KINDS] = {"1 raw",     "2 AO",   "3 composite", "4 depth",
+                                                   "5 normals", "6 bent", "7 difference"};
+    for (int i = 0; i < VIEW_KINDS; i++) {
+        if (i % 4)
+            ui_same_line();
+        if (ui_radio(labels[i], (int)v->view == i)) {
+            v->view = (enum view_kind)i;
+            viewer_mark_stale(v);
+        }
+    }
+    if (v->view == VIEW_DIFFERENCE) {
+        float gain = (float)v->gain;
+        if (ui_slider_float("gain", &gain, 1.0f, 16.0f, true))
+            v->gain = (double)gain;
+        ui_help("red: darker than the reference; blue: brighter");
+    }
+}
+
+static void side_rows(struct viewer *v)
+{
+    char a[64], b[64];
+    side_title(v, SIDE_A, a, sizeof a);
+    side_title(v, SIDE_B, b, sizeof b);
+    if (ui_radio(a, v->active == SIDE_A))
+        v->active = SIDE_A;
+    ui_same_line();
+    if (ui_radio(b, v->active == SIDE_B))
+        v->active = SIDE_B;
+    ui_same_line();
+    if (ui_button(v->active == SIDE_A ? "copy to B" : "copy to A")) {
+        v->settings[v->active == SIDE_A ? SIDE_B : SIDE_A] = v->settings[v->active];
+        viewer_mark_stale(v);
+    }
+    ui_same_line();
+    bool wipe = v->wipe;
+    if (ui_checkbox("wipe", &wipe)) {
+        v->wipe = wipe;
+        if (!v->wipe_is_placed)
+            v->wipe_at = 0.5;
+        v->wipe_is_placed = true;
+    }
+}
+
+/* --- What was found --- */
+
+static void time_row(const struct viewer *v, enum side side)
+{
+    const double *ms = v->times[side].ms;
+    double total = 0;
+    for (int i = 0; i < STAGES; i++)
+        total += ms[i];
+    ui_text("%c %7.2f %7.2f %7.2f %7.2f %8.2f", side == SIDE_A ? 'A' : 'B', ms[0], ms[1], ms[2],
+            ms[3], total);
+}
+
+static void time_rows(const struct viewer *v)
+{
+    if (!v->timestamps) {
+        ui_text("this queue has no timestamps");
+        return;
+    }
+    ui_paragraph(UI_DIM, "  prepare    ssao    blur    comp   all ms");
+    ui_help("device time of each stage");
+    for (int s = 0; s < SIDES; s++)
+        if (viewer_needs(v, (enum side)s))
+            time_row(v, (enum side)s);
+}
+
+static void probe_rows(const struct viewer *v)
+{
+    const struct probe_result *r = &v->probed;
+    const VkOffset2D offset = viewer_image_offset(v);
+    if (!r->valid) {
+        ui_paragraph(UI_DIM, "what is under the mouse shows here\n\n ");
+        return;
+    }
+    if (v->wipe)
+        ui_text("texel %d, %d   AO %.4f | %.4f", r->x - offset.x, r->y - offset.y, (double)r->ao[0],
+                (double)r->ao[1]);
+    else
+        ui_text("texel %d, %d   AO %.4f", r->x - offset.x, r->y - offset.y, (double)r->ao[0]);
+    if (r->background) {
+        ui_text("background\n ");
+        return;
+    }
+    ui_text("position %9.4f %9.4f %9.4f", r->position[0], r->position[1], r->position[2]);
+    ui_text("%s %9.4f %9.4f %9.4f", r->normal_is_derived ? "from z  " : "normal  ", r->normal[0],
+            r->normal[1], r->normal[2]);
+}
+
+static void error_rows(const struct viewer *v)
+{
+    if (v->view != VIEW_DIFFERENCE || v->live)
+        return;
+    for (int s = 0; s < SIDES; s++)
+        if (v->error[s] >= 0 && viewer_needs(v, (enum side)s))
+            ui_text("%c: RMSE %.4f to %s", s ? 'B' : 'A', v->error[s],
+                    v->source.now.reference_channel);
+}
+
+static void save_rows(struct viewer *v)
+{
+    struct tool_error err = {0};
+    ui_begin_disabled(!viewer_has_image(v));
+    if (ui_button("Save"))
+        v->save_wanted = true;
+    ui_help("writes the picture, its AO as EXR, and the command line of vkao that makes it; of a "
+            "live scene its G-buffer too");
+    ui_same_line();
+    if (ui_button("copy command") && !viewer_copy_command(v, &err))
+        viewer_say_error(v, &err);
+    ui_end_disabled();
+    if (v->status.text[0])
+        ui_paragraph(v->status.bad ? UI_BAD : UI_DIM, v->status.text);
+}
+
+/* --- On the picture --- */
+
+static void labels(const struct viewer *v)
+{
+    const VkRect2D area = viewer_area(v);
+    const float middle_x = (float)area.offset.x + (float)area.extent.width / 2;
+    const float middle_y = (float)area.extent.height / 2;
+    const char *missing = NULL;
+    if (!viewer_has_image(v))
+        missing = "drop an EXR file here";
+    else if (v->view == VIEW_BENT && !method_has_bent(v->settings[v->active].ssao.method))
+        missing = "bent normals come with vbao, gtao and raymarch";
+    else if (v->view == VIEW_DIFFERENCE && v->live)
+        missing = "a live scene has no reference";
+    else if (v->view == VIEW_DIFFERENCE && !v->source.now.reference.image)
+        missing = "no reference: drop one here, or give --reference";
+    if (missing)
+        ui_label(middle_x - (float)strlen(missing) * 3.5f, middle_y, 1, missing);
+    if (!v->wipe || !v->show_panel)
+        return;
+    char title[64];
+    const float line = (float)floor(v->wipe_at * v->swapchain.extent.width);
+    side_title(v, SIDE_A, title, sizeof title);
+    ui_label(line, 8, 0, title);
+    side_title(v, SIDE_B, title, sizeof title);
+    ui_label(line + 1, 8, 1, title);
+}
+
+void viewer_panel(struct viewer *viewer)
+{
+    struct viewer *v = viewer;
+    labels(v);
+    if (!v->show_panel)
+        return;
+    ui_begin_panel(PANEL_WIDTH, (float)v->swapchain.extent.height);
+    if (v->live)
+        live_rows(v);
+    else
+        file_rows(v);
+    ui_separator();
+    view_rows(v);
+    error_rows(v);
+    ui_separator();
+    side_rows(v);
+    presets(v);
+    ui_begin_scroll(v->status.text[0] ? 260.0f : 170.0f);
+    param_sections(v);
+    ui_end_scroll();
+    ui_separator();
+    time_rows(v);
+    ui_separator();
+    probe_rows(v);
+    ui_separator();
+    save_rows(v);
+    ui_end_panel();
+}

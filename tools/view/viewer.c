@@ -1,0 +1,400 @@
+/* SPDX-License-Identifier: MIT */
+#include "viewer.h"
+
+#include "automatic.h"
+#include "widgets.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+#include <vulkan/vulkan.h>
+
+/* --- What the steps share --- */
+
+void viewer_say(struct viewer *viewer, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(viewer->status.text, sizeof viewer->status.text, format, args);
+    va_end(args);
+    viewer->status.bad = false;
+}
+
+void viewer_say_error(struct viewer *viewer, const struct tool_error *err)
+{
+    viewer_say(viewer, "%s%s%s", err->message, err->hint[0] ? "\n" : "", err->hint);
+    viewer->status.bad = true;
+    report_error(err); /* the panel may be hidden, and says one thing at a time */
+}
+
+bool viewer_has_image(const struct viewer *viewer)
+{
+    return viewer->live || source_is_loaded(&viewer->source);
+}
+
+VkExtent2D viewer_image_extent(const struct viewer *viewer)
+{
+    const struct gbuffer *g = &viewer->source.now.gbuffer;
+    if (viewer->live)
+        return live_used(viewer->live);
+    return source_is_loaded(&viewer->source) ? (VkExtent2D){g->width, g->height} : (VkExtent2D){0};
+}
+
+VkOffset2D viewer_image_offset(const struct viewer *viewer)
+{
+    const struct placement *p = &viewer->source.now.placement;
+    return viewer->live ? (VkOffset2D){0} : (VkOffset2D){(int32_t)p->left, (int32_t)p->top};
+}
+
+VkRect2D viewer_area(const struct viewer *viewer)
+{
+    const VkExtent2D whole = viewer->swapchain.extent;
+    VkRect2D area = {.extent = whole};
+    if (viewer->show_panel && whole.width > PANEL_WIDTH) {
+        area.offset.x = PANEL_WIDTH;
+        area.extent.width = whole.width - PANEL_WIDTH;
+    }
+    return area;
+}
+
+void viewer_fit(struct viewer *viewer)
+{
+    const VkRect2D area = viewer_area(viewer);
+    const VkExtent2D image = viewer_image_extent(viewer);
+    struct placing *p = &viewer->placing;
+    p->fit = true;
+    if (image.width == 0 || image.height == 0)
+        return;
+    p->zoom =
+        fmin((double)area.extent.width / image.width, (double)area.extent.height / image.height);
+    /* Texels of one size each; a live picture rather fills its window. */
+    if (p->zoom > 1 && !viewer->live)
+        p->zoom = floor(p->zoom);
+    p->x = area.offset.x + floor((area.extent.width - image.width * p->zoom) / 2);
+    p->y = area.offset.y + floor((area.extent.height - image.height * p->zoom) / 2);
+}
+
+void viewer_mark_stale(struct viewer *viewer)
+{
+    for (int s = 0; s < SIDES; s++) {
+        viewer->stale[s] = true;
+        viewer->error[s] = -1;
+    }
+    viewer->frames_wanted = FRAMES_IN_FLIGHT + 1;
+}
+
+bool viewer_needs(const struct viewer *viewer, enum side side)
+{
+    return viewer->wipe || viewer->active == side;
+}
+
+const struct computation *viewer_result(const struct viewer *viewer, enum side side)
+{
+    return &viewer->results[side][viewer->live ? viewer->swapchain.frame : 0];
+}
+
+unsigned viewer_images_there(const struct viewer *viewer)
+{
+    if (viewer->live)
+        return NEEDS_COLOR | NEEDS_DIRECT | NEEDS_ALBEDO;
+    return viewer->source.now.color.image ? NEEDS_COLOR : 0u;
+}
+
+void side_title(const struct viewer *viewer, enum side side, char *text, size_t size)
+{
+    const struct setting *s = &viewer->settings[side];
+    snprintf(text, size, "%c %s%s", side == SIDE_A ? 'A' : 'B', method_name(s->ssao.method),
+             s->half_resolution ? " half" : "");
+}
+
+/* --- Files --- */
+
+static void drop_results(struct viewer *viewer)
+{
+    vkDeviceWaitIdle(viewer->gpu.device);
+    for (int s = 0; s < SIDES; s++)
+        for (int f = 0; f < FRAMES_IN_FLIGHT; f++)
+            computation_destroy(&viewer->results[s][f]);
+    if (viewer->display.gpu)
+        display_forget(&viewer->display);
+    viewer->probed.valid = false;
+    for (int f = 0; f < FRAMES_IN_FLIGHT; f++)
+        viewer->probe.requests[f].pending = false;
+    viewer_mark_stale(viewer);
+}
+
+/* What the options left to the file. */
+static void complete_settings(struct viewer *viewer)
+{
+    for (int i = 0; i < SIDES; i++) {
+        struct setting *s = &viewer->settings[i];
+        const struct gbuffer *g = &viewer->source.now.gbuffer;
+        if (!(s->ssao.radius > 0) && viewer->live)
+            s->ssao.radius = live_scene_radius(viewer->live->kind);
+        else if (!(s->ssao.radius > 0))
+            s->ssao.radius = viewer->source.radius;
+        if (!viewer->live && !viewer->bias_is_given[i])
+            s->ssao.bias = automatic_bias(g, s->ssao.radius, s->ssao.bias);
+        /* The colour of a live scene is its indirect light. */
+        if (viewer->live && s->composite.mode == VKAO_COMPOSITE_MULTIPLY)
+            s->composite.mode = VKAO_COMPOSITE_INDIRECT;
+        double far = viewer->live ? viewer->live->camera.distance * 2 : g->max_z;
+        if (far > 0)
+            s->composite.debug_distance = (float)far;
+    }
+}
+
+bool viewer_load(struct viewer *viewer, size_t frame, size_t view)
+{
+    struct tool_error err = {0};
+    const bool other_files = !(viewer->source.radius > 0);
+    const VkExtent2D before = viewer_image_extent(viewer);
+    /* What the results were made of goes away below. */
+    drop_results(viewer);
+    if (!source_load(&viewer->source, frame, view, &viewer->report, &err)) {
+        viewer_say_error(viewer, &err);
+        return false;
+    }
+    for (int i = 0; other_files && i < SIDES; i++) {
+        if (viewer->arguments->options.radius_is_auto)
+            viewer->settings[i].ssao.radius = 0;
+        if (!viewer->bias_is_given[i])
+            viewer->settings[i].ssao.bias = viewer->arguments->settings[i].ssao.bias;
+    }
+    if (other_files)
+        complete_settings(viewer);
+    const VkExtent2D after = viewer_image_extent(viewer);
+    if (before.width != after.width || before.height != after.height)
+        viewer_fit(viewer);
+    viewer->status.text[0] = '\0';
+    return true;
+}
+
+/* --- Opening --- */
+
+static bool open_images(struct viewer *viewer, struct tool_error *err)
+{
+    const struct arguments *a = viewer->arguments;
+    if (a->scene) {
+        viewer->live = live_create(&viewer->gpu, a->scene, err);
+        if (!viewer->live)
+            return false;
+        if (a->time >= 0)
+            viewer->live->running = false;
+        viewer->live->seconds = fmax(a->time, 0);
+        complete_settings(viewer);
+        return true;
+    }
+    if (!source_open(&viewer->source, &viewer->gpu, &a->options, a->reference, err))
+        return false;
+    if (!a->options.input)
+        return true;
+    if (!source_load(&viewer->source, 0, 0, &viewer->report, err))
+        return false;
+    complete_settings(viewer);
+    return true;
+}
+
+/* The image at 1:1 beside the panel, or as much of it as the screen holds. */
+static VkExtent2D window_size(const struct viewer *viewer)
+{
+    const struct arguments *a = viewer->arguments;
+    const uint32_t panel = viewer->show_panel ? PANEL_WIDTH : 0;
+    VkExtent2D image = viewer_image_extent(viewer), largest = window_largest();
+    if (a->width)
+        return (VkExtent2D){a->width, a->height};
+    if (viewer->live || image.width == 0)
+        image = (VkExtent2D){960, 600};
+    image.width += panel;
+    if (panel && image.height < 640)
+        image.height = 640;
+    if (image.width > largest.width)
+        image.width = largest.width;
+    if (image.height > largest.height)
+        image.height = largest.height;
+    return image;
+}
+
+static bool open_window(struct viewer *viewer, struct tool_error *err)
+{
+    struct swapchain *s = &viewer->swapchain;
+    return window_create(&viewer->window, window_size(viewer), "vkao-view", err) &&
+           window_surface(&viewer->window, viewer->gpu.instance, &viewer->surface, err) &&
+           swapchain_create(&viewer->gpu, viewer->surface, s, err) &&
+           (swapchain_resize(s, window_framebuffer(&viewer->window), err) || !err->code) &&
+           display_create(&viewer->gpu, s->render_pass, &viewer->display, err) &&
+           probe_create(&viewer->gpu, &viewer->probe, err);
+}
+
+static bool open_panel(struct viewer *viewer, struct tool_error *err)
+{
+    viewer->panel_is_ready =
+        widgets_create(viewer->window.handle, &viewer->gpu, viewer->swapchain.render_pass,
+                       viewer->swapchain.image_count, err);
+    return viewer->panel_is_ready;
+}
+
+static bool create_timestamps(struct viewer *viewer, struct tool_error *err)
+{
+    if (viewer->gpu.timestamp_bits == 0)
+        return true;
+    VkResult result = vkCreateQueryPool(viewer->gpu.device,
+                                        &(VkQueryPoolCreateInfo){
+                                            .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
+                                            .queryType = VK_QUERY_TYPE_TIMESTAMP,
+                                            .queryCount = SIDES * FRAMES_IN_FLIGHT * (STAGES + 1),
+                                        },
+                                        NULL, &viewer->timestamps);
+    if (result == VK_SUCCESS)
+        return true;
+    viewer->timestamps = VK_NULL_HANDLE;
+    return fail(err, EXIT_MEMORY, "vkCreateQueryPool failed with VkResult %d", (int)result);
+}
+
+bool viewer_open(struct viewer *viewer, const struct arguments *arguments, struct tool_error *err)
+{
+    struct viewer *v = viewer;
+    *v = (struct viewer){.arguments = arguments,
+                         .report = {.verbosity = arguments->options.verbosity},
+                         .view = arguments->view,
+                         .wipe = arguments->wipe >= 0,
+                         .wipe_at = arguments->wipe,
+                         .wipe_is_placed = arguments->wipe >= 0,
+                         .gain = 4,
+                         .show_panel = !arguments->no_panel,
+                         .placing = {.fit = true, .zoom = 1}};
+    memcpy(v->settings, arguments->settings, sizeof v->settings);
+    memcpy(v->bias_is_given, arguments->bias_is_given, sizeof v->bias_is_given);
+    struct gpu_presentation presentation;
+    if (!window_system_start(&presentation, err))
+        return false;
+    const struct gpu_options options = {.device = arguments->options.device,
+                                        .validation = arguments->options.validation,
+                                        .presentation = &presentation};
+    if (!gpu_create(&options, &v->gpu, err))
+        return false;
+    v->context = gpu_context(&v->gpu, 0, err);
+    if (!v->context || !open_images(v, err) || !open_window(v, err) || !open_panel(v, err) ||
+        !create_timestamps(v, err))
+        return false;
+    viewer_mark_stale(v);
+    viewer_fit(v);
+    if (arguments->zoom > 0) {
+        const VkRect2D area = viewer_area(v);
+        const VkExtent2D image = viewer_image_extent(v);
+        v->placing = (struct placing){
+            .zoom = arguments->zoom,
+            .x = area.offset.x + floor((area.extent.width - image.width * arguments->zoom) / 2),
+            .y = area.offset.y + floor((area.extent.height - image.height * arguments->zoom) / 2)};
+    }
+    return true;
+}
+
+void viewer_close(struct viewer *viewer)
+{
+    struct viewer *v = viewer;
+    if (v->gpu.device)
+        drop_results(v);
+    if (v->panel_is_ready)
+        widgets_destroy();
+    probe_destroy(&v->probe);
+    display_destroy(&v->display);
+    swapchain_destroy(&v->swapchain);
+    if (v->surface)
+        vkDestroySurfaceKHR(v->gpu.instance, v->surface, NULL);
+    window_destroy(&v->window);
+    source_close(&v->source);
+    live_destroy(v->live);
+    vkao_context_destroy(v->context);
+    if (v->timestamps)
+        vkDestroyQueryPool(v->gpu.device, v->timestamps, NULL);
+    gpu_destroy(&v->gpu);
+    window_system_stop();
+}
+
+/* --- Running --- */
+
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* What is shown, in a form that other programs can read too. */
+static void update_title(struct viewer *v)
+{
+    char title[sizeof v->title], a[64], b[64], frame[64] = "";
+    const char *name = v->live                        ? live_scene_name(v->live->kind)
+                       : source_is_loaded(&v->source) ? base_name(v->source.now.path)
+                                                      : "no file";
+    side_title(v, v->wipe ? SIDE_A : v->active, a, sizeof a);
+    side_title(v, SIDE_B, b, sizeof b);
+    if (v->source.plan.count > 1)
+        snprintf(frame, sizeof frame, " [%zu/%zu]", v->source.frame + 1, v->source.plan.count);
+    snprintf(title, sizeof title, "%s%s - %s - %s%s%s - %.4g %% - vkao-view", name, frame,
+             view_names[v->view].title, a, v->wipe ? " | " : "", v->wipe ? b : "",
+             v->placing.zoom * 100);
+    if (strcmp(title, v->title) == 0)
+        return;
+    memcpy(v->title, title, sizeof title);
+    window_set_title(&v->window, title);
+}
+
+static void advance_clock(struct viewer *v, double *last)
+{
+    double now = window_time();
+    if (v->live && v->live->running)
+        v->live->seconds += now - *last;
+    *last = now;
+}
+
+static void save_if_wanted(struct viewer *v)
+{
+    struct tool_error err = {0};
+    if (!v->save_wanted)
+        return;
+    v->save_wanted = false;
+    v->frames_wanted = FRAMES_IN_FLIGHT + 1; /* the panel says what came of it */
+    if (!viewer_save(v, &err))
+        viewer_say_error(v, &err);
+}
+
+bool viewer_run(struct viewer *viewer, struct tool_error *err)
+{
+    struct viewer *v = viewer;
+    const uint32_t frames = v->arguments->frames;
+    double last_time = window_time();
+    bool drawn_last = false;
+    v->frames_wanted = FRAMES_IN_FLIGHT + 1;
+    while (!drawn_last) {
+        const bool runs = frames > 0 || (v->live && v->live->running);
+        window_poll(&v->window, !runs && v->frames_wanted == 0 && !v->quit, 0);
+        if (v->window.input.changed)
+            v->frames_wanted = FRAMES_IN_FLIGHT + 1;
+        viewer_handle_input(v);
+        v->quit = v->quit || window_should_close(&v->window);
+        const VkExtent2D framebuffer = window_framebuffer(&v->window);
+        if (framebuffer.width == 0 || framebuffer.height == 0) {
+            /* Minimised: there is nothing to draw into, nor anybody to see it. */
+            if (v->quit)
+                return true;
+            window_poll(&v->window, true, 0.1);
+            continue;
+        }
+        advance_clock(v, &last_time);
+        const bool last = v->quit || (frames > 0 && v->frames_drawn + 1 >= frames);
+        if (last && v->quit && !v->arguments->screenshot && !v->save_wanted)
+            return true;
+        if (viewer_draw(v, last ? v->arguments->screenshot : NULL, err)) {
+            v->frames_drawn++;
+            v->frames_wanted -= v->frames_wanted > 0;
+            drawn_last = last;
+            save_if_wanted(v);
+            update_title(v);
+        } else if (err->code) {
+            return false;
+        }
+    }
+    return true;
+}

@@ -1,0 +1,120 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The state of the viewer, and the steps of one frame. */
+#ifndef VKAO_VIEW_VIEWER_H_
+#define VKAO_VIEW_VIEWER_H_
+
+#include "arguments.h"
+#include "compute.h"
+#include "display.h"
+#include "live.h"
+#include "probe.h"
+#include "settings.h"
+#include "source.h"
+#include "swapchain.h"
+#include "window.h"
+
+enum side { SIDE_A, SIDE_B, SIDES };
+enum drag { DRAG_NONE, DRAG_PAN, DRAG_WIPE, DRAG_ORBIT };
+enum { PANEL_WIDTH = 330 };
+
+/* Where the image is on the screen, in texels of the framebuffer. */
+struct placing {
+    bool fit;
+    double zoom; /* screen texels per image texel */
+    double x, y; /* of the image's upper left corner */
+};
+
+struct status {
+    bool bad;
+    char text[1400];
+};
+
+struct viewer {
+    const struct arguments *arguments;
+    struct report report;
+    struct gpu gpu;
+    struct window window;
+    VkSurfaceKHR surface;
+    struct swapchain swapchain;
+    struct display display;
+    struct probe probe;
+    vkao_context *context;
+    VkQueryPool timestamps; /* VK_NULL_HANDLE if the queue has none */
+    bool panel_is_ready;
+
+    struct source source; /* files, or */
+    struct live *live;    /* a scene; NULL: files */
+
+    struct setting settings[SIDES];
+    bool bias_is_given[SIDES];
+    enum side active;
+    enum view_kind view;
+    bool wipe;
+    double wipe_at; /* screen, texels */
+    bool wipe_is_placed;
+    double gain; /* of the difference */
+
+    struct computation results[SIDES][FRAMES_IN_FLIGHT]; /* of files: only the first of each */
+    bool stale[SIDES]; /* parameters have changed since it was recorded */
+    bool stamped[SIDES][FRAMES_IN_FLIGHT];
+    struct stage_times times[SIDES];
+    double error[SIDES]; /* RMS difference to the reference; < 0: not known */
+    struct probe_result probed;
+
+    bool show_panel;
+    struct placing placing;
+    enum drag drag;
+    double drag_x, drag_y;
+    struct status status;
+    uint64_t frames_drawn;
+    unsigned frames_wanted; /* to draw before waiting for events */
+    bool quit;
+    bool save_wanted; /* of the frame that is drawn next */
+    char title[512];
+};
+
+/* Opens everything that the arguments say. Errors as the exit codes. On failure viewer_close is to
+ * be called too. */
+bool viewer_open(struct viewer *viewer, const struct arguments *arguments, struct tool_error *err);
+/* Until somebody quits or the frames asked for are drawn. */
+bool viewer_run(struct viewer *viewer, struct tool_error *err);
+void viewer_close(struct viewer *viewer);
+
+/* --- Steps --- */
+
+/* viewer_input.c: acts on keys, mouse and dropped files. */
+void viewer_handle_input(struct viewer *viewer);
+/* viewer_frame.c: draws and presents one frame; with a path it is written there as a PNG. False
+ * without an error in err: there was nothing to draw into. */
+bool viewer_draw(struct viewer *viewer, const char *capture, struct tool_error *err);
+/* panel.c: widgets of one frame. */
+void viewer_panel(struct viewer *viewer);
+/* save.c: writes command line, EXR and PNG of what the last frame showed. */
+bool viewer_save(struct viewer *viewer, struct tool_error *err);
+/* The command line alone, into the clipboard. */
+bool viewer_copy_command(struct viewer *viewer, struct tool_error *err);
+
+/* --- What the steps share --- */
+
+void viewer_say(struct viewer *viewer, const char *format, ...) TOOL_PRINTF(2, 3);
+void viewer_say_error(struct viewer *viewer, const struct tool_error *err);
+/* Loads a frame of the sequence; what is wrong with it is said in the panel. */
+bool viewer_load(struct viewer *viewer, size_t frame, size_t view);
+bool viewer_has_image(const struct viewer *viewer);
+/* Of the image shown, its padding left out; and where that begins in the images. */
+VkExtent2D viewer_image_extent(const struct viewer *viewer);
+VkOffset2D viewer_image_offset(const struct viewer *viewer);
+/* The part of the window that the panel leaves. */
+VkRect2D viewer_area(const struct viewer *viewer);
+void viewer_fit(struct viewer *viewer);
+void viewer_mark_stale(struct viewer *viewer);
+/* Whether a side is seen, or asked about. */
+bool viewer_needs(const struct viewer *viewer, enum side side);
+/* The computation that the latest frame of a side is in. */
+const struct computation *viewer_result(const struct viewer *viewer, enum side side);
+unsigned viewer_images_there(const struct viewer *viewer);
+/* Panel and title: "A vbao". */
+void side_title(const struct viewer *viewer, enum side side, char *text, size_t size);
+
+#endif

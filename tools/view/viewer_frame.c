@@ -1,0 +1,339 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * One frame: from what is known of parameters and files to a picture in the window. */
+#include "viewer.h"
+
+#include "png_file.h"
+#include "widgets.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <vulkan/vulkan.h>
+
+static bool wait_idle(struct viewer *v, struct tool_error *err)
+{
+    VkResult result = vkDeviceWaitIdle(v->gpu.device);
+    return result == VK_SUCCESS ||
+           fail(err, EXIT_DEVICE, "vkDeviceWaitIdle failed with VkResult %d", (int)result);
+}
+
+/* --- Results of earlier frames --- */
+
+static uint32_t first_query(enum side side, uint32_t frame)
+{
+    return ((uint32_t)side * FRAMES_IN_FLIGHT + frame) * (STAGES + 1);
+}
+
+static void collect(struct viewer *v, uint32_t frame)
+{
+    for (int s = 0; s < SIDES; s++) {
+        if (v->stamped[s][frame] &&
+            read_stage_times(&v->gpu, v->timestamps, first_query((enum side)s, frame),
+                             &v->times[s]))
+            v->stamped[s][frame] = false;
+    }
+    probe_read(&v->probe, frame, &v->probed);
+}
+
+/* RMS difference over the image, once for each result. */
+static void measure_error(struct viewer *v, enum side side)
+{
+    const struct loaded_frame *l = &v->source.now;
+    const struct computation *c = &v->results[side][0];
+    struct tool_error unseen = {0};
+    if (v->live || v->view != VIEW_DIFFERENCE || v->error[side] >= 0 || v->stale[side] ||
+        !l->reference_values || !c->frame)
+        return;
+    const uint32_t width = c->ao.extent.width, height = c->ao.extent.height;
+    const uint64_t bytes = (uint64_t)width * height * sizeof(float);
+    float *ao = malloc((size_t)bytes);
+    struct gpu_image image = c->ao;
+    if (ao && gpu_image_download(&v->gpu, &image, ao, bytes, &unseen)) {
+        double sum = 0;
+        for (size_t y = 0; y < l->gbuffer.height; y++) {
+            for (size_t x = 0; x < l->gbuffer.width; x++) {
+                double d = (double)ao[(y + l->placement.top) * width + x + l->placement.left] -
+                           (double)l->reference_values[y * l->gbuffer.width + x];
+                sum += d * d;
+            }
+        }
+        v->error[side] = sqrt(sum / ((double)l->gbuffer.width * l->gbuffer.height));
+    }
+    free(ao);
+}
+
+/* --- Making what is missing --- */
+
+static void destroy_results(struct viewer *v)
+{
+    for (int s = 0; s < SIDES; s++)
+        for (int f = 0; f < FRAMES_IN_FLIGHT; f++)
+            computation_destroy(&v->results[s][f]);
+    display_forget(&v->display);
+}
+
+static bool ensure_targets(struct viewer *v, struct tool_error *err)
+{
+    const VkExtent2D wanted = viewer_area(v).extent;
+    if (!v->live ||
+        (v->live->extent.width == wanted.width && v->live->extent.height == wanted.height))
+        return true;
+    if (!wait_idle(v, err))
+        return false;
+    destroy_results(v);
+    return live_resize(v->live, wanted, err);
+}
+
+static struct inputs inputs_of(const struct viewer *v, uint32_t frame)
+{
+    return v->live ? live_inputs(v->live, frame) : source_inputs(&v->source);
+}
+
+static bool ensure_result(struct viewer *v, enum side side, uint32_t frame, struct tool_error *err)
+{
+    struct computation *c = &v->results[side][v->live ? frame : 0];
+    const struct inputs inputs = inputs_of(v, frame);
+    if (computation_fits(c, &inputs, &v->settings[side], v->view))
+        return true;
+    if (!wait_idle(v, err))
+        return false;
+    v->stale[side] = true;
+    display_forget(&v->display);
+    return computation_create(c, &v->gpu, v->context, &inputs, &v->settings[side], v->view, err);
+}
+
+/* --- Recording --- */
+
+static bool record_side(struct viewer *v, enum side side, uint32_t frame, VkCommandBuffer cmd,
+                        struct tool_error *err)
+{
+    const struct inputs inputs = inputs_of(v, frame);
+    const struct computation *c = &v->results[side][v->live ? frame : 0];
+    if (!v->live && !v->stale[side])
+        return true;
+    v->stale[side] = false;
+    v->error[side] = -1;
+    v->stamped[side][frame] = v->timestamps != VK_NULL_HANDLE;
+    return computation_record(c, cmd, &inputs, &v->settings[side], v->view, v->timestamps,
+                              first_query(side, frame), err);
+}
+
+/* The texel under the mouse, from the corner of what is shown. */
+static bool texel_at(const struct viewer *v, double x, double y, VkOffset2D *texel)
+{
+    const VkExtent2D extent = viewer_image_extent(v);
+    const struct placing *p = &v->placing;
+    double column = floor((x - p->x) / p->zoom), row = floor((y - p->y) / p->zoom);
+    if (!(column >= 0 && row >= 0 && column < extent.width && row < extent.height))
+        return false;
+    *texel = (VkOffset2D){(int32_t)column, (int32_t)row};
+    return true;
+}
+
+static void record_probe(struct viewer *v, uint32_t frame, VkCommandBuffer cmd)
+{
+    const struct input *in = &v->window.input;
+    VkOffset2D texel, offset = viewer_image_offset(v);
+    if (!in->inside || widgets_want_mouse() || !texel_at(v, in->x, in->y, &texel)) {
+        v->probed.valid = false;
+        v->probe.requests[frame].pending = false;
+        return;
+    }
+    const struct inputs inputs = inputs_of(v, frame);
+    const struct computation *a = viewer_result(v, viewer_needs(v, SIDE_A) ? SIDE_A : SIDE_B);
+    const struct computation *b = viewer_result(v, viewer_needs(v, SIDE_B) ? SIDE_B : SIDE_A);
+    const VkImage ao[2] = {a->ao.image, b->ao.image};
+    probe_record(&v->probe, frame, cmd, &inputs, ao, texel.x + offset.x, texel.y + offset.y);
+}
+
+static uint32_t display_mode(const struct viewer *v, enum side side)
+{
+    static const uint32_t modes[VIEW_KINDS] = {[VIEW_RAW] = DISPLAY_GREY,
+                                               [VIEW_AO] = DISPLAY_GREY,
+                                               [VIEW_COMPOSITE] = DISPLAY_SRGB,
+                                               [VIEW_DEPTH] = DISPLAY_GREY,
+                                               [VIEW_NORMALS] = DISPLAY_PLAIN,
+                                               [VIEW_BENT] = DISPLAY_PLAIN,
+                                               [VIEW_DIFFERENCE] = DISPLAY_DIFFERENCE};
+    if (v->view == VIEW_BENT && !method_has_bent(v->settings[side].ssao.method))
+        return DISPLAY_NOTHING;
+    if (v->view == VIEW_DIFFERENCE && (v->live || !v->source.now.reference.image))
+        return DISPLAY_NOTHING;
+    return modes[v->view];
+}
+
+static void record_picture(struct viewer *v, uint32_t frame, VkCommandBuffer cmd, bool there)
+{
+    const VkExtent2D extent = viewer_image_extent(v);
+    const VkOffset2D offset = viewer_image_offset(v);
+    const double width = v->swapchain.extent.width;
+    struct display_block block = {
+        .origin_x = (float)v->placing.x,
+        .origin_y = (float)v->placing.y,
+        .zoom = (float)v->placing.zoom,
+        /* Left of it is A. Without a wipe there is one side only. */
+        .wipe = (float)(v->wipe               ? floor(v->wipe_at * width)
+                        : v->active == SIDE_A ? 1e9
+                                              : -1e9),
+        .offset_x = offset.x,
+        .offset_y = offset.y,
+        .width = (int32_t)extent.width,
+        .height = (int32_t)extent.height,
+        .line = v->wipe,
+        .gain = (float)v->gain,
+    };
+    struct display_images images = {0};
+    if (there && viewer_needs(v, SIDE_A)) {
+        block.mode_a = display_mode(v, SIDE_A);
+        images.bindings[DISPLAY_BINDING_A] = computation_result(viewer_result(v, SIDE_A), v->view);
+    }
+    if (there && viewer_needs(v, SIDE_B)) {
+        block.mode_b = display_mode(v, SIDE_B);
+        images.bindings[DISPLAY_BINDING_B] = computation_result(viewer_result(v, SIDE_B), v->view);
+    }
+    images.bindings[DISPLAY_BINDING_REFERENCE] = v->source.now.reference.view;
+    display_bind(&v->display, frame, &images);
+    display_draw(&v->display, cmd, frame, &block);
+}
+
+/* Makes what this frame will need, before there is an image that waits for it. What cannot be made
+ * is said in the panel; the window goes on. */
+static bool prepare(struct viewer *v, uint32_t frame)
+{
+    struct tool_error err = {0};
+    bool ok = ensure_targets(v, &err);
+    for (int s = 0; ok && s < SIDES; s++)
+        ok = !viewer_needs(v, (enum side)s) || ensure_result(v, (enum side)s, frame, &err);
+    if (!ok)
+        viewer_say_error(v, &err);
+    return ok;
+}
+
+static bool record_results(struct viewer *v, uint32_t frame, VkCommandBuffer cmd)
+{
+    struct tool_error err = {0};
+    bool ok = true;
+    if (v->live)
+        live_record(v->live, frame, cmd);
+    for (int s = 0; ok && s < SIDES; s++)
+        ok = !viewer_needs(v, (enum side)s) || record_side(v, (enum side)s, frame, cmd, &err);
+    if (ok)
+        record_probe(v, frame, cmd);
+    else
+        viewer_say_error(v, &err);
+    return ok;
+}
+
+/* --- Captures --- */
+
+static bool write_capture(struct viewer *v, uint32_t frame, VkExtent2D extent,
+                          const struct gpu_buffer *buffer, const char *path, struct tool_error *err)
+{
+    const uint8_t *from = buffer->mapped;
+    const size_t texels = (size_t)extent.width * extent.height;
+    const bool blue_first = v->swapchain.format == VK_FORMAT_B8G8R8A8_UNORM;
+    VkResult result =
+        vkWaitForFences(v->gpu.device, 1, &v->swapchain.frames[frame].done, VK_TRUE, UINT64_MAX);
+    if (result != VK_SUCCESS)
+        return fail(err, EXIT_DEVICE, "vkWaitForFences failed with VkResult %d", (int)result);
+    uint8_t *rgb = malloc(texels * 3);
+    if (!rgb)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    for (size_t i = 0; i < texels; i++) {
+        rgb[i * 3] = from[i * 4 + (blue_first ? 2 : 0)];
+        rgb[i * 3 + 1] = from[i * 4 + 1];
+        rgb[i * 3 + 2] = from[i * 4 + (blue_first ? 0 : 2)];
+    }
+    bool ok = png_file_write(path, extent.width, extent.height, 3, rgb, true, err);
+    free(rgb);
+    return ok;
+}
+
+static bool create_capture(struct viewer *v, struct gpu_buffer *buffer, struct tool_error *err)
+{
+    const VkExtent2D extent = v->swapchain.extent;
+    if (!v->swapchain.can_capture)
+        return fail(err, EXIT_DEVICE, "this display's images cannot be copied: no --screenshot");
+    return gpu_buffer_create(&v->gpu, (uint64_t)extent.width * extent.height * 4,
+                             VK_BUFFER_USAGE_TRANSFER_DST_BIT, buffer, err);
+}
+
+static void capture_barrier(VkCommandBuffer cmd)
+{
+    /* The copy -> write_capture. */
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
+                         &(VkMemoryBarrier){
+                             .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+                             .srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
+                             .dstAccessMask = VK_ACCESS_HOST_READ_BIT,
+                         },
+                         0, NULL, 0, NULL);
+}
+
+/* --- The frame --- */
+
+/* New images if the window has another size. False without an error: it has none now. */
+static bool follow_window(struct viewer *v, struct tool_error *err)
+{
+    const VkExtent2D window = window_framebuffer(&v->window), now = v->swapchain.extent;
+    if (v->swapchain.handle && !v->swapchain.is_stale && window.width == now.width &&
+        window.height == now.height)
+        return true;
+    return swapchain_resize(&v->swapchain, window, err);
+}
+
+static bool record_frame(struct viewer *v, VkCommandBuffer cmd, bool there,
+                         const struct gpu_buffer *capture, struct tool_error *err)
+{
+    static const float clear[4] = {0, 0, 0, 1};
+    const uint32_t frame = v->swapchain.frame;
+    there = there && record_results(v, frame, cmd);
+    swapchain_begin_pass(&v->swapchain, cmd, clear);
+    record_picture(v, frame, cmd, there);
+    widgets_end_frame(cmd);
+    vkCmdEndRenderPass(cmd);
+    if (capture->buffer) {
+        swapchain_capture(&v->swapchain, cmd, capture->buffer);
+        capture_barrier(cmd);
+    }
+    enum swapchain_status status = swapchain_end(&v->swapchain, err);
+    v->swapchain.is_stale = status == SWAPCHAIN_STALE;
+    return status != SWAPCHAIN_FAILED;
+}
+
+bool viewer_draw(struct viewer *viewer, const char *capture, struct tool_error *err)
+{
+    struct viewer *v = viewer;
+    struct gpu_buffer buffer = {0};
+    VkCommandBuffer cmd;
+    if (!follow_window(v, err) || !swapchain_wait(&v->swapchain, err))
+        return false;
+    for (int s = 0; s < SIDES; s++)
+        measure_error(v, (enum side)s);
+    const uint32_t frame = v->swapchain.frame;
+    collect(v, frame);
+    widgets_begin_frame();
+    viewer_panel(v);
+    if (v->placing.fit)
+        viewer_fit(v);
+    const bool there = viewer_has_image(v) && prepare(v, frame);
+    const VkExtent2D extent = v->swapchain.extent;
+    if (capture && !create_capture(v, &buffer, err)) {
+        widgets_end_frame(VK_NULL_HANDLE);
+        return false;
+    }
+    enum swapchain_status status = swapchain_begin(&v->swapchain, &cmd, err);
+    bool ok = status == SWAPCHAIN_OK;
+    v->swapchain.is_stale = status == SWAPCHAIN_STALE;
+    if (ok)
+        ok = record_frame(v, cmd, there, &buffer, err);
+    else
+        widgets_end_frame(VK_NULL_HANDLE);
+    if (ok && capture)
+        ok = write_capture(v, frame, extent, &buffer, capture, err);
+    if (capture)
+        vkDeviceWaitIdle(v->gpu.device);
+    gpu_buffer_destroy(&v->gpu, &buffer);
+    return ok;
+}

@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What keys, mouse and dropped files do. */
+#include "viewer.h"
+
+#include "widgets.h"
+
+#include <math.h>
+
+enum { WIPE_REACH = 8 /* screen texels from the line that the mouse takes hold of it */ };
+
+static const double zoom_levels[] = {1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2, 1,  2,  3,
+                                     4,        6,       8,       12,      16, 24, 32};
+enum { ZOOM_LEVELS = sizeof zoom_levels / sizeof *zoom_levels };
+
+/* --- Zoom and pan --- */
+
+static double next_zoom(double zoom, bool closer)
+{
+    for (int i = 0; i < ZOOM_LEVELS; i++) {
+        double level = zoom_levels[closer ? i : ZOOM_LEVELS - 1 - i];
+        if (closer ? level > zoom * 1.001 : level < zoom / 1.001)
+            return level;
+    }
+    return zoom;
+}
+
+/* What is at x, y on the screen stays there. */
+static void zoom_to(struct viewer *v, double zoom, double x, double y)
+{
+    struct placing *p = &v->placing;
+    double column = (x - p->x) / p->zoom, row = (y - p->y) / p->zoom;
+    *p = (struct placing){
+        .zoom = zoom, .x = floor(x - column * zoom + 0.5), .y = floor(y - row * zoom + 0.5)};
+}
+
+static void zoom_centre(struct viewer *v, double zoom)
+{
+    const VkRect2D area = viewer_area(v);
+    if (!v->live)
+        zoom_to(v, zoom, area.offset.x + area.extent.width / 2.0,
+                area.offset.y + area.extent.height / 2.0);
+}
+
+static void scroll(struct viewer *v, const struct input *in)
+{
+    double notches = in->scroll;
+    if (v->live) {
+        orbit_zoom(&v->live->camera, notches);
+        return;
+    }
+    for (; notches >= 0.5; notches -= 1)
+        zoom_to(v, next_zoom(v->placing.zoom, true), in->x, in->y);
+    for (; notches <= -0.5; notches += 1)
+        zoom_to(v, next_zoom(v->placing.zoom, false), in->x, in->y);
+}
+
+/* --- Keys --- */
+
+static void step(struct viewer *v, int by)
+{
+    const size_t count = v->source.plan.count;
+    if (v->live || count < 2)
+        return;
+    const size_t at = v->source.frame;
+    if (by < 0 ? at > 0 : at + 1 < count)
+        viewer_load(v, by < 0 ? at - 1 : at + 1, v->source.now.view);
+}
+
+static void toggle_wipe(struct viewer *v)
+{
+    const VkRect2D area = viewer_area(v);
+    v->wipe = !v->wipe;
+    if (!v->wipe_is_placed)
+        v->wipe_at = (area.offset.x + area.extent.width / 2.0) / v->swapchain.extent.width;
+    v->wipe_is_placed = true;
+}
+
+static void press_key(struct viewer *v, enum key_action key)
+{
+    if (key >= KEY_VIEW_1 && key < KEY_VIEW_1 + VIEW_KINDS) {
+        v->view = (enum view_kind)(key - KEY_VIEW_1);
+        viewer_mark_stale(v);
+        return;
+    }
+    switch (key) {
+    case KEY_SWAP:
+        v->active = v->active == SIDE_A ? SIDE_B : SIDE_A;
+        break;
+    case KEY_WIPE:
+        toggle_wipe(v);
+        break;
+    case KEY_ZOOM_IN:
+        zoom_centre(v, next_zoom(v->placing.zoom, true));
+        break;
+    case KEY_ZOOM_OUT:
+        zoom_centre(v, next_zoom(v->placing.zoom, false));
+        break;
+    case KEY_FIT:
+        viewer_fit(v);
+        break;
+    case KEY_FULL_SIZE:
+        zoom_centre(v, 1);
+        break;
+    case KEY_PREVIOUS:
+    case KEY_NEXT:
+        step(v, key == KEY_NEXT ? 1 : -1);
+        break;
+    case KEY_SAVE:
+        v->save_wanted = true;
+        break;
+    case KEY_PANEL:
+        v->show_panel = !v->show_panel;
+        break;
+    case KEY_PROJECTION:
+        if (v->live)
+            v->live->camera.orthographic = !v->live->camera.orthographic;
+        break;
+    case KEY_PAUSE:
+        if (v->live)
+            v->live->running = !v->live->running;
+        break;
+    case KEY_QUIT:
+        v->quit = true;
+        break;
+    default:
+        break;
+    }
+}
+
+/* --- Mouse --- */
+
+static bool is_at_line(const struct viewer *v, double x)
+{
+    return v->wipe && fabs(x - v->wipe_at * v->swapchain.extent.width) <= WIPE_REACH;
+}
+
+/* The line covers the column that the mouse is in. */
+static void place_wipe(struct viewer *v, double x)
+{
+    const double width = v->swapchain.extent.width;
+    double column = fmin(fmax(floor(x), 0), width - 1);
+    v->wipe_at = (column + 0.5) / width;
+}
+
+static void drag_on(struct viewer *v, const struct input *in)
+{
+    double dx = in->x - v->drag_x, dy = in->y - v->drag_y;
+    const double height = v->swapchain.extent.height;
+    if (v->drag == DRAG_WIPE)
+        place_wipe(v, in->x);
+    else if (v->drag == DRAG_ORBIT && in->left)
+        orbit_drag(&v->live->camera, dx / height, dy / height);
+    else if (v->drag == DRAG_ORBIT && in->right)
+        orbit_pan(&v->live->camera, dx / height, dy / height);
+    if (v->drag == DRAG_PAN && !(dx >= 0 && dx <= 0 && dy >= 0 && dy <= 0)) {
+        v->placing.fit = false;
+        v->placing.x += dx;
+        v->placing.y += dy;
+    }
+    v->drag_x = in->x;
+    v->drag_y = in->y;
+}
+
+static void use_mouse(struct viewer *v, const struct input *in)
+{
+    const bool ours = !widgets_want_mouse();
+    if (v->drag == DRAG_NONE && ours && (in->left_pressed || in->right)) {
+        const bool line = in->left_pressed && is_at_line(v, in->press_x);
+        v->drag = line ? DRAG_WIPE : v->live ? DRAG_ORBIT : in->left_pressed ? DRAG_PAN : DRAG_NONE;
+        v->drag_x = in->left_pressed ? in->press_x : in->x;
+        v->drag_y = in->left_pressed ? in->press_y : in->y;
+    }
+    if (v->drag != DRAG_NONE)
+        drag_on(v, in);
+    if (!in->left && !in->right) {
+        /* Texels of the image on texels of the screen. */
+        if (v->drag == DRAG_PAN && v->placing.zoom >= 1) {
+            v->placing.x = floor(v->placing.x + 0.5);
+            v->placing.y = floor(v->placing.y + 0.5);
+        }
+        v->drag = DRAG_NONE;
+    }
+    const bool wipes = v->drag == DRAG_WIPE || (v->drag == DRAG_NONE && is_at_line(v, in->x));
+    window_set_cursor(&v->window, wipes ? CURSOR_WIPE : CURSOR_ARROW);
+    if (ours && fabs(in->scroll) > 0)
+        scroll(v, in);
+}
+
+static void take_drop(struct viewer *v, const struct input *in)
+{
+    struct source_undo undo;
+    struct tool_error err = {0};
+    if (v->live)
+        fail(&err, EXIT_INPUT, "%s: a live scene takes no files", in->dropped[0]);
+    else if (source_drop(&v->source, in->dropped, in->dropped_count, &undo, &err))
+        source_settle(&v->source, &undo, viewer_load(v, v->source.frame, v->source.now.view));
+    if (err.code)
+        viewer_say_error(v, &err);
+}
+
+void viewer_handle_input(struct viewer *viewer)
+{
+    const struct input *in = &viewer->window.input;
+    for (size_t i = 0; i < in->key_count && !widgets_want_keyboard(); i++)
+        press_key(viewer, in->keys[i]);
+    use_mouse(viewer, in);
+    if (in->dropped_count > 0)
+        take_drop(viewer, in);
+}

@@ -1,0 +1,274 @@
+/* SPDX-License-Identifier: MIT */
+#include "widgets.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_vulkan.h>
+#include <imgui.h>
+
+#include <cstdarg>
+
+namespace
+{
+VkDevice device;
+VkDescriptorPool pool;
+bool glfw_runs, vulkan_runs;
+VkResult first_failure;
+
+void on_result(VkResult result)
+{
+    if (result != VK_SUCCESS && first_failure == VK_SUCCESS)
+        first_failure = result;
+}
+
+bool create_pool()
+{
+    const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1};
+    VkDescriptorPoolCreateInfo info = {};
+    info.sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO;
+    info.flags = VK_DESCRIPTOR_POOL_CREATE_FREE_DESCRIPTOR_SET_BIT;
+    info.maxSets = 1; /* the font */
+    info.poolSizeCount = 1;
+    info.pPoolSizes = &size;
+    first_failure = vkCreateDescriptorPool(device, &info, nullptr, &pool);
+    return first_failure == VK_SUCCESS;
+}
+
+bool create_back_ends(void *glfw_window, struct gpu *gpu, VkRenderPass pass, uint32_t image_count)
+{
+    glfw_runs = ImGui_ImplGlfw_InitForVulkan(static_cast<GLFWwindow *>(glfw_window), true);
+    if (!glfw_runs || !create_pool())
+        return false;
+    ImGui_ImplVulkan_InitInfo info = {};
+    info.Instance = gpu->instance;
+    info.PhysicalDevice = gpu->physical_device;
+    info.Device = gpu->device;
+    info.QueueFamily = gpu->queue_family;
+    info.Queue = gpu->queue;
+    info.DescriptorPool = pool;
+    info.MinImageCount = 2;
+    info.ImageCount = image_count < 2 ? 2 : image_count;
+    info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
+    info.CheckVkResultFn = on_result;
+    vulkan_runs = ImGui_ImplVulkan_Init(&info, pass);
+    return vulkan_runs && first_failure == VK_SUCCESS;
+}
+
+bool upload_font(struct gpu *gpu, struct tool_error *err)
+{
+    VkCommandBuffer cmd = gpu_begin(gpu, err);
+    if (!cmd)
+        return false;
+    bool ok = ImGui_ImplVulkan_CreateFontsTexture(cmd);
+    ok = gpu_submit(gpu, cmd, err) && ok && first_failure == VK_SUCCESS;
+    ImGui_ImplVulkan_DestroyFontUploadObjects();
+    return ok;
+}
+} // namespace
+
+bool widgets_create(void *glfw_window, struct gpu *gpu, VkRenderPass pass, uint32_t image_count,
+                    struct tool_error *err)
+{
+    device = gpu->device;
+    pool = VK_NULL_HANDLE;
+    first_failure = VK_SUCCESS;
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr; /* nothing is written that nobody asked for */
+    ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
+    ImGui::StyleColorsDark();
+    ImGui::GetStyle().WindowRounding = 0.0f;
+    ImGui::GetStyle().WindowBorderSize = 0.0f;
+    if (create_back_ends(glfw_window, gpu, pass, image_count) && upload_font(gpu, err))
+        return true;
+    fail(err, EXIT_DEVICE, "cannot draw the panel: VkResult %d", static_cast<int>(first_failure));
+    widgets_destroy();
+    return false;
+}
+
+void widgets_destroy(void)
+{
+    if (!ImGui::GetCurrentContext())
+        return;
+    if (vulkan_runs)
+        ImGui_ImplVulkan_Shutdown();
+    if (glfw_runs)
+        ImGui_ImplGlfw_Shutdown();
+    vulkan_runs = glfw_runs = false;
+    ImGui::DestroyContext();
+    vkDestroyDescriptorPool(device, pool, nullptr);
+}
+
+void widgets_begin_frame(void)
+{
+    ImGui_ImplVulkan_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+}
+
+void widgets_end_frame(VkCommandBuffer cmd)
+{
+    ImGui::Render();
+    if (cmd)
+        ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), cmd);
+}
+
+bool widgets_want_mouse(void)
+{
+    return ImGui::GetIO().WantCaptureMouse;
+}
+
+bool widgets_want_keyboard(void)
+{
+    /* Not WantCaptureKeyboard: it is still set when a key follows the release of a slider. */
+    return ImGui::GetIO().WantTextInput;
+}
+
+void ui_begin_panel(float width, float height)
+{
+    ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
+    ImGui::SetNextWindowSize(ImVec2(width, height));
+    ImGui::Begin("vkao", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
+    ImGui::PushItemWidth(width * 0.5f);
+}
+
+void ui_end_panel(void)
+{
+    ImGui::PopItemWidth();
+    ImGui::End();
+}
+
+void ui_begin_scroll(float below)
+{
+    ImGui::BeginChild("scroll", ImVec2(0.0f, -below));
+    ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * 0.54f);
+}
+
+void ui_end_scroll(void)
+{
+    ImGui::PopItemWidth();
+    ImGui::EndChild();
+}
+
+bool ui_section(const char *label, bool open)
+{
+    return ImGui::CollapsingHeader(label, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+}
+
+void ui_text(const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    ImGui::TextV(format, args);
+    va_end(args);
+}
+
+void ui_paragraph(enum ui_tone tone, const char *text)
+{
+    const ImVec4 colors[] = {{1.0f, 1.0f, 1.0f, 1.0f},
+                             {0.6f, 0.6f, 0.6f, 1.0f},
+                             {0.5f, 0.9f, 0.5f, 1.0f},
+                             {1.0f, 0.5f, 0.4f, 1.0f}};
+    ImGui::PushStyleColor(ImGuiCol_Text, colors[tone]);
+    ImGui::PushTextWrapPos(0.0f);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+}
+
+void ui_same_line(void)
+{
+    ImGui::SameLine();
+}
+
+void ui_separator(void)
+{
+    ImGui::Separator();
+}
+
+bool ui_button(const char *label)
+{
+    return ImGui::Button(label);
+}
+
+bool ui_radio(const char *label, bool on)
+{
+    return ImGui::RadioButton(label, on);
+}
+
+bool ui_checkbox(const char *label, bool *on)
+{
+    return ImGui::Checkbox(label, on);
+}
+
+bool ui_slider_float(const char *label, float *value, float low, float high, bool logarithmic)
+{
+    ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
+    if (logarithmic)
+        flags |= ImGuiSliderFlags_Logarithmic;
+    return ImGui::SliderFloat(label, value, low, high, "%.4g", flags);
+}
+
+bool ui_slider_uint(const char *label, uint32_t *value, uint32_t low, uint32_t high,
+                    bool logarithmic)
+{
+    ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp;
+    if (logarithmic)
+        flags |= ImGuiSliderFlags_Logarithmic;
+    return ImGui::SliderScalar(label, ImGuiDataType_U32, value, &low, &high, "%u", flags);
+}
+
+bool ui_color(const char *label, float rgb[3])
+{
+    return ImGui::ColorEdit3(label, rgb, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoPicker);
+}
+
+bool ui_begin_choice(const char *label, const char *now)
+{
+    return ImGui::BeginCombo(label, now);
+}
+
+bool ui_choice(const char *word, bool chosen, bool enabled)
+{
+    return ImGui::Selectable(word, chosen, enabled ? 0 : ImGuiSelectableFlags_Disabled);
+}
+
+void ui_end_choice(void)
+{
+    ImGui::EndCombo();
+}
+
+void ui_help(const char *text)
+{
+    if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled))
+        return;
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(ImGui::GetFontSize() * 28.0f);
+    ImGui::TextUnformatted(text);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+bool ui_clicked_right(void)
+{
+    return ImGui::IsItemClicked(ImGuiMouseButton_Right);
+}
+
+void ui_begin_disabled(bool disabled)
+{
+    ImGui::BeginDisabled(disabled);
+}
+
+void ui_end_disabled(void)
+{
+    ImGui::EndDisabled();
+}
+
+void ui_label(float x, float y, float align, const char *text)
+{
+    ImDrawList *list = ImGui::GetBackgroundDrawList();
+    const ImVec2 size = ImGui::CalcTextSize(text);
+    const float left = align > 0.5f ? x + 6.0f : x - 6.0f - size.x;
+    list->AddRectFilled(ImVec2(left - 4.0f, y - 2.0f),
+                        ImVec2(left + size.x + 4.0f, y + size.y + 2.0f), IM_COL32(0, 0, 0, 180));
+    list->AddText(ImVec2(left, y), IM_COL32(255, 255, 255, 255), text);
+}

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Dear ImGui, seen from C: its back ends for GLFW and Vulkan, and the few widgets that the panel is
+ * made of. */
+#ifndef VKAO_VIEW_WIDGETS_H_
+#define VKAO_VIEW_WIDGETS_H_
+
+#include "gpu.h"
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* After the window's own callbacks are set: they are called first. Errors: EXIT_DEVICE. */
+bool widgets_create(void *glfw_window, struct gpu *gpu, VkRenderPass pass, uint32_t image_count,
+                    struct tool_error *err);
+void widgets_destroy(void);
+void widgets_begin_frame(void);
+/* Inside the render pass; ends the frame. cmd may be VK_NULL_HANDLE to drop what was drawn. */
+void widgets_end_frame(VkCommandBuffer cmd);
+/* Whether input belongs to the panel, as of the last frame. */
+bool widgets_want_mouse(void);
+bool widgets_want_keyboard(void);
+
+/* Sizes are in texels of the framebuffer. */
+void ui_begin_panel(float width, float height);
+void ui_end_panel(void);
+/* Widgets in between scroll, and leave `below` texels at the end of the panel. */
+void ui_begin_scroll(float below);
+void ui_end_scroll(void);
+bool ui_section(const char *label, bool open);
+void ui_text(const char *format, ...) TOOL_PRINTF(1, 2);
+enum ui_tone { UI_PLAIN, UI_DIM, UI_GOOD, UI_BAD };
+void ui_paragraph(enum ui_tone tone, const char *text);
+void ui_same_line(void);
+void ui_separator(void);
+bool ui_button(const char *label);
+bool ui_radio(const char *label, bool on);
+bool ui_checkbox(const char *label, bool *on);
+bool ui_slider_float(const char *label, float *value, float low, float high, bool logarithmic);
+bool ui_slider_uint(const char *label, uint32_t *value, uint32_t low, uint32_t high,
+                    bool logarithmic);
+bool ui_color(const char *label, float rgb[3]);
+/* A list to choose from: ui_begin_choice, an ui_choice for each word if it returned true, then
+ * ui_end_choice. */
+bool ui_begin_choice(const char *label, const char *now);
+bool ui_choice(const char *word, bool chosen, bool enabled);
+void ui_end_choice(void);
+/* Of the widget before it, also if that is greyed. */
+void ui_help(const char *text);
+bool ui_clicked_right(void);
+void ui_begin_disabled(bool disabled);
+void ui_end_disabled(void);
+/* A word on the picture, on a dark ground. align: 0 left of x, 1 right of it. */
+void ui_label(float x, float y, float align, const char *text);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
