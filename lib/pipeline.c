@@ -118,6 +118,13 @@ static_assert(sizeof(struct pipeline_key) ==
                   (VKAO_CONSTANT_COUNT - VKAO_CONSTANT_FLAGS) * sizeof(uint32_t),
               "the constants from VKAO_CONSTANT_FLAGS on");
 
+VkExtent2D pipeline_group(const vkao_context *ctx, enum pipeline which)
+{
+    return ctx->buffers && which >= PIPELINE_SSAO
+               ? (VkExtent2D){VKAO_ROW_GROUP_WIDTH, 1}
+               : (VkExtent2D){VKAO_GROUP_WIDTH, VKAO_GROUP_HEIGHT};
+}
+
 #define ENUM_FLAGS(shift, bits) (((1u << (bits)) - 1u) << (shift))
 
 /* The flags that a stage's shader asks for; the rest is left out of its key. */

@@ -59,5 +59,7 @@ uint32_t recording_flags(const struct view_constants *grid, bool packed,
                          const vkao_ssao_params *ssao, const vkao_blur_params *blur);
 /* Texels of one invocation. */
 VkExtent2D pipeline_texels(const vkao_context *ctx, enum pipeline which);
+/* Invocations of one workgroup. */
+VkExtent2D pipeline_group(const vkao_context *ctx, enum pipeline which);
 
 #endif

@@ -72,9 +72,8 @@ void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline
     ctx->vk.CmdPushConstants(cmd, ctx->pipeline_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                              (uint32_t)block_bytes, block);
     /* Invocations begin at multiples of their width, as words of a buffer do. */
-    const VkExtent2D texels = pipeline_texels(ctx, which);
-    const uint32_t width = texels.width * VKAO_GROUP_WIDTH,
-                   height = texels.height * VKAO_GROUP_HEIGHT;
+    const VkExtent2D texels = pipeline_texels(ctx, which), group = pipeline_group(ctx, which);
+    const uint32_t width = texels.width * group.width, height = texels.height * group.height;
     const uint32_t x0 = rect.x0 - rect.x0 % texels.width;
     ctx->vk.CmdDispatch(cmd, (rect.x1 - x0 + width - 1) / width,
                         (rect.y1 - rect.y0 + height - 1) / height, 1);

@@ -138,7 +138,7 @@ static vkao_result create_buffer(const vkao_context *ctx, struct scratch_buffer 
                                                .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                                .size = buffer->bytes,
                                                .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-                                                        
+
                                                         VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT,
                                                .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
                                            },

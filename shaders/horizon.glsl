@@ -14,8 +14,9 @@ const float PI = 3.14159265358979324;
 const vec2 SIDES = vec2(1.0, -1.0);
 
 struct Slice {
-    vec2 direction;      /* on screen, unit length in texels */
-    float texels;        /* how many of them a scene unit has at the shaded point */
+    vec2 step;           /* direction on screen, in texels that one scene unit has at unit distance */
+    float per_texel;     /* 1 / its length */
+    float scale;         /* scene units -> the same at the shaded point */
     vec2 to_x, to_y;     /* texels off the shaded point -> x and y, per unit of view z in perspective */
     float eye, origin;   /* y is origin - eye * view z, and what to_y adds */
     vec3 outward;        /* O: unit, in the slice, at right angles to V */
@@ -23,13 +24,10 @@ struct Slice {
     float cos_n, sin_n;  /* of the projected normal's angle from V, towards O */
 };
 
-/* cos and sin of pi u, u in [0,1): off by less than 7e-6. */
-vec2 half_turn(float u)
+/* Unit vector to the eye. It does not depend on view z: all that is made of it is ready before that is loaded. */
+vec3 eye_direction(ivec2 texel)
 {
-    float v = u - 0.5, v2 = v * v;
-    float s = v * (3.14158202 + v2 * (-5.16714276 + v2 * (2.54189872 - 0.55463536 * v2)));
-    float c = 0.99999329 + v2 * (-4.93393798 + v2 * (4.04128334 - 1.22212545 * v2));
-    return vec2(-s, c);
+    return direction_to_eye(view_position(vec2(texel), 1.0));
 }
 
 /* turn in [0,1) is half the circle. */
@@ -37,14 +35,13 @@ Slice make_slice(float turn, vec3 position, vec3 normal, vec3 to_eye)
 {
     Slice s;
     vec2 d = half_turn(turn);
-    vec2 on_screen = d / params.unproject.xy;
-    float per_texel = inversesqrt(dot(on_screen, on_screen));
-    s.direction = on_screen * per_texel;
-    s.texels = orthographic() ? 1.0 / per_texel : 1.0 / (per_texel * position.z);
-    vec3 o = vec3(d, 0.0) - dot(d, to_eye.xy) * to_eye;
-    s.outward = o * inversesqrt(dot(o, o));
-    vec3 across = cross(s.outward, to_eye);
-    float off = dot(normal, across), facing = dot(normal, to_eye);
+    s.step = d * params.inverse_unproject;
+    s.per_texel = inversesqrt(dot(s.step, s.step));
+    s.scale = orthographic() ? 1.0 : 1.0 / position.z;
+    float along = dot(d, to_eye.xy), inverse_o = inversesqrt(1.0 - along * along);
+    s.outward = (vec3(d, 0.0) - along * to_eye) * inverse_o;
+    vec3 across = vec3(d.y * to_eye.z, -d.x * to_eye.z, d.x * to_eye.y - d.y * to_eye.x) * inverse_o;
+    float off = dot(normal, across), facing = dot(normal, to_eye), out_n = dot(normal, s.outward);
     /* A sample's texel lies off the slice by rounding. It is moved into it along the tangent plane, which keeps its
      * height over that plane, so that a tilted wall still lies flat in the slice. */
     s.to_x = params.unproject.xy * s.outward.xy;
@@ -55,7 +52,7 @@ Slice make_slice(float turn, vec3 position, vec3 normal, vec3 to_eye)
     float length2 = max(1.0 - off * off, 1.0e-12), inverse = inversesqrt(length2);
     s.normal_length = length2 * inverse;
     s.cos_n = clamp(facing * inverse, 0.0, 1.0);
-    s.sin_n = dot(normal, s.outward) * inverse;
+    s.sin_n = out_n * inverse;
     return s;
 }
 
@@ -63,22 +60,34 @@ Slice make_slice(float turn, vec3 position, vec3 normal, vec3 to_eye)
 vec2 step_offset(Slice s, uint t, float jitter, float reach)
 {
     float q = (float(t) + jitter) * (1.0 / float(step_count()));
-    float far = s.texels * reach * q * (VKAO_STEP_LINEAR + (1.0 - VKAO_STEP_LINEAR) * q);
-    return roundEven(s.direction * max(far, 1.0 + 0.5 * float(t)));
+    float far = (s.scale * reach) * (q * (VKAO_STEP_LINEAR + (1.0 - VKAO_STEP_LINEAR) * q));
+    return roundEven(s.step * max(far, s.per_texel * (1.0 + 0.5 * float(t))));
 }
 
 /* View z of the texels at +offset and -offset. */
-vec2 load_sides(vec2 texel, vec2 offset)
+vec2 load_sides(ivec2 texel, vec2 offset)
 {
-    return vec2(load_view_z_at(texel + offset), load_view_z_at(texel - offset));
+    ivec2 o = ivec2(offset);
+    return vec2(load_view_z(texel + o), load_view_z(texel - o));
 }
 
 /* Their coordinates in the slice. */
 void slice_points(Slice s, vec2 offset, vec2 z, out vec2 x, out vec2 y)
 {
-    vec2 scale = orthographic() ? vec2(1.0) : z;
-    x = scale * dot(s.to_x, offset);
-    y = scale * (dot(s.to_y, offset) * SIDES) + (s.origin - s.eye * z);
+    float dx = dot(s.to_x, offset), dy = dot(s.to_y, offset);
+    x = orthographic() ? vec2(dx) : z * dx;
+    y = orthographic() ? s.origin + dy * SIDES - z : s.origin + z * (dy * SIDES - s.eye);
+}
+
+/* max() and min() of numbers: those may have to look for NaN, which takes three instructions instead of one. */
+vec2 greater(vec2 a, vec2 b)
+{
+    return mix(b, a, greaterThan(a, b));
+}
+
+vec2 lesser(vec2 a, vec2 b)
+{
+    return mix(b, a, lessThan(a, b));
 }
 
 /* How an occluder at squared distance d2 counts: the definition of both ray-traced truths. */

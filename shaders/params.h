@@ -19,9 +19,12 @@
 #define VKAO_UINT(name) uint32_t name
 #endif
 
-/* Lanes of lavapipe are 8 texels in a row, so the width is a multiple of 8; 16x8 measured best or even. */
+/* Lanes of lavapipe are 8 texels in a row, so widths are multiples of 8. Groups of SSAO are near squares on GPUs, whose
+ * lanes share caches; a CPU runs their lanes one row after the other and is best served by rows of many texels, written in
+ * the order of memory. */
 #define VKAO_GROUP_WIDTH 16
 #define VKAO_GROUP_HEIGHT 8
+#define VKAO_ROW_GROUP_WIDTH 128
 
 /* Set 0. A slot that is both written and read has two bindings: storage to write, sampled to read. */
 #define VKAO_BINDING_DEPTH 0
@@ -162,14 +165,14 @@ struct vkao_ssao_block {
     /* uncertainty of a view z: .x + .y * z, times z in perspective */
     VKAO_VEC2(depth_error);
     VKAO_UINT(flags);
-    VKAO_UINT(sample_count);
     VKAO_UINT(noise_index);
-    VKAO_UINT(slices_and_steps);  /* 16 bits each, slices low */
+    VKAO_UINT(counts);            /* slices 8 bits, steps and samples 12 each, slices low */
     VKAO_FLOAT(inverse_radius2);  /* 1 / radius^2 */
     VKAO_FLOAT(bias_cosine);      /* bias / radius */
     VKAO_FLOAT(thickness_base);   /* VBAO, RAYMARCH: scene units */
     VKAO_FLOAT(thickness_slope);
     VKAO_UINT(stride);            /* texels in a row of buffers */
+    VKAO_VEC2(inverse_unproject); /* 1 / unproject.xy */
 };
 
 struct vkao_blur_block {

@@ -9,7 +9,11 @@
 layout(constant_id = VKAO_CONSTANT_SLICES) const uint SLICES = 0u;
 layout(constant_id = VKAO_CONSTANT_STEPS) const uint STEPS = 0u;
 layout(constant_id = VKAO_CONSTANT_SAMPLES) const uint SAMPLES = 0u;
+#ifdef VKAO_BUFFERS
+layout(local_size_x = VKAO_ROW_GROUP_WIDTH) in;
+#else
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
+#endif
 layout(push_constant) uniform Block { vkao_ssao_block params; };
 layout(binding = VKAO_BINDING_NOISY_WRITE) uniform writeonly image2D noisy_image;
 #ifdef VKAO_BUFFERS
@@ -23,17 +27,17 @@ vec4 visibility(ivec2 texel, vec3 position, vec3 normal);
 
 uint slice_count()
 {
-    return SLICES != 0u ? SLICES : params.slices_and_steps & 0xffffu;
+    return SLICES != 0u ? SLICES : params.counts & 0xffu;
 }
 
 uint step_count()
 {
-    return STEPS != 0u ? STEPS : params.slices_and_steps >> 16;
+    return STEPS != 0u ? STEPS : (params.counts >> 8) & 0xfffu;
 }
 
 uint sample_count()
 {
-    return SAMPLES != 0u ? SAMPLES : params.sample_count;
+    return SAMPLES != 0u ? SAMPLES : params.counts >> 20;
 }
 
 /* Any two unit vectors that make an orthonormal basis with n (Duff et al., JCGT 6(1), 2017). */
@@ -65,7 +69,8 @@ float point_length(float u, float radius)
  * the surface in front need not reach down to the point behind it. */
 float range_weight(float dz, float radius)
 {
-    return smoothstep(0.0, 1.0, radius / max(abs(dz), 1.0e-30));
+    float t = radius / max(abs(dz), radius);
+    return t * t * (3.0 - 2.0 * t);
 }
 
 /* Is the point at height point_height over the tangent plane behind the scene at occluder? Heights are compared, not
@@ -88,15 +93,23 @@ void store_noisy(ivec2 texel, vec4 result)
     imageStore(noisy_image, texel, BENT_NORMALS ? result : result.wwww);
 }
 
+/* The texel whose centre is nearest, of any point within the valid texels; what lies outside stays there. Cutting off
+ * the fraction is cheaper than rounding down, and the same from -1 on, where the border begins. */
+ivec2 nearest_texel(vec2 point)
+{
+    return ivec2(point + 1.5) - 1;
+}
+
 void main()
 {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(params.rect.x);
+    /* Straight on, also where there is nothing to do: a driver in software runs both sides of a branch anyway. */
     float z = load_view_z(texel);
-        vec3 position = view_position(vec2(texel), z);
-    vec4    result = visibility(texel, position, view_normal(texel, position));
-    result = z > 0.0 ? result : vec4(0.0,0.0,0.0,1.0);
-    if (!any(greaterThanEqual(texel, unpack_texel(params.rect.y))))
-    store_noisy(texel, result);
+    vec3 position = view_position(vec2(texel), z);
+    vec4 result = visibility(texel, position, view_normal(texel, position));
+    result = z > 0.0 ? result : vec4(0.0, 0.0, 0.0, 1.0);
+    if (all(lessThan(texel, unpack_texel(params.rect.y))))
+        store_noisy(texel, result);
 }
 
 #endif

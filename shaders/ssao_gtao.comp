@@ -15,11 +15,11 @@
 #include "horizon.glsl"
 
 /* Cosines of the horizons. */
-vec2 horizon_cosines(Slice s, vec2 texel, float jitter)
+vec2 horizon_cosines(Slice s, ivec2 texel, float jitter)
 {
     float radius = params.normal_x.w;
     vec2 low = -SIDES * s.sin_n; /* cos(n +- pi/2): the tangent plane */
-    vec2 horizon = low;
+    vec2 horizon = low, open = low + params.bias_cosine;
     vec2 next = step_offset(s, 0u, jitter, radius), next_z = load_sides(texel, next);
     [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
         vec2 offset = next, z = next_z, x, y;
@@ -29,7 +29,7 @@ vec2 horizon_cosines(Slice s, vec2 texel, float jitter)
         slice_points(s, offset, z, x, y);
         vec2 d2 = x * x + y * y;
         vec2 weight = mix(vec2(0.0), falloff_weight(d2), greaterThan(z, vec2(0.0)));
-        horizon = max(horizon, low + weight * (y * inversesqrt(d2) - params.bias_cosine - low));
+        horizon = greater(horizon, low + weight * (y * inversesqrt(d2) - open));
     }
     return clamp(horizon, vec2(-1.0), vec2(1.0));
 }
@@ -50,13 +50,13 @@ vec2 bent_slice(float h0, float h1, float n)
 
 vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
 {
-    vec3 to_eye = direction_to_eye(position);
+    vec3 to_eye = eye_direction(texel);
     vec2 noise = slice_noise(texel);
     float lost = 0.0;
     vec3 bent = vec3(0.0);
     [[unroll]] for (uint k = 0u; k < slice_count(); ++k) {
         Slice s = make_slice((float(k) + noise.x) * (1.0 / float(slice_count())), position, normal, to_eye);
-        vec2 cosines = horizon_cosines(s, vec2(texel), noise.y);
+        vec2 cosines = horizon_cosines(s, texel, noise.y);
         float n = s.sin_n >= 0.0 ? acos(s.cos_n) : -acos(s.cos_n);
         float h1 = min(acos(cosines.x), n + 0.5 * PI), h0 = max(-acos(cosines.y), n - 0.5 * PI);
         float open = s.cos_n + n * s.sin_n;

@@ -15,7 +15,7 @@
 #include "horizon.glsl"
 
 /* Of both sides together. */
-float occlusion(Slice s, vec2 texel, float jitter)
+float occlusion(Slice s, ivec2 texel, float jitter)
 {
     float radius = params.normal_x.w;
     vec2 sine = vec2(params.bias_cosine), occluded = vec2(0.0);
@@ -36,12 +36,12 @@ float occlusion(Slice s, vec2 texel, float jitter)
 
 vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
 {
-    vec3 to_eye = direction_to_eye(position);
+    vec3 to_eye = eye_direction(texel);
     vec2 noise = slice_noise(texel);
     float occluded = 0.0;
     [[unroll]] for (uint k = 0u; k < slice_count(); ++k) {
         Slice s = make_slice((float(k) + noise.x) * (1.0 / float(slice_count())), position, normal, to_eye);
-        occluded += occlusion(s, vec2(texel), noise.y);
+        occluded += occlusion(s, texel, noise.y);
     }
     return vec4(vec3(0.0), 1.0 - occluded / float(2u * slice_count()));
 }

@@ -14,24 +14,40 @@
 #include "params.h"
 #include "ssao.glsl"
 
+/* Directions on their way to texels: what a step in view space adds to (texel, 1) * z, in perspective, or (texel, z). A
+ * point is projected by one division, without going through view space. */
+vec3 to_texels(vec3 direction)
+{
+    vec2 xy = orthographic() ? direction.xy : direction.xy - params.unproject.zw * direction.z;
+    return vec3(xy * params.inverse_unproject, direction.z);
+}
+
 vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
 {
     float radius = params.normal_x.w, bias = params.normal_y.w + depth_error(position.z);
     vec3 t, b;
     tangents(normal, t, b);
-    float turn = TWO_PI * interleaved_gradient_noise(uvec2(texel), params.noise_index);
+    /* The kernel is turned with its frame: the directions in it are constants then. */
+    vec2 turn = full_turn(interleaved_gradient_noise(uvec2(texel), params.noise_index));
     float shift = r2_noise(uvec2(texel), params.noise_index);
+    vec3 across = to_texels(turn.x * t + turn.y * b), along = to_texels(turn.x * b - turn.y * t);
+    vec3 up = to_texels(normal);
+    vec3 center = orthographic() ? vec3(texel, position.z) : vec3(vec2(texel) * position.z, position.z);
+    /* stands_in_front, in texels: the height of an occluder is dot(normal, occluder) - dot(normal, position). */
+    vec2 slope = normal.xy * params.unproject.xy;
+    float level = dot(normal.xy, params.unproject.zw) + (orthographic() ? 0.0 : normal.z);
+    float least = dot(normal, position) + bias;
     float blocked = 0.0;
-    for (uint k = 0u; k < sample_count(); ++k) {
-        float r2 = (float(k) + 0.5) / float(sample_count());
-        float angle = float(k) * GOLDEN_ANGLE + turn;
+    [[unroll]] for (uint k = 0u; k < sample_count(); ++k) {
+        float r2 = (float(k) + 0.5) / float(sample_count()), r = sqrt(r2), height = sqrt(1.0 - r2);
+        float angle = float(k) * GOLDEN_ANGLE;
         float len = point_length(fract(golden_sequence(k) + shift), radius);
-        vec3 offset = len * (sqrt(r2) * (cos(angle) * t + sin(angle) * b) + sqrt(1.0 - r2) * normal);
-        vec3 point = position + offset;
-        ivec2 at = ivec2(floor(project_to_texel(point) + 0.5));
-        float scene_z = point.z > 0.0 ? load_view_z(at) : 0.0;
-        vec3 occluder = view_position(vec2(at), scene_z);
-        bool hit = scene_z > 0.0 && stands_in_front(occluder, position, normal, len * sqrt(1.0 - r2) + bias);
+        vec3 point = center + len * (r * cos(angle) * across + r * sin(angle) * along + height * up);
+        ivec2 at = nearest_texel(orthographic() ? point.xy : point.xy * (1.0 / point.z));
+        float scene_z = load_view_z(at);
+        float over = dot(slope, vec2(at)) + level;
+        over = orthographic() ? over + normal.z * scene_z : over * scene_z;
+        bool hit = min(scene_z, point.z) > 0.0 && over > len * height + least;
         blocked += hit ? range_weight(scene_z - position.z, radius) : 0.0;
     }
     return vec4(vec3(0.0), 1.0 - blocked / float(sample_count()));

@@ -26,18 +26,21 @@
 
 const float SECTORS = 31.0;
 
-/* Least squares, largest error .0014: below half a sector. */
+/* g(c) = c (G1 + G3 c^2 + G5 c^4). Least squares, largest error .0014: below half a sector. */
+const float G1 = 0.99183605, G3 = -0.11897914, G5 = -0.08610474;
+
 vec2 g(vec2 c)
 {
     vec2 c2 = c * c;
-    return c * (0.99183605 + c2 * (-0.11897914 - 0.08610474 * c2));
+    return c * (G1 + c2 * (G3 + G5 * c2));
 }
 
-/* Sector bound of cosine c is k.x + y c^2 + z g(c), inside the side's mass. Vectors hold both sides. */
+/* Sector bound of cosine c is the polynomial k0 + k1 c + k2 c^2 + k3 c^3 + k5 c^5, inside the side's mass. Vectors hold
+ * both sides. */
 struct Masks {
     vec2 low; /* cosine of the tangent plane */
     vec2 mass;
-    vec2 x, y, z;
+    vec2 k0, k1, k2, k3, k5;
 };
 
 Masks make_masks(Slice s)
@@ -46,18 +49,21 @@ Masks make_masks(Slice s)
     vec2 sn = SIDES * s.sin_n;
     m.low = -sn;
     vec2 below = 0.5 * s.cos_n * m.low * m.low + sn * g(m.low);
-    m.mass = max(0.5 * s.cos_n + sn * g(vec2(1.0)) - below, vec2(1.0e-4));
+    m.mass = max(0.5 * s.cos_n + sn * (G1 + G3 + G5) - below, vec2(1.0e-4));
     vec2 scale = SECTORS / m.mass;
-    m.x = VKAO_VBAO_ROUND - below * scale;
-    m.y = 0.5 * s.cos_n * scale;
-    m.z = sn * scale;
+    m.k0 = VKAO_VBAO_ROUND - below * scale;
+    m.k2 = 0.5 * s.cos_n * scale;
+    sn *= scale;
+    m.k1 = G1 * sn;
+    m.k3 = G3 * sn;
+    m.k5 = G5 * sn;
     return m;
 }
 
 ivec2 sector(Masks m, vec2 c)
 {
-    c = max(c, m.low);
-    return ivec2(clamp(m.x + c * (m.y * c) + m.z * g(c), vec2(0.0), vec2(SECTORS)));
+    c = greater(c, m.low);
+    return min(ivec2(m.k0 + c * (m.k1 + c * (m.k2 + c * (m.k3 + c * c * m.k5)))), ivec2(31));
 }
 
 vec2 perpendicular(float c)
@@ -66,7 +72,7 @@ vec2 perpendicular(float c)
 }
 
 /* x: weighted share of the slice's mass that is hidden. yz: its moment along O and V. */
-vec3 hidden_mass(Slice s, vec2 texel, float jitter)
+vec3 hidden_mass(Slice s, ivec2 texel, float jitter)
 {
     float radius = params.normal_x.w;
     float reach = radius * (flag(VKAO_FLAG_THRESHOLD) ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH);
@@ -86,11 +92,12 @@ vec3 hidden_mass(Slice s, vec2 texel, float jitter)
         bvec2 seen = greaterThan(z, vec2(0.0));
         vec2 gap = x - last_x, height = y + x * tangent;
         bvec2 joined = lessThan(abs(height - last_height), VKAO_VBAO_JOIN * abs(gap));
-        vec2 moved = mix(vec2(0.0), min(VKAO_VBAO_GAP_FRONT * gap, x - 1.0e-4 * radius), greaterThan(height, vec2(0.0)));
+        vec2 moved = lesser(VKAO_VBAO_GAP_FRONT * gap, x - 1.0e-4 * radius);
+        moved = mix(vec2(0.0), moved, greaterThan(height, vec2(0.0)));
         vec2 front_x = mix(x - moved, x, joined);
         vec2 front = y * inversesqrt(front_x * front_x + y * y);
-        front = mix(front, max(front, last_front), joined);
-        vec2 thick_y = y - (params.thickness_base + params.thickness_slope * min(x, vec2(radius)));
+        front = greater(front, mix(vec2(-2.0), last_front, joined));
+        vec2 thick_y = y - (params.thickness_base + params.thickness_slope * x);
         vec2 back_x = x + VKAO_VBAO_GAP_BACK * gap;
         vec2 back = thick_y * inversesqrt(back_x * back_x + thick_y * thick_y);
         ivec2 high = sector(m, front - params.bias_cosine), low = min(sector(m, back), high);
@@ -98,7 +105,7 @@ vec3 hidden_mass(Slice s, vec2 texel, float jitter)
         bits = mix(ivec2(0), bits, seen);
         ivec2 fresh = bits & ~mask;
         mask |= bits;
-        vec2 near_y = clamp(vec2(0.0), thick_y, y);
+        vec2 near_y = lesser(max(thick_y, vec2(0.0)), y);
         vec2 w = falloff_weight(x * x + near_y * near_y) * vec2(bitCount(fresh));
         hidden += w;
         if (BENT_NORMALS) {
@@ -111,18 +118,18 @@ vec3 hidden_mass(Slice s, vec2 texel, float jitter)
         last_front = mix(last_front, front, seen);
     }
     moment.x = dot(hidden, m.mass);
-    return moment / SECTORS;
+    return moment * (1.0 / SECTORS);
 }
 
 vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
 {
-    vec3 to_eye = direction_to_eye(position);
+    vec3 to_eye = eye_direction(texel);
     vec2 noise = slice_noise(texel);
     vec3 bent = vec3(0.0);
     float lost = 0.0;
     [[unroll]] for (uint k = 0u; k < slice_count(); ++k) {
         Slice s = make_slice((float(k) + noise.x) * (1.0 / float(slice_count())), position, normal, to_eye);
-        vec3 hidden = hidden_mass(s, vec2(texel), noise.y);
+        vec3 hidden = hidden_mass(s, texel, noise.y);
         lost += s.normal_length * hidden.x;
         bent += s.normal_length * (hidden.y * s.outward + hidden.z * to_eye);
     }

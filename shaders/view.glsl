@@ -99,22 +99,28 @@ vec3 direction_to_eye(vec3 position)
 }
 
 /* Surface tangent along one screen axis. Of the two neighbour pairs, the one whose straight continuation meets the
- * centre better lies on the centre's surface. 1/z is what continues straight on screen in perspective. */
+ * centre better lies on the centre's surface. 1/z is what continues straight on screen in perspective; both misses are
+ * fractions there, compared without dividing. */
 vec3 tangent_from_depth(ivec2 texel, ivec2 axis, vec3 center)
 {
-    float near_side = load_view_z(texel - axis), far_side = load_view_z(texel + axis);
-    vec4 z = vec4(load_view_z(texel - 2 * axis), near_side, far_side, load_view_z(texel + 2 * axis));
-    vec4 line = orthographic() ? z : 1.0 / max(z, 1.0e-30);
-    float middle = orthographic() ? center.z : 1.0 / center.z;
+    vec4 z = vec4(load_view_z(texel - 2 * axis), load_view_z(texel - axis), load_view_z(texel + axis),
+                  load_view_z(texel + 2 * axis));
+    vec2 far_z = z.xw, near_z = z.yz;
+    vec2 line = near_z - center.z, curve = 2.0 * near_z - far_z - center.z;
+    vec2 line_scale = vec2(1.0), curve_scale = vec2(1.0);
+    if (!orthographic()) {
+        vec2 n = near_z / center.z, f = far_z / center.z;
+        line = 1.0 - n;
+        line_scale = n;
+        curve = 2.0 * f - n * (1.0 + f);
+        curve_scale = n * f;
+    }
     /* Without a second neighbour the first one alone decides, by how far it is off. */
-    float before = z.x > 0.0 ? abs(2.0 * line.y - line.x - middle) : abs(line.y - middle);
-    float after = z.w > 0.0 ? abs(2.0 * line.z - line.w - middle) : abs(line.z - middle);
-    bool has_before = near_side > 0.0, has_after = far_side > 0.0;
-    if (has_before && (!has_after || before < after))
-        return center - view_position(vec2(texel - axis), near_side);
-    if (has_after)
-        return view_position(vec2(texel + axis), far_side) - center;
-    return view_position(vec2(texel + axis), center.z) - center;
+    bvec2 curved = greaterThan(far_z, vec2(0.0)), there = greaterThan(near_z, vec2(0.0));
+    vec2 miss = abs(mix(line, curve, curved)), scale = mix(line_scale, curve_scale, curved);
+    bool before = there.x && (!there.y || miss.x * scale.y < miss.y * scale.x);
+    float side = before ? -1.0 : 1.0, side_z = before ? near_z.x : there.y ? near_z.y : center.z;
+    return side * (view_position(vec2(texel) + side * vec2(axis), side_z) - center);
 }
 
 vec3 normal_from_depth(ivec2 texel, vec3 center)
@@ -136,9 +142,10 @@ vec3 view_normal(ivec2 texel, vec3 center)
 {
     vec3 stored = decode_normal(texel << grid_shift());
     vec3 n = to_view(stored);
-    if (stored == vec3(0.0))
-        n = normal_from_depth(texel, center);
-    return dot(n, direction_to_eye(center)) < 0.0 ? -n : n;
+    /* Always computed, seldom taken: costs a driver in software less than the branch. */
+    vec3 own = normal_from_depth(texel, center);
+    n = dot(n, n) > 0.0 ? n : own;
+    return (orthographic() ? n.z : dot(n, center)) > 0.0 ? -n : n;
 }
 
 #endif
