@@ -85,6 +85,8 @@ vkao_result vkao_cmd_blur(const vkao_frame *frame, VkCommandBuffer cmd, const vk
     if (result == VKAO_SUCCESS)
         result = blur_params_check(&frame->ctx->log, params, &known);
     if (result == VKAO_SUCCESS)
+        result = pipelines_check(frame, &constants, NULL, &known);
+    if (result == VKAO_SUCCESS)
         record_blur(frame, cmd, &constants, &known);
     return result;
 }

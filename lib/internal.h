@@ -58,7 +58,8 @@ struct vkao_frame {
 vkao_result vkao_import(const struct vkao_logger *log, const char *name, const void *src, void *dst,
                         size_t known);
 
-vkao_result ssao_params_check(const vkao_context *ctx, bool bent, const vkao_ssao_params *in,
+vkao_result ssao_params_check(const vkao_context *ctx, const struct vkao_logger *log, bool bent,
+                              const vkao_ssao_params *in,
                               vkao_ssao_params *out);
 vkao_result blur_params_check(const struct vkao_logger *log, const vkao_blur_params *in,
                               vkao_blur_params *out);

@@ -64,8 +64,8 @@ static vkao_result check_uint(const struct vkao_logger *log, const char *name, u
                        max);
 }
 
-vkao_result ssao_params_check(const vkao_context *ctx, bool bent, const vkao_ssao_params *in,
-                              vkao_ssao_params *out)
+vkao_result ssao_params_check(const vkao_context *ctx, const struct vkao_logger *log, bool bent,
+                              const vkao_ssao_params *in, vkao_ssao_params *out)
 {
     static const struct float_range ranges[] = {
         {"ssao.radius", offsetof(vkao_ssao_params, radius), 0.0f, FLT_MAX, true},
@@ -73,7 +73,6 @@ vkao_result ssao_params_check(const vkao_context *ctx, bool bent, const vkao_ssa
         {"ssao.blocking_scale", offsetof(vkao_ssao_params, blocking_scale), 0.0f, FLT_MAX, true},
         {"ssao.thickness", offsetof(vkao_ssao_params, thickness), 0.0f, 8.0f, false},
     };
-    const struct vkao_logger *log = &ctx->log;
     vkao_result result = vkao_import(log, "ssao", in, out, sizeof *out);
     if (result == VKAO_SUCCESS)
         result = check_uint(log, "ssao.method", (uint32_t)out->method, 0, VKAO_METHOD_COUNT - 1);

@@ -278,12 +278,14 @@ static vkao_result create_pipeline(vkao_context *ctx, VkPipelineCache cache, enu
     return VKAO_SUCCESS;
 }
 
-static vkao_result create_general(vkao_context *ctx, VkPipelineCache cache)
+/* variants_only leaves what variants do not have: COMPOSITE. */
+static vkao_result create_general(vkao_context *ctx, VkPipelineCache cache, bool variants_only)
 {
     const struct pipeline_key general = {.flags = VKAO_FLAGS_UNKNOWN};
     vkao_result result = VKAO_SUCCESS;
     for (uint32_t i = 0; result == VKAO_SUCCESS && i < PIPELINE_COUNT; ++i) {
-        if (!shaders[i].builds[context_build(ctx)].code ||
+        if ((variants_only && i != PIPELINE_COMPOSITE && i != PIPELINE_DEBUG) ||
+            !shaders[i].builds[context_build(ctx)].code ||
             (i >= PIPELINE_SSAO && !(ctx->method_mask >> (i - PIPELINE_SSAO) & 1u)))
             continue;
         for (VkBool32 bent = 0; result == VKAO_SUCCESS && bent <= shaders[i].bent; ++bent)
@@ -305,16 +307,15 @@ static VkPipeline find_variant(const struct pipelines *p, enum pipeline which, V
 }
 
 /* Adds one unless it is there already. */
-static vkao_result add_variant(vkao_context *ctx, VkPipelineCache cache, enum pipeline which,
-                               bool bent, struct pipeline_key key)
+static vkao_result add_variant(vkao_context *ctx, VkPipelineCache cache,
+                               const struct pipeline_variant *wanted)
 {
     struct pipelines *p = &ctx->pipelines;
-    const VkBool32 is_bent = bent && shaders[which].bent;
-    if (find_variant(p, which, is_bent, &key))
+    if (find_variant(p, wanted->which, wanted->bent, &wanted->key))
         return VKAO_SUCCESS;
     struct pipeline_variant *v = &p->variants[p->variant_count];
-    *v = (struct pipeline_variant){which, is_bent, key, VK_NULL_HANDLE};
-    vkao_result result = create_pipeline(ctx, cache, which, is_bent, key, &v->pipeline);
+    *v = *wanted;
+    vkao_result result = create_pipeline(ctx, cache, v->which, v->bent, v->key, &v->pipeline);
     if (result == VKAO_SUCCESS)
         ++p->variant_count;
     return result;
@@ -323,8 +324,15 @@ static vkao_result add_variant(vkao_context *ctx, VkPipelineCache cache, enum pi
 /* Of one variant, at most. */
 enum { VARIANT_STAGES = 5 };
 
-static vkao_result add_variant_stages(vkao_context *ctx, VkPipelineCache cache, uint32_t index,
-                                      const vkao_variant *caller_variant)
+/* What a variant asks for, stage by stage. */
+struct variant_plan {
+    struct pipeline_variant stages[VARIANT_STAGES];
+    size_t count;
+};
+
+/* log: of the context, or a silent one. */
+static vkao_result plan_variant(const vkao_context *ctx, const struct vkao_logger *log,
+                                const vkao_variant *caller_variant, struct variant_plan *plan)
 {
     struct view_constants view;
     vkao_variant info;
@@ -332,29 +340,25 @@ static vkao_result add_variant_stages(vkao_context *ctx, VkPipelineCache cache, 
     vkao_blur_params blur;
     vkao_view caller_view;
     const VkExtent2D any = {ctx->max_dimension, ctx->max_dimension};
-    vkao_result result = vkao_import(&ctx->log, "variant", caller_variant, &info, sizeof info);
+    vkao_result result = vkao_import(log, "variant", caller_variant, &info, sizeof info);
     if (result == VKAO_SUCCESS &&
         (info.half_resolution > 1 || info.bent_normals > 1 || info.reserved))
-        result = vkao_refuse(
-            &ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-            "context.variants[%u]: half_resolution is %u, bent_normals %u, reserved %u, want 0 or "
-            "1, 0 or 1, 0",
-            index, info.half_resolution, info.bent_normals, info.reserved);
+        result = vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                             "variant.half_resolution is %u, bent_normals %u, reserved %u, want 0 "
+                             "or 1, 0 or 1, 0",
+                             info.half_resolution, info.bent_normals, info.reserved);
     if (result == VKAO_SUCCESS)
-        result =
-            vkao_import(&ctx->log, "variant.view", info.view, &caller_view, sizeof caller_view);
+        result = vkao_import(log, "variant.view", info.view, &caller_view, sizeof caller_view);
     if (result == VKAO_SUCCESS)
-        result = view_constants_init(&ctx->log, &caller_view, any, VK_FORMAT_UNDEFINED, &view);
+        result = view_constants_init(log, &caller_view, any, VK_FORMAT_UNDEFINED, &view);
     if (result == VKAO_SUCCESS)
-        result = ssao_params_check(ctx, info.bent_normals, info.ssao, &ssao);
+        result = ssao_params_check(ctx, log, info.bent_normals, info.ssao, &ssao);
     if (result == VKAO_SUCCESS && info.blur)
-        result = blur_params_check(&ctx->log, info.blur, &blur);
+        result = blur_params_check(log, info.blur, &blur);
     if (result != VKAO_SUCCESS)
         return result;
     const vkao_blur_params *has_blur = info.blur ? &blur : NULL;
-    view.grid_shift = info.half_resolution;
     const bool packed = ctx->buffers && has_blur && !info.bent_normals;
-    const uint32_t flags = recording_flags(&view, packed, &ssao, has_blur);
     const enum pipeline stages[VARIANT_STAGES] = {
         PIPELINE_PREPARE,
         (enum pipeline)(PIPELINE_SSAO + (int)ssao.method),
@@ -362,19 +366,51 @@ static vkao_result add_variant_stages(vkao_context *ctx, VkPipelineCache cache, 
         packed ? PIPELINE_PACKED_BLUR_Y : PIPELINE_BLUR_Y,
         packed ? PIPELINE_PACKED_UPSAMPLE : PIPELINE_UPSAMPLE,
     };
-    const size_t count = !has_blur ? 2 : info.half_resolution ? 5 : 4;
-    for (size_t i = 0; result == VKAO_SUCCESS && i < count; ++i)
-        result = add_variant(ctx, cache, stages[i], info.bent_normals,
-                             pipeline_key(stages[i], flags, &ssao, has_blur));
+    view.grid_shift = info.half_resolution;
+    plan->count = !has_blur ? 2 : info.half_resolution ? 5 : 4;
+    for (size_t i = 0; i < plan->count; ++i) {
+        /* Upsampling is of the image's own grid. */
+        struct view_constants grid = view;
+        if (stages[i] == PIPELINE_UPSAMPLE || stages[i] == PIPELINE_PACKED_UPSAMPLE)
+            grid.grid_shift = 0;
+        const uint32_t flags = recording_flags(&grid, packed, &ssao, has_blur);
+        plan->stages[i] = (struct pipeline_variant){
+            .which = stages[i],
+            .bent = info.bent_normals && shaders[stages[i]].bent,
+            .key = pipeline_key(stages[i], flags, &ssao, has_blur),
+        };
+    }
+    return VKAO_SUCCESS;
+}
+
+static vkao_result add_variant_stages(vkao_context *ctx, VkPipelineCache cache,
+                                      const vkao_variant *variant)
+{
+    struct variant_plan plan;
+    vkao_result result = plan_variant(ctx, &ctx->log, variant, &plan);
+    for (size_t i = 0; result == VKAO_SUCCESS && i < plan.count; ++i)
+        result = add_variant(ctx, cache, &plan.stages[i]);
     return result;
+}
+
+VkBool32 vkao_context_has_variant(const vkao_context *ctx, const vkao_variant *variant)
+{
+    const struct vkao_logger silent = {0};
+    struct variant_plan plan;
+    if (!ctx || plan_variant(ctx, &silent, variant, &plan) != VKAO_SUCCESS)
+        return VK_FALSE;
+    for (size_t i = 0; i < plan.count; ++i) {
+        const struct pipeline_variant *v = &plan.stages[i];
+        if (!find_variant(&ctx->pipelines, v->which, v->bent, &v->key))
+            return VK_FALSE;
+    }
+    return VK_TRUE;
 }
 
 vkao_result pipelines_create(vkao_context *ctx, const vkao_context_info *info)
 {
     struct pipelines *p = &ctx->pipelines;
-    vkao_result result = VKAO_SUCCESS;
-    if (!info->variants_only)
-        result = create_general(ctx, info->pipeline_cache);
+    vkao_result result = create_general(ctx, info->pipeline_cache, info->variants_only);
     if (result != VKAO_SUCCESS || !info->variant_count)
         return result;
     p->variants =
@@ -383,7 +419,7 @@ vkao_result pipelines_create(vkao_context *ctx, const vkao_context_info *info)
         return vkao_refuse(&ctx->log, VKAO_ERROR_OUT_OF_HOST_MEMORY,
                            "no host memory for context.variants");
     for (uint32_t i = 0; result == VKAO_SUCCESS && i < info->variant_count; ++i)
-        result = add_variant_stages(ctx, info->pipeline_cache, i, &info->variants[i]);
+        result = add_variant_stages(ctx, info->pipeline_cache, &info->variants[i]);
     return result;
 }
 
@@ -407,4 +443,35 @@ VkPipeline pipeline_find(const vkao_context *ctx, enum pipeline which, bool bent
     const VkBool32 is_bent = bent && shaders[which].bent;
     VkPipeline variant = find_variant(&ctx->pipelines, which, is_bent, &key);
     return variant ? variant : ctx->pipelines.general[which][is_bent];
+}
+
+vkao_result pipelines_check(const vkao_frame *frame, const struct view_constants *view,
+                            const vkao_ssao_params *ssao, const vkao_blur_params *blur)
+{
+    const struct view_constants grid = frame_grid(frame, view);
+    const bool packed = frame->packed;
+    const struct {
+        bool runs;
+        enum pipeline which;
+        const struct view_constants *grid;
+    } stages[] = {
+        {true, PIPELINE_PREPARE, &grid},
+        {ssao, ssao ? (enum pipeline)(PIPELINE_SSAO + (int)ssao->method) : PIPELINE_SSAO, &grid},
+        {blur, packed ? PIPELINE_PACKED_BLUR_X : PIPELINE_BLUR_X, &grid},
+        {blur, packed ? PIPELINE_PACKED_BLUR_Y : PIPELINE_BLUR_Y, &grid},
+        {blur && frame->half_resolution, packed ? PIPELINE_PACKED_UPSAMPLE : PIPELINE_UPSAMPLE,
+         view},
+    };
+    for (size_t i = 0; i < sizeof stages / sizeof stages[0]; ++i) {
+        const enum pipeline which = stages[i].which;
+        if (!stages[i].runs)
+            continue;
+        const uint32_t flags = recording_flags(stages[i].grid, packed, ssao, blur);
+        if (!pipeline_find(frame->ctx, which, frame_has_bent_normals(frame),
+                           pipeline_key(which, flags, ssao, blur)))
+            return vkao_refuse(&frame->ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                               "the context has variants_only, and none for these settings of %s",
+                               shaders[which].name);
+    }
+    return VKAO_SUCCESS;
 }

@@ -51,6 +51,10 @@ void pipelines_destroy(vkao_context *ctx);
 VkPipeline pipeline_find(const vkao_context *ctx, enum pipeline which, bool bent,
                          struct pipeline_key key);
 
+/* Refuses settings for which a context with variants_only has no pipeline. ssao and blur may be NULL. */
+vkao_result pipelines_check(const vkao_frame *frame, const struct view_constants *view,
+                            const vkao_ssao_params *ssao, const vkao_blur_params *blur);
+
 /* What a pipeline of that stage is told of a recording. */
 struct pipeline_key pipeline_key(enum pipeline which, uint32_t flags, const vkao_ssao_params *ssao,
                                  const vkao_blur_params *blur);

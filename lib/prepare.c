@@ -79,6 +79,8 @@ vkao_result vkao_cmd_prepare(const vkao_frame *frame, VkCommandBuffer cmd, const
     vkao_result result = frame_view_check(frame, cmd, "vkao_cmd_prepare",
                                           VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, view, &constants);
     if (result == VKAO_SUCCESS)
+        result = pipelines_check(frame, &constants, NULL, NULL);
+    if (result == VKAO_SUCCESS)
         record_prepare(frame, cmd, &constants);
     return result;
 }

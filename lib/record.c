@@ -142,11 +142,16 @@ vkao_result vkao_cmd_all(const vkao_frame *frame, VkCommandBuffer cmd, const vka
     if (result == VKAO_SUCCESS)
         result = check_presence(frame, ssao, blur, composite);
     if (result == VKAO_SUCCESS && (frame->stages & VKAO_STAGE_SSAO))
-        result = ssao_params_check(frame->ctx, frame_has_bent_normals(frame), ssao, &ssao_known);
+        result = ssao_params_check(frame->ctx, &frame->ctx->log, frame_has_bent_normals(frame),
+                                   ssao, &ssao_known);
     if (result == VKAO_SUCCESS && (frame->stages & VKAO_STAGE_BLUR))
         result = blur_params_check(&frame->ctx->log, blur, &blur_known);
     if (result == VKAO_SUCCESS && (frame->stages & VKAO_STAGE_COMPOSITE))
         result = composite_params_check(frame, composite, &composite_known);
+    if (result == VKAO_SUCCESS && (frame->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR)))
+        result =
+            pipelines_check(frame, &constants, frame->stages & VKAO_STAGE_SSAO ? &ssao_known : NULL,
+                            frame->stages & VKAO_STAGE_BLUR ? &blur_known : NULL);
     if (result != VKAO_SUCCESS)
         return result;
 

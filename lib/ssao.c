@@ -64,7 +64,10 @@ vkao_result vkao_cmd_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const vk
     vkao_result result =
         frame_view_check(frame, cmd, "vkao_cmd_ssao", VKAO_STAGE_SSAO, view, &constants);
     if (result == VKAO_SUCCESS)
-        result = ssao_params_check(frame->ctx, frame_has_bent_normals(frame), params, &known);
+        result = ssao_params_check(frame->ctx, &frame->ctx->log, frame_has_bent_normals(frame),
+                                   params, &known);
+    if (result == VKAO_SUCCESS)
+        result = pipelines_check(frame, &constants, &known, NULL);
     if (result == VKAO_SUCCESS)
         record_ssao(frame, cmd, &constants, &known, 0);
     return result;

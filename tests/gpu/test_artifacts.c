@@ -165,6 +165,8 @@ static void facets_under_smooth_normals_hardly_show(void **state)
         const bool smooth = i / METHODS;
         double worst = 1.0;
         make(&p, i % METHODS, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, 80, 60, &nothing, &lens);
+        p.blur.radius = 4;
+        p.blur.normal_power = 8.0f;
         for (size_t t = 0; t < picture_texels(&p); ++t) {
             double x = ((double)(t % p.width) + 0.5) / p.width * 3.2 - 1.6;
             /* the facet whose chord holds x: its middle angle, and the chord's distance from the

@@ -325,6 +325,7 @@ static void dispatch_covers_the_rect_exactly(void **state)
         world_open_frame(&w, VKAO_STAGE_ALL);
         w.view.valid = cases[i].valid;
         w.view.rect = cases[i].rect;
+        w.blur.radius = 4;
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
         check_cover(&w, 0, cases[i].prepare, VKAO_VIEW_Z_BORDER,
                     offsetof(struct vkao_prepare_block, valid));

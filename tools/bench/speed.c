@@ -243,8 +243,8 @@ static bool open_device(struct bench *b, struct tool_error *err)
     const struct speed_options *o = b->options;
     const struct speed_features features = {
         .composite = o->composite, .bent_normals = o->bent_normals, .half_view_z = o->half_view_z};
-    if (!speed_device_create(o->device, configs_method_mask(&b->configs), features, &b->device,
-                             err))
+    if (!speed_device_create(o->device, features, &b->device, err) ||
+        !speed_device_compile(&b->device, b->configs.rows, b->configs.count, err))
         return false;
     snprintf(b->speed.device, sizeof b->speed.device, "%s", b->device.gpu.properties.deviceName);
     return true;

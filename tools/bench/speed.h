@@ -34,8 +34,12 @@ struct speed_device {
 };
 
 /* device: as of --device. Errors: EXIT_DEVICE, EXIT_MEMORY. */
-bool speed_device_create(const char *device, uint32_t method_mask, struct speed_features features,
+bool speed_device_create(const char *device, struct speed_features features,
                          struct speed_device *d, struct tool_error *err);
+/* A context for these settings, at most MAX_CONFIGS, and no others; the one before is destroyed, no
+ * images may be left of it. */
+bool speed_device_compile(struct speed_device *d, const struct config *configs, size_t count,
+                          struct tool_error *err);
 void speed_device_destroy(struct speed_device *d);
 
 /* The room of one size on the device, and frames for it that share their scratch memory. */

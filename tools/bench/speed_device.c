@@ -7,20 +7,52 @@
 #include <string.h>
 #include <vulkan/vulkan.h>
 
-bool speed_device_create(const char *device, uint32_t method_mask, struct speed_features features,
-                         struct speed_device *d, struct tool_error *err)
+bool speed_device_create(const char *device, struct speed_features features, struct speed_device *d,
+                         struct tool_error *err)
 {
     const struct gpu_options options = {.device = device};
     *d = (struct speed_device){.features = features};
-    if (!gpu_create(&options, &d->gpu, err))
-        return false;
-    vkao_context_info info = gpu_context_info(&d->gpu, method_mask);
-    info.half_view_z = features.half_view_z;
+    return gpu_create(&options, &d->gpu, err) && stage_clock_create(&d->gpu, &d->clock, err);
+}
+
+/* Of any size: what a variant takes from a view does not depend on it. */
+static vkao_view room_view(VkExtent2D extent)
+{
+    vkao_view view = vkao_view_default();
+    view.depth_encoding = VKAO_DEPTH_VIEW_Z;
+    view.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
+    room_projection(extent.width, extent.height, view.projection);
+    return view;
+}
+
+bool speed_device_compile(struct speed_device *d, const struct config *configs, size_t count,
+                          struct tool_error *err)
+{
+    const vkao_view view = room_view((VkExtent2D){1920, 1080});
+    struct ao_job jobs[MAX_CONFIGS];
+    vkao_variant variants[MAX_CONFIGS];
+    vkao_context_info info = gpu_context_info(&d->gpu, 0);
+    for (size_t i = 0; i < count; i++) {
+        config_apply(&configs[i], &jobs[i]);
+        variants[i] = (vkao_variant){
+            .struct_size = sizeof variants[i],
+            .half_resolution = jobs[i].half_resolution,
+            .bent_normals = d->features.bent_normals,
+            .view = &view,
+            .ssao = &jobs[i].ssao,
+            .blur = &jobs[i].blur,
+        };
+    }
+    info.half_view_z = d->features.half_view_z;
+    info.variants = variants;
+    info.variant_count = (uint32_t)count;
+    info.variants_only = VK_TRUE;
     stage_clock_hook(&info);
+    vkao_context_destroy(d->ctx);
     double start = speed_now_ms();
     d->ctx = gpu_context_create(&info, err);
     d->context_ms = speed_now_ms() - start;
-    return d->ctx && stage_clock_create(&d->gpu, &d->clock, err);
+    return d->ctx != NULL;
 }
 
 void speed_device_destroy(struct speed_device *d)
@@ -172,11 +204,8 @@ static vkao_result record(struct speed_device *d, const struct speed_images *ima
                           const struct config *config, float radius, VkCommandBuffer cmd)
 {
     const vkao_composite_params composite = vkao_composite_params_default();
-    vkao_view view = vkao_view_default();
+    const vkao_view view = room_view(images->extent);
     struct ao_job job = {0};
-    view.depth_encoding = VKAO_DEPTH_VIEW_Z;
-    view.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
-    room_projection(images->extent.width, images->extent.height, view.projection);
     config_apply(config, &job);
     job.ssao.radius = radius;
     stage_clock_start(&d->clock, cmd);

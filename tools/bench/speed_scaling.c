@@ -84,12 +84,23 @@ static bool add_rows(struct speed *speed, const struct config *config, VkExtent2
     return true;
 }
 
+/* Pipelines for all rows. */
+static bool compile_rows(struct speed_device *d, const struct speed *speed, struct tool_error *err)
+{
+    struct config configs[MAX_CONFIGS];
+    size_t count = 0;
+    for (size_t i = 0; i < speed->count && count < MAX_CONFIGS; i++)
+        configs[count++] = speed->rows[i].config;
+    return speed_device_compile(d, configs, count, err);
+}
+
 bool speed_scaling(struct speed_device *d, const struct config *config, VkExtent2D extent,
                    unsigned sky, struct speed *speed, struct tool_error *err)
 {
     struct speed_images images[LARGEST + 1] = {0};
     struct speed_vs none = {0};
-    bool ok = speed_size_check(d, extent, err);
+    bool ok = speed_size_check(d, extent, err) && add_rows(speed, config, extent, err) &&
+              compile_rows(d, speed, err);
     for (int i = 0; ok && i <= LARGEST; i++) {
         VkExtent2D size = size_of(extent, i);
         struct room room;
@@ -97,8 +108,7 @@ bool speed_scaling(struct speed_device *d, const struct config *config, VkExtent
              speed_images_create(d, &room, &images[i], err);
         room_free(&room);
     }
-    ok = ok && add_rows(speed, config, extent, err) &&
-         speed_measure(d, speed, 0, images, &none, err);
+    ok = ok && speed_measure(d, speed, 0, images, &none, err);
     for (int i = 0; i <= LARGEST; i++)
         speed_images_destroy(d, &images[i]);
     return ok;

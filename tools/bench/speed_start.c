@@ -47,8 +47,8 @@ static void run_child(const char *device, const struct config *config, VkExtent2
     const struct speed_features none = {0};
     struct speed_device d;
     struct room room = {0};
-    if (speed_device_create(device, 1u << config->method, none, &d, &m->err) &&
-        speed_size_check(&d, extent, &m->err) &&
+    if (speed_device_create(device, none, &d, &m->err) &&
+        speed_device_compile(&d, config, 1, &m->err) && speed_size_check(&d, extent, &m->err) &&
         room_create(extent.width, extent.height, 0, &room, &m->err)) {
         snprintf(m->device, sizeof m->device, "%s", d.gpu.properties.deviceName);
         m->times.context = d.context_ms;

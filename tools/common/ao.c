@@ -18,6 +18,7 @@ enum job_image {
 
 struct ao_session {
     struct gpu *gpu;
+    uint32_t method_mask; /* 0 = ctx is made for the job at hand */
     vkao_context *ctx;
     vkao_frame *frame;
     struct gpu_image
@@ -52,8 +53,10 @@ struct ao_session *ao_session_create(struct gpu *gpu, uint32_t method_mask, stru
         return NULL;
     }
     session->gpu = gpu;
-    session->ctx = gpu_context(gpu, method_mask, err);
-    if (session->ctx && create_timestamps(session, err))
+    session->method_mask = method_mask;
+    if (method_mask)
+        session->ctx = gpu_context(gpu, method_mask, err);
+    if ((session->ctx || !method_mask) && create_timestamps(session, err))
         return session;
     ao_session_destroy(session);
     return NULL;
@@ -136,6 +139,34 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
     return true;
 }
 
+/* Pipelines for this job alone, if those of the last one do not fit: compiled once, loops unrolled. */
+static bool fit_context(struct ao_session *session, const struct ao_job *job,
+                        struct tool_error *err)
+{
+    const vkao_variant variant = {
+        .struct_size = sizeof variant,
+        .half_resolution = job->half_resolution,
+        .bent_normals = job->bent_normals,
+        .view = &job->view,
+        .ssao = &job->ssao,
+        .blur = &job->blur,
+    };
+    if (session->method_mask || (session->ctx && vkao_context_has_variant(session->ctx, &variant)))
+        return true;
+    drop_frame(session);
+    vkao_context_destroy(session->ctx);
+    vkao_context_info info = gpu_context_info(session->gpu, 1u << job->ssao.method);
+    info.variants = &variant;
+    info.variant_count = 1;
+    info.variants_only = VK_TRUE;
+    /* Buffers of CPUs have limits that images have not. */
+    const uint64_t bytes = ((uint64_t)job->width + 36) * ((uint64_t)job->height + 2) * 4;
+    if (bytes > session->gpu->properties.limits.maxStorageBufferRange)
+        info.scratch_layout = VKAO_SCRATCH_IMAGES;
+    session->ctx = gpu_context_create(&info, err);
+    return session->ctx != NULL;
+}
+
 static bool upload(struct ao_session *session, enum job_image which, const float *data,
                    uint64_t texels, struct tool_error *err)
 {
@@ -210,12 +241,14 @@ bool ao_run(struct ao_session *session, const struct ao_job *job, struct ao_resu
             struct tool_error *err)
 {
     uint64_t texels = (uint64_t)job->width * job->height;
+    *result = (struct ao_result){0};
+    if (!fit_context(session, job, err))
+        return false;
     bool same =
         session->frame && session->extent.width == job->width &&
         session->extent.height == job->height && session->has_normals == (job->normals != NULL) &&
         session->has_color == (job->color != NULL) &&
         session->half_resolution == job->half_resolution && session->has_bent == job->bent_normals;
-    *result = (struct ao_result){0};
     if ((!same && !create_frame(session, job, err)) ||
         !upload(session, IMAGE_DEPTH, job->depth, texels, err) ||
         !upload(session, IMAGE_NORMALS, job->normals, texels, err) ||

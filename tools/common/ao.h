@@ -30,7 +30,8 @@ struct ao_result {
 };
 
 /* A session keeps device objects from one frame to the next: create once, run per frame of the same or of another
- * size. */
+ * size. method_mask 0: pipelines are compiled for the settings of the job at hand, anew if they change. Else: general
+ * ones of the methods in the mask, for sessions that try many settings. */
 struct ao_session;
 struct ao_session *ao_session_create(struct gpu *gpu, uint32_t method_mask, struct tool_error *err);
 void ao_session_destroy(struct ao_session *session);

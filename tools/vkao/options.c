@@ -221,6 +221,8 @@ static void apply_quality(struct options *o)
         o->ssao.thickness = ssao.thickness;
     if (o->blur.radius == BLUR_BY_QUALITY)
         o->blur.radius = blur.radius;
+    if (o->blur.normal_power < 0.0f)
+        o->blur.normal_power = blur.normal_power;
 }
 
 static bool check_together(const struct options *o, struct tool_error *err)

@@ -17,8 +17,9 @@
 #include <stdint.h>
 
 enum command { COMMAND_RENDER = 1, COMMAND_INSPECT = 2, COMMAND_DEVICES = 4 };
-/* In blur.radius until the preset fills it. */
+/* In blur.radius and blur.normal_power until the preset fills them. */
 #define BLUR_BY_QUALITY UINT32_MAX
+#define NORMAL_POWER_BY_QUALITY (-1.0f)
 
 enum output_mode { OUTPUT_AO, OUTPUT_APPEND, OUTPUT_COMP };
 
@@ -94,7 +95,7 @@ void options_help(struct text *text);
 
 /* Values of apply. */
 option_apply apply_flag, apply_text, apply_word, apply_float, apply_double, apply_uint,
-    apply_radius, apply_bias, apply_blur, apply_tint, apply_fov, apply_normal, apply_compression,
+    apply_radius, apply_bias, apply_blur, apply_normal_power, apply_tint, apply_fov, apply_normal, apply_compression,
     apply_verbose, apply_quiet;
 
 #endif

@@ -135,6 +135,16 @@ bool apply_blur(struct options *options, const struct option_row *row, const cha
     return apply_uint(options, row, strcmp(argument, "off") == 0 ? "0" : argument, err);
 }
 
+bool apply_normal_power(struct options *options, const struct option_row *row, const char *argument,
+                        struct tool_error *err)
+{
+    if (strcmp(argument, "auto") == 0) {
+        *(float *)member(options, row) = NORMAL_POWER_BY_QUALITY;
+        return true;
+    }
+    return apply_float(options, row, argument, err);
+}
+
 bool apply_tint(struct options *options, const struct option_row *row, const char *argument,
                 struct tool_error *err)
 {

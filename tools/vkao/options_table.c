@@ -7,13 +7,13 @@
 #define RENDER COMMAND_RENDER
 #define INSPECT COMMAND_INSPECT
 #define DEVICES COMMAND_DEVICES
-#define ABOVE_ZERO                                          \
-    {                                                       \
-        .low = 0, .high = INFINITY, .low_is_excluded = true \
+#define ABOVE_ZERO                                                                                 \
+    {                                                                                              \
+        .low = 0, .high = INFINITY, .low_is_excluded = true                                        \
     }
-#define FROM_TO(from, to)           \
-    {                               \
-        .low = (from), .high = (to) \
+#define FROM_TO(from, to)                                                                          \
+    {                                                                                              \
+        .low = (from), .high = (to)                                                                \
     }
 
 static const struct option_word modes[] = {
@@ -37,11 +37,13 @@ static const struct option_word encodings[] = {{"auto", NORMAL_ENCODING_AUTO},
                                                {"signed", NORMAL_ENCODING_SIGNED},
                                                {"unsigned", NORMAL_ENCODING_UNSIGNED},
                                                {0}};
-static const struct option_word methods[] = {
-    {"sphere", VKAO_SSAO_SPHERE}, {"hemisphere", VKAO_SSAO_HEMISPHERE},
-    {"hbao", VKAO_SSAO_HBAO},     {"gtao", VKAO_SSAO_GTAO},
-    {"vbao", VKAO_SSAO_VBAO},     {"raymarch", VKAO_SSAO_RAYMARCH},
-    {0}};
+static const struct option_word methods[] = {{"sphere", VKAO_SSAO_SPHERE},
+                                             {"hemisphere", VKAO_SSAO_HEMISPHERE},
+                                             {"hbao", VKAO_SSAO_HBAO},
+                                             {"gtao", VKAO_SSAO_GTAO},
+                                             {"vbao", VKAO_SSAO_VBAO},
+                                             {"raymarch", VKAO_SSAO_RAYMARCH},
+                                             {0}};
 static const struct option_word qualities[] = {{"fast", VKAO_QUALITY_FAST},
                                                {"default", VKAO_QUALITY_DEFAULT},
                                                {"high", VKAO_QUALITY_HIGH},
@@ -199,9 +201,9 @@ const struct option_row option_table[] = {
      .help = "0 (plain Gaussian) to 10000: how strictly it stops at edges",
      .commands = RENDER, .apply = apply_float, .offset = AT(blur.sharpness),
      .range = FROM_TO(0, 10000)},
-    {.name = "blur-normal-power", .argument = "X", .fallback = "8",
-     .help = "0 to 128: how strictly it stops where normals turn",
-     .commands = RENDER, .apply = apply_float, .offset = AT(blur.normal_power),
+    {.name = "blur-normal-power", .argument = "X", .fallback = "auto",
+     .help = "0 to 128: how strictly it stops where normals turn; auto: by --quality",
+     .commands = RENDER, .apply = apply_normal_power, .offset = AT(blur.normal_power),
      .range = FROM_TO(0, 128)},
     {.name = "strength", .argument = "X", .fallback = "1",
      .help = "--mode comp: 0 (as if open everywhere) to 1",
