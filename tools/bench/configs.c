@@ -155,14 +155,6 @@ bool configs_choose(const char *option, const char *names, struct config_list *l
     return list->count > 0 || fail(err, EXIT_USAGE, "%s names nothing", option);
 }
 
-uint32_t configs_method_mask(const struct config_list *list)
-{
-    uint32_t mask = 0;
-    for (size_t i = 0; i < list->count; i++)
-        mask |= 1u << list->rows[i].method;
-    return mask;
-}
-
 void config_apply(const struct config *config, struct ao_job *job)
 {
     job->ssao = vkao_ssao_params_default();

@@ -37,7 +37,6 @@ bool configs_choose(const char *option, const char *names, struct config_list *l
                     struct tool_error *err);
 /* Rays that converge when averaged over noise patterns. */
 struct config config_yardstick(void);
-uint32_t configs_method_mask(const struct config_list *list);
 
 /* Fills ssao, blur and half_resolution; radius and falloff are the caller's to set after it. */
 void config_apply(const struct config *config, struct ao_job *job);
