@@ -410,7 +410,13 @@ VkBool32 vkao_context_has_variant(const vkao_context *ctx, const vkao_variant *v
 vkao_result pipelines_create(vkao_context *ctx, const vkao_context_info *info)
 {
     struct pipelines *p = &ctx->pipelines;
-    vkao_result result = create_general(ctx, info->pipeline_cache, info->variants_only);
+    struct variant_plan plan;
+    vkao_result result = VKAO_SUCCESS;
+    /* Compiling may take seconds: a bad variant is refused before. */
+    for (uint32_t i = 0; result == VKAO_SUCCESS && i < info->variant_count; ++i)
+        result = plan_variant(ctx, &ctx->log, &info->variants[i], &plan);
+    if (result == VKAO_SUCCESS)
+        result = create_general(ctx, info->pipeline_cache, info->variants_only);
     if (result != VKAO_SUCCESS || !info->variant_count)
         return result;
     p->variants =

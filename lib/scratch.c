@@ -59,7 +59,8 @@ static void plan_buffer(const vkao_frame *frame, struct scratch_buffer *buffer)
     if (!frame->ctx->buffers || !(frame->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR)))
         return;
     const VkExtent2D grid = grid_extent(frame);
-    buffer->stride = ((grid.width + 3) & ~3u) + 2 * VKAO_BUFFER_PAD;
+    const uint32_t window = VKAO_BLUR_X_WIDTH; /* the last one of a row stays inside its padding */
+    buffer->stride = (grid.width + window - 1) / window * window + 2 * VKAO_BUFFER_PAD;
     const VkDeviceSize stride = buffer->stride;
     buffer->parts[PART_VIEW_Z].bytes = stride * (grid.height + 2 * VKAO_VIEW_Z_BORDER) * 4;
     /* Shaders name these whether they are used or not. */

@@ -26,9 +26,12 @@ void record_upsample(const vkao_frame *frame, VkCommandBuffer cmd,
     rect_pack(view->valid, block.full_valid);
     rect_pack(view->rect, block.rect);
     const enum pipeline which = frame->packed ? PIPELINE_PACKED_UPSAMPLE : PIPELINE_UPSAMPLE;
+    /* Invocations of more than one row begin at rows of half resolution. */
+    struct vkao_rect rows = view->rect;
+    rows.y0 -= rows.y0 % pipeline_texels(frame->ctx, which).height;
     record_label_begin(frame, cmd, "vkao upsample");
     record_barrier(frame, cmd); /* blur y wrote half-resolution AO -> upsample reads it */
     record_dispatch(frame, cmd, which, pipeline_key(which, block.flags, NULL, params), &block,
-                    sizeof block, view->rect);
+                    sizeof block, rows);
     record_label_end(frame, cmd);
 }

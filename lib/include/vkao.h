@@ -122,8 +122,9 @@ typedef enum vkao_scratch_layout {
 /* Settings to compile pipelines for specially, loops unrolled and choices made: worth a factor of two on CPUs, little
  * on GPUs. A recording uses them if all of this is the same: of the view the encodings, perspective or orthographic,
  * which depth is far, and whether normal_to_view only turns axes round; of ssao the method, falloff, sphere_form and
- * counts; of blur the radius, whether normal_power is 0, and whether intensity and power are both 1. All other members
- * are free. A recording that fits no variant uses the general pipelines. */
+ * counts; of blur the radius, whether normal_power is 0, 8 or another, and whether intensity and power are both 1. All
+ * other members are free. Frames with images.ao_noisy fit no variant where scratch is in BUFFERS. A recording that fits
+ * no variant uses the general pipelines. */
 typedef struct vkao_variant {
     uint32_t struct_size;
     VkBool32 half_resolution; /* as in vkao_frame_info */

@@ -58,8 +58,8 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetPhysicalDeviceProperties(VkPhysicalDev
         .deviceType = fake->device_type,
         .limits = {.maxImageDimension2D = fake->max_dimension,
                    .maxPushConstantsSize = 128,
-                   .maxTexelBufferElements = UINT32_C(1) << 27,
-                   .maxStorageBufferRange = UINT32_C(1) << 27},
+                   .maxTexelBufferElements = fake->max_texels,
+                   .maxStorageBufferRange = fake->max_buffer},
     };
 }
 
@@ -80,8 +80,7 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetPhysicalDeviceFormatProperties(VkPhysi
     fake_note(fake_of(device), "vkGetPhysicalDeviceFormatProperties");
     *out = (VkFormatProperties){.optimalTilingFeatures = all,
                                 .linearTilingFeatures = all,
-                                .bufferFeatures =
-                                    VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT};
+                                .bufferFeatures = fake->buffer_features};
     for (size_t i = 0; i < fake->format_count; ++i) {
         if (fake->formats[i].format == format) {
             out->optimalTilingFeatures = fake->formats[i].optimal;
@@ -156,6 +155,9 @@ void fake_init(struct fake_vulkan *fake)
             },
             .memoryHeapCount = 2,
         },
+        .buffer_features = VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT,
+        .max_texels = UINT32_C(1) << 27,
+        .max_buffer = UINT32_C(1) << 27,
         .image_alignment = 256,
         .image_type_bits = 0x7,
         .fail_result = VK_ERROR_DEVICE_LOST,

@@ -85,6 +85,8 @@ struct fake_vulkan {
         VkFormatFeatureFlags optimal, linear;
     } formats[FAKE_FORMATS]; /* exceptions; every other format can be sampled and stored to */
     size_t format_count;
+    VkFormatFeatureFlags buffer_features; /* of every format */
+    uint32_t max_texels, max_buffer;      /* in a texel buffer; bytes of a storage buffer */
     bool debug_utils;
     const char *missing; /* proc-addr answers NULL for this name */
     unsigned fail_at;    /* 1 = the first call that returns VkResult; 0 = none */
