@@ -267,7 +267,7 @@ OPTIONS = [
     ('--blur', ('--blur', 2), ()),
     ('--blur off', ('--blur', 'off'), ()),
     ('--blur-sharpness', ('--blur-sharpness', 0), ()),
-    ('--blur-normal-power', ('--blur-normal-power', 0), ()),
+    ('--blur-normal-power', ('--blur-normal-power', 8), ()),
     ('--normal none', ('--normal', 'none'), ()),
     ('--normal', ('--normal', 'Other'), ()),
     ('--depth', ('--depth', 'Other.Y'), ()),

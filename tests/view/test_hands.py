@@ -305,6 +305,11 @@ SAVES = {
 }
 
 
+# The tool compiles its pipelines for the settings at hand, the viewer for all: the same operations, but other
+# instructions, so that the last bit differs, and once in a while a sample at the edge of a texel or sector.
+LARGEST, MEAN = 5e-3, 1e-6
+
+
 @cases(SAVES.items())
 def saved_command_makes_the_saved_files(scratch, _, row):
     key, options = row
@@ -316,16 +321,15 @@ def saved_command_makes_the_saved_files(scratch, _, row):
     command = script(scratch, 'in.view.sh')
     check(shlex.split(viewer.out)[1:] == command, f'not printed: {viewer.out}')
     saved = read_parts(scratch.path('in.view.exr'))[0]
-    picture = scratch.bytes('in.view.png')
     same_picture(read_png(scratch.path('in.view.png')), shown, 'PNG')
     scratch.render(*command, '--device', 'cpu')
     made = read_parts(scratch.path('in.view.exr'))[0]
     equal(sorted(saved.channels), sorted(made.channels), 'channels')
     for name, channel in saved.channels.items():
-        check_close(channel, made[name], 0, 0, name)
+        check_close(channel, made[name], LARGEST, MEAN, name)
     equal(saved.attributes['vkao/params'], made.attributes['vkao/params'], 'vkao/params')
     if key in '123':
-        check(picture == scratch.bytes('in.view.png'), 'vkao writes another PNG')
+        same_picture(read_png(scratch.path('in.view.png')), shown, 'PNG of vkao')
 
 
 @cases(['2', '3', '6'])
@@ -341,7 +345,7 @@ def save_of_a_cropped_window_is_what_vkao_makes(scratch, key):
     made = read_parts(scratch.path('in.view.exr'))[0]
     equal(saved.data_window, made.data_window, 'data window')
     for name, channel in made.channels.items():
-        check_close(saved[name], channel, 0, 0, name)
+        check_close(saved[name], channel, LARGEST, MEAN, name)
 
 
 @case
