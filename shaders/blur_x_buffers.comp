@@ -64,7 +64,8 @@ void blur_window(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
     }
     [[unroll]] for (int i = 0; i < VKAO_BLUR_X_WIDTH; ++i) {
         int c = REACH + i;
-        float slope = local_slope(z[c - 1], z[c], z[c + 1]), edge = edge_stop(z[c], params.sharpness, params.reference_z);
+        float slope = local_slope(z[c - 1], z[c], z[c + 1]);
+        float edge = edge_stop(z[c], params.sharpness, params.reference_z);
         float sum = code[c], weights = 1.0;
         [[unroll]] for (int k = -RADIUS; k <= RADIUS; ++k) {
             if (k == 0)

@@ -20,8 +20,8 @@
 #endif
 
 /* Lanes of lavapipe are 8 texels in a row, so widths are multiples of 8. Groups of SSAO are near squares on GPUs, whose
- * lanes share caches; a CPU runs their lanes one row after the other and is best served by rows of many texels, written in
- * the order of memory. */
+ * lanes share caches; a CPU runs their lanes one row after the other and is best served by rows of many texels, written
+ * in the order of memory. */
 #define VKAO_GROUP_WIDTH 16
 #define VKAO_GROUP_HEIGHT 8
 #define VKAO_ROW_GROUP_WIDTH 128
@@ -96,7 +96,7 @@
 #define VKAO_CODE_SCALE 100.0
 #define VKAO_CODE_OFFSET 0.55
 #define VKAO_CODE_FINE 256.0
-#define VKAO_CODE_OPEN 39680 /* fine code of 1; numbers are taken relative to it, so that what is open stays exactly 1 */
+#define VKAO_CODE_OPEN 39680 /* fine code of 1; numbers are relative to it, so that what is open stays exactly 1 */
 #define VKAO_RING_ROWS 288
 #define VKAO_STRIP_ROWS 256 /* a ring holds a strip and the largest radius on both sides of it */
 

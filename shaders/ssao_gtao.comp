@@ -60,7 +60,8 @@ vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
         float n = s.sin_n >= 0.0 ? acos(s.cos_n) : -acos(s.cos_n);
         float h1 = min(acos(cosines.x), n + 0.5 * PI), h0 = max(-acos(cosines.y), n - 0.5 * PI);
         float open = s.cos_n + n * s.sin_n;
-        lost += s.normal_length * (open - inner_integral(h0, n, s.cos_n, s.sin_n) - inner_integral(h1, n, s.cos_n, s.sin_n));
+        float seen = inner_integral(h0, n, s.cos_n, s.sin_n) + inner_integral(h1, n, s.cos_n, s.sin_n);
+        lost += s.normal_length * (open - seen);
         if (BENT_NORMALS) {
             vec2 t = bent_slice(h0, h1, n);
             bent += s.normal_length * (t.x * s.outward + t.y * to_eye);

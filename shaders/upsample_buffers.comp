@@ -34,7 +34,8 @@ vec4 unpack_codes(uvec2 words)
 void load_half_row(ivec2 texel, out float z[HALF_COLUMNS], out float fine[HALF_COLUMNS])
 {
     int y = clamp(texel.y, int(params.valid.x >> 16) - 1, int(params.valid.y >> 16));
-    int z_word = (z_row(y) + texel.x) >> 2, code_word = (buffer_row(min(y, int(params.valid.y >> 16) - 1)) + texel.x) >> 2;
+    int z_word = (z_row(y) + texel.x) >> 2;
+    int code_word = (buffer_row(min(y, int(params.valid.y >> 16) - 1)) + texel.x) >> 2;
     vec4 z4 = view_z[z_word], codes = unpack_codes(blurred_ao[code_word]);
     [[unroll]] for (int i = 0; i < HALF_COLUMNS - 1; ++i) {
         z[i] = surface_z(z4[i]);
