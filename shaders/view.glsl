@@ -41,13 +41,6 @@ float load_view_z(ivec2 texel)
     return fetch_view_z(clamp(texel, low - 1, high));
 }
 
-/* The same for any float that is an integer, however far out. */
-float load_view_z_at(vec2 texel)
-{
-    vec2 low = vec2(unpack_texel(params.valid.x) - 1), high = vec2(unpack_texel(params.valid.y));
-    return fetch_view_z(ivec2(clamp(texel, low, high)));
-}
-
 vec3 decode_octahedral(vec2 e)
 {
     vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));

@@ -430,6 +430,7 @@ static inline vkao_blur_params vkao_blur_params_default(void)
     return p;
 }
 
+/* Alpha is color's in MULTIPLY and INDIRECT. */
 typedef enum vkao_composite_mode {
     VKAO_COMPOSITE_MULTIPLY = 0, /* rgb = color * mix(tint, 1, a), a = mix(1, ao, strength) */
     VKAO_COMPOSITE_INDIRECT = 1, /* rgb = direct + color * mix(tint, 1, a): AO on indirect light only */
@@ -442,7 +443,6 @@ typedef enum vkao_composite_mode {
     VKAO_COMPOSITE_MODE_MAX_ENUM = 0x7fffffff
 } vkao_composite_mode;
 
-/* Alpha is color's (MULTIPLY, INDIRECT). */
 /* Occlusion of indirect specular light: images.specular is added times it. */
 typedef enum vkao_specular {
     VKAO_SPECULAR_NONE = 0,      /* images.specular is not read */

@@ -8,22 +8,6 @@
 
 enum { MAX_ARGUMENTS = 32, COLUMNS = 80, HELP_COLUMN = 26 };
 
-static void add_wrapped(struct text *text, const char *help)
-{
-    size_t column = HELP_COLUMN;
-    while (*help) {
-        size_t word = strcspn(help, " ");
-        if (column + 1 + word > COLUMNS) {
-            text_add(text, "\n%*s", HELP_COLUMN, "");
-            column = HELP_COLUMN;
-        }
-        text_add(text, "%s%.*s", column > HELP_COLUMN ? " " : "", (int)word, help);
-        column += word + (column > HELP_COLUMN);
-        help += word + strspn(help + word, " ");
-    }
-    text_add(text, "\n");
-}
-
 void arguments_help(const struct argument_list *list, struct text *text)
 {
     for (size_t i = 0; i < list->count; i++) {
@@ -35,7 +19,7 @@ void arguments_help(const struct argument_list *list, struct text *text)
         if (left.length >= HELP_COLUMN)
             text_add(text, "\n%*s", HELP_COLUMN, "");
         text_free(&left);
-        add_wrapped(text, row->help);
+        text_add_wrapped(text, row->help, HELP_COLUMN, COLUMNS);
     }
 }
 

@@ -144,3 +144,19 @@ bool size_multiply(size_t a, size_t b, size_t *product)
     *product = a * b;
     return true;
 }
+
+void text_add_wrapped(struct text *text, const char *words, size_t indent, size_t columns)
+{
+    size_t column = indent;
+    while (*words) {
+        size_t word = strcspn(words, " ");
+        if (column + 1 + word > columns) {
+            text_add(text, "\n%*s", (int)indent, "");
+            column = indent;
+        }
+        text_add(text, "%s%.*s", column > indent ? " " : "", (int)word, words);
+        column += word + (column > indent);
+        words += word + strspn(words + word, " ");
+    }
+    text_add(text, "\n");
+}

@@ -38,4 +38,7 @@ unsigned text_distance(const char *a, const char *b);
 /* False if the product does not fit. */
 bool size_multiply(size_t a, size_t b, size_t *product);
 
+/* Words from column indent on, where the text stands, and a line break: no line reaches beyond columns. */
+void text_add_wrapped(struct text *text, const char *words, size_t indent, size_t columns);
+
 #endif

@@ -26,22 +26,6 @@ static const char *command_name(enum command command)
 
 /* --- Help --- */
 
-/* Words of help from column HELP_COLUMN on. */
-static void add_wrapped(struct text *text, const char *help, size_t column)
-{
-    while (*help) {
-        size_t word = strcspn(help, " ");
-        if (column + 1 + word > COLUMNS) {
-            text_add(text, "\n%*s", HELP_COLUMN, "");
-            column = HELP_COLUMN;
-        }
-        text_add(text, "%s%.*s", column > HELP_COLUMN ? " " : "", (int)word, help);
-        column += word + (column > HELP_COLUMN);
-        help += word + strspn(help + word, " ");
-    }
-    text_add(text, "\n");
-}
-
 static void add_option(struct text *text, const struct option_row *row)
 {
     char left[80], help[512];
@@ -57,7 +41,7 @@ static void add_option(struct text *text, const struct option_row *row)
         text_add(text, "%s\n%*s", left, HELP_COLUMN, "");
     else
         text_add(text, "%-*s", HELP_COLUMN, left);
-    add_wrapped(text, help, HELP_COLUMN);
+    text_add_wrapped(text, help, HELP_COLUMN, COLUMNS);
 }
 
 void options_help(struct text *text)
