@@ -102,7 +102,7 @@ static vkao_result check_info(const struct vkao_logger *log, const vkao_context_
 static bool has_buffer_formats(const vkao_context *ctx)
 {
     VkFormatProperties packed;
-    ctx->vk.GetPhysicalDeviceFormatProperties(ctx->physical_device, VK_FORMAT_R8_UINT, &packed);
+    ctx->vk.GetPhysicalDeviceFormatProperties(ctx->physical_device, VK_FORMAT_R16_UINT, &packed);
     return packed.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT;
 }
 
@@ -128,7 +128,7 @@ static vkao_result read_device(vkao_context *ctx, vkao_scratch_layout layout)
     ctx->buffers = wanted && has_buffer_formats(ctx);
     if (layout == VKAO_SCRATCH_BUFFERS && !ctx->buffers)
         return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
-                           "context.scratch_layout is BUFFERS, but the device cannot store R8_UINT "
+                           "context.scratch_layout is BUFFERS, but the device cannot store R16_UINT "
                            "texels in buffers");
     return VKAO_SUCCESS;
 }

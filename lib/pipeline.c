@@ -69,6 +69,10 @@ struct shader {
     {                                                                                              \
         1, 1                                                                                       \
     }
+#define SSAO_TEXELS                                                                                \
+    {                                                                                              \
+        VKAO_SSAO_TEXELS, 1                                                                        \
+    }
 static const struct shader shaders[PIPELINE_COUNT] = {
     [PIPELINE_PREPARE] = {"prepare",
                           {CODE(prepare_comp), CODE(prepare_z16_comp),
@@ -96,12 +100,12 @@ static const struct shader shaders[PIPELINE_COUNT] = {
                                   {VKAO_UPSAMPLE_WIDTH, VKAO_UPSAMPLE_HEIGHT}},
     [PIPELINE_COMPOSITE] = {SHADER(composite), VK_FALSE, false, ONE_TEXEL},
     [PIPELINE_DEBUG] = {SHADER(debug), VK_FALSE, false, ONE_TEXEL},
-    [PIPELINE_SSAO + VKAO_SSAO_SPHERE] = {SHADER(ssao_sphere), VK_FALSE, false, ONE_TEXEL},
-    [PIPELINE_SSAO + VKAO_SSAO_HEMISPHERE] = {SHADER(ssao_hemisphere), VK_FALSE, false, ONE_TEXEL},
-    [PIPELINE_SSAO + VKAO_SSAO_HBAO] = {SHADER(ssao_hbao), VK_FALSE, false, ONE_TEXEL},
-    [PIPELINE_SSAO + VKAO_SSAO_GTAO] = {SHADER(ssao_gtao), VK_FALSE, true, ONE_TEXEL},
-    [PIPELINE_SSAO + VKAO_SSAO_VBAO] = {SHADER(ssao_vbao), VK_FALSE, true, ONE_TEXEL},
-    [PIPELINE_SSAO + VKAO_SSAO_RAYMARCH] = {SHADER(ssao_raymarch), VK_FALSE, true, ONE_TEXEL},
+    [PIPELINE_SSAO + VKAO_SSAO_SPHERE] = {SHADER(ssao_sphere), VK_FALSE, false, SSAO_TEXELS},
+    [PIPELINE_SSAO + VKAO_SSAO_HEMISPHERE] = {SHADER(ssao_hemisphere), VK_FALSE, false, SSAO_TEXELS},
+    [PIPELINE_SSAO + VKAO_SSAO_HBAO] = {SHADER(ssao_hbao), VK_FALSE, false, SSAO_TEXELS},
+    [PIPELINE_SSAO + VKAO_SSAO_GTAO] = {SHADER(ssao_gtao), VK_FALSE, true, SSAO_TEXELS},
+    [PIPELINE_SSAO + VKAO_SSAO_VBAO] = {SHADER(ssao_vbao), VK_FALSE, true, SSAO_TEXELS},
+    [PIPELINE_SSAO + VKAO_SSAO_RAYMARCH] = {SHADER(ssao_raymarch), VK_FALSE, true, SSAO_TEXELS},
 };
 
 static enum build context_build(const vkao_context *ctx)

@@ -199,7 +199,7 @@ static vkao_result bind_buffer(const vkao_context *ctx, struct scratch_buffer *b
                                VkDeviceMemory memory, VkDeviceSize offset)
 {
     static const VkFormat formats[PART_COUNT] = {
-        [PART_VIEW_Z] = VK_FORMAT_R32_SFLOAT, [PART_PACKED] = VK_FORMAT_R8_UINT};
+        [PART_VIEW_Z] = VK_FORMAT_R32_SFLOAT, [PART_PACKED] = VK_FORMAT_R16_UINT};
     VkResult result =
         ctx->vk.BindBufferMemory(ctx->device, buffer->buffer, memory, offset + buffer->offset);
     if (result != VK_SUCCESS)

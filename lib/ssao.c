@@ -13,7 +13,7 @@ static_assert(VKAO_GLSL_NORMALS_FROM_DEPTH == (int)VKAO_NORMALS_FROM_DEPTH &&
               "params.h repeats public enums");
 
 /* Whole workgroups. */
-enum { STRIP_TEXELS = 5 * VKAO_ROW_GROUP_WIDTH };
+enum { STRIP_TEXELS = 5 * VKAO_ROW_GROUP_WIDTH * VKAO_SSAO_TEXELS };
 
 void record_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
                  const vkao_ssao_params *params, uint32_t border)

@@ -29,19 +29,19 @@ float r2_noise(uvec2 texel, uint index)
 }
 
 /* cos and sin of pi u, u in [0,1): off by less than 7e-6. The exact ones cost a driver in software ten times that. */
-vec2 half_turn(float u)
+Real2 half_turn(real u)
 {
-    float v = u - 0.5, v2 = v * v;
-    float s = v * (3.14158202 + v2 * (-5.16714276 + v2 * (2.54189872 - 0.55463536 * v2)));
-    float c = 0.99999329 + v2 * (-4.93393798 + v2 * (4.04128334 - 1.22212545 * v2));
-    return vec2(-s, c);
+    real v = u - 0.5, v2 = v * v;
+    real s = v * (3.14158202 + v2 * (-5.16714276 + v2 * (2.54189872 - 0.55463536 * v2)));
+    real c = 0.99999329 + v2 * (-4.93393798 + v2 * (4.04128334 - 1.22212545 * v2));
+    return Real2(-s, c);
 }
 
 /* cos and sin of 2 pi u. */
-vec2 full_turn(float u)
+Real2 full_turn(real u)
 {
-    vec2 half_way = half_turn(u);
-    return vec2(half_way.x * half_way.x - half_way.y * half_way.y, 2.0 * half_way.x * half_way.y);
+    Real2 half_way = half_turn(u);
+    return Real2(half_way.x * half_way.x - half_way.y * half_way.y, 2.0 * half_way.x * half_way.y);
 }
 
 /* The golden ratio sequence, in fixed point. */

@@ -24,7 +24,7 @@
  * in the order of memory. */
 #define VKAO_GROUP_WIDTH 16
 #define VKAO_GROUP_HEIGHT 8
-#define VKAO_ROW_GROUP_WIDTH 128
+#define VKAO_ROW_GROUP_WIDTH 64
 
 /* Set 0. A slot that is both written and read has two bindings: storage to write, sampled to read. */
 #define VKAO_BINDING_DEPTH 0
@@ -102,6 +102,7 @@
 
 /* Texels per invocation in the shaders for buffers. */
 #define VKAO_PREPARE_WIDTH 4
+#define VKAO_SSAO_TEXELS 2
 #define VKAO_BLUR_X_WIDTH 8
 #define VKAO_BLUR_Y_WIDTH 4
 #define VKAO_BLUR_Y_HEIGHT 8

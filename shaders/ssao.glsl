@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The frame of every SSAO method: one invocation per texel of the rect, background exactly 1. The includer defines
+ * The frame of every SSAO method: TEXELS of the rect per invocation, background exactly 1. The includer defines
+ *     Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
+ * for them, texel being the first. A method that does not profit from shading them side by side defines VKAO_APART and
  *     vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
  * whose w is visibility and whose xyz, if BENT_NORMALS, is the mean visible direction, of any length. */
 #ifndef VKAO_SSAO_GLSL_
@@ -20,10 +22,14 @@ layout(binding = VKAO_BINDING_NOISY_WRITE) uniform writeonly image2D noisy_image
 layout(binding = VKAO_BINDING_PACKED_TEXELS) uniform writeonly uimageBuffer packed_texels;
 #endif
 #define VKAO_UNPROJECT
+#include "lanes.glsl"
 #include "view.glsl"
 #include "noise.glsl"
 
-vec4 visibility(ivec2 texel, vec3 position, vec3 normal);
+struct Visibility {
+    Real3 bent; /* if BENT_NORMALS: mean visible direction, of any length */
+    real open;
+};
 
 uint slice_count()
 {
@@ -81,16 +87,63 @@ bool stands_in_front(vec3 occluder, vec3 position, vec3 normal, float point_heig
     return dot(normal, occluder - position) > point_height;
 }
 
-void store_noisy(ivec2 texel, vec4 result)
+/* How far a view z may be off through the precision of the depth that it came from. */
+real depth_errors(real z)
+{
+    real line = params.depth_error.x + params.depth_error.y * z;
+    return orthographic() ? line : z * line;
+}
+
+real interleaved_gradient_noise(ivec2 texel)
+{
+    float u[TEXELS];
+    [[unroll]] for (int i = 0; i < TEXELS; ++i)
+        u[i] = interleaved_gradient_noise(uvec2(texel + ivec2(i, 0)), params.noise_index);
+    return join(u);
+}
+
+real r2_noise(ivec2 texel)
+{
+    float u[TEXELS];
+    [[unroll]] for (int i = 0; i < TEXELS; ++i)
+        u[i] = r2_noise(uvec2(texel + ivec2(i, 0)), params.noise_index);
+    return join(u);
+}
+
+#ifdef VKAO_APART
+vec4 visibility(ivec2 texel, vec3 position, vec3 normal);
+
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
+{
+    vec3 bent[TEXELS];
+    float open[TEXELS];
+    [[unroll]] for (int i = 0; i < TEXELS; ++i) {
+        vec4 v = visibility(texel + ivec2(i, 0), lane3(position, i), lane3(normal, i));
+        bent[i] = v.xyz;
+        open[i] = v.w;
+    }
+    return Visibility(join3(bent), join(open));
+}
+#else
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal);
+#endif
+
+void store_noisy(ivec2 texel, Visibility v)
 {
 #ifdef VKAO_BUFFERS
+    /* All of the texels at once, those beyond the rect as well: what they are does not depend on it. */
     if (flag(VKAO_FLAG_PACKED)) {
-        int code = int(clamp((result.w + VKAO_CODE_OFFSET) * VKAO_CODE_SCALE, 0.0, 255.0) + 0.5);
-        imageStore(packed_texels, buffer_row(texel.y) + texel.x, uvec4(code));
+        ivec2 code = ivec2(clamp((v.open + VKAO_CODE_OFFSET) * VKAO_CODE_SCALE, 0.0, 255.0) + 0.5);
+        imageStore(packed_texels, (buffer_row(texel.y) + texel.x) >> 1, uvec4(code.x | code.y << 8));
         return;
     }
 #endif
-    imageStore(noisy_image, texel, BENT_NORMALS ? result : result.wwww);
+    [[unroll]] for (int i = 0; i < TEXELS; ++i) {
+        ivec2 at = texel + ivec2(i, 0);
+        vec4 result = vec4(lane3(v.bent, i), lane(v.open, i));
+        if (in_rect(at, params.rect))
+            imageStore(noisy_image, at, BENT_NORMALS ? result : result.wwww);
+    }
 }
 
 /* The texel whose centre is nearest, of any point within the valid texels; what lies outside stays there. Cutting off
@@ -102,14 +155,29 @@ ivec2 nearest_texel(vec2 point)
 
 void main()
 {
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(params.rect.x);
+    ivec2 low = unpack_texel(params.rect.x), high = unpack_texel(params.rect.y);
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) * ivec2(TEXELS, 1) + ivec2(low.x & ~(TEXELS - 1), low.y);
     /* Straight on, also where there is nothing to do: a driver in software runs both sides of a branch anyway. */
-    float z = load_view_z(texel);
-    vec3 position = view_position(vec2(texel), z);
-    vec4 result = visibility(texel, position, view_normal(texel, position));
-    result = z > 0.0 ? result : vec4(0.0, 0.0, 0.0, 1.0);
-    if (all(lessThan(texel, unpack_texel(params.rect.y))))
-        store_noisy(texel, result);
+    float view_z[TEXELS];
+    vec3 normals[TEXELS];
+    [[unroll]] for (int i = 0; i < TEXELS; ++i) {
+        ivec2 at = texel + ivec2(i, 0);
+        view_z[i] = load_view_z(at);
+        normals[i] = view_normal(at, view_position(vec2(at), view_z[i]));
+    }
+    real z = join(view_z);
+    real x = (float(texel.x) + BESIDE) * params.unproject.x + params.unproject.z;
+    real y = real(float(texel.y) * params.unproject.y + params.unproject.w);
+    Real3 position = orthographic() ? Real3(x, y, z) : Real3(x * z, y * z, z);
+    Visibility v = visibility(texel, position, join3(normals));
+    v.open = choose(real(1.0), v.open, above(z, real(0.0)));
+    if (BENT_NORMALS) {
+        v.bent.x = choose(real(0.0), v.bent.x, above(z, real(0.0)));
+        v.bent.y = choose(real(0.0), v.bent.y, above(z, real(0.0)));
+        v.bent.z = choose(real(0.0), v.bent.z, above(z, real(0.0)));
+    }
+    if (all(lessThan(texel, high)))
+        store_noisy(texel, v);
 }
 
 #endif

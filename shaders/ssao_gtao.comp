@@ -15,57 +15,63 @@
 #include "horizon.glsl"
 
 /* Cosines of the horizons. */
-vec2 horizon_cosines(Slice s, ivec2 texel, float jitter)
+reals horizon_cosines(Slice s, ivec2 texel, real jitter)
 {
     float radius = params.normal_x.w;
-    vec2 low = -SIDES * s.sin_n; /* cos(n +- pi/2): the tangent plane */
-    vec2 horizon = low, open = low + params.bias_cosine;
-    vec2 next = step_offset(s, 0u, jitter, radius), next_z = load_sides(texel, next);
+    reals low = -SIDES * both(s.sin_n); /* cos(n +- pi/2): the tangent plane */
+    reals horizon = low, open = low + params.bias_cosine;
+    Real2 next = step_offset(s, 0u, jitter, radius);
+    reals next_z = load_sides(texel, next);
     [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
-        vec2 offset = next, z = next_z, x, y;
+        Real2 offset = next;
+        reals z = next_z, x, y;
         next = step_offset(s, t + 1u, jitter, radius);
         if (STEPS == 0u || t + 1u < STEPS)
             next_z = load_sides(texel, next);
         slice_points(s, offset, z, x, y);
-        vec2 d2 = x * x + y * y;
-        vec2 weight = mix(vec2(0.0), falloff_weight(d2), greaterThan(z, vec2(0.0)));
+        reals d2 = x * x + y * y;
+        reals weight = mix(reals(0.0), falloff_weight(d2), greaterThan(z, reals(0.0)));
         horizon = greater(horizon, low + weight * (y * inversesqrt(d2) - open));
     }
-    return clamp(horizon, vec2(-1.0), vec2(1.0));
+    return clamp(horizon, reals(-1.0), reals(1.0));
 }
 
-float inner_integral(float h, float n, float cos_n, float sin_n)
+real inner_integral(real h, real n, real cos_n, real sin_n)
 {
     return 0.25 * (cos_n + 2.0 * h * sin_n - cos(2.0 * h - n));
 }
 
-/* Along O and along V. */
-vec2 bent_slice(float h0, float h1, float n)
+/* Along O. */
+real bent_outward(real h0, real h1, real n)
 {
-    float t0 = (6.0 * sin(h0 - n) - sin(3.0 * h0 - n) + 6.0 * sin(h1 - n) - sin(3.0 * h1 - n) + 16.0 * sin(n) -
-                3.0 * (sin(h0 + n) + sin(h1 + n))) / 12.0;
-    float t1 = (-cos(3.0 * h0 - n) - cos(3.0 * h1 - n) + 8.0 * cos(n) - 3.0 * (cos(h0 + n) + cos(h1 + n))) / 12.0;
-    return vec2(t0, t1);
+    return (6.0 * sin(h0 - n) - sin(3.0 * h0 - n) + 6.0 * sin(h1 - n) - sin(3.0 * h1 - n) + 16.0 * sin(n) -
+            3.0 * (sin(h0 + n) + sin(h1 + n))) / 12.0;
 }
 
-vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
+/* Along V. */
+real bent_to_eye(real h0, real h1, real n)
 {
-    vec3 to_eye = eye_direction(texel);
-    vec2 noise = slice_noise(texel);
-    float lost = 0.0;
-    vec3 bent = vec3(0.0);
+    return (-cos(3.0 * h0 - n) - cos(3.0 * h1 - n) + 8.0 * cos(n) - 3.0 * (cos(h0 + n) + cos(h1 + n))) / 12.0;
+}
+
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
+{
+    Real3 to_eye = eye_direction(texel), bent = Real3(real(0.0), real(0.0), real(0.0));
+    real turn = interleaved_gradient_noise(texel), jitter = r2_noise(texel), lost = real(0.0);
+    float share = 1.0 / float(slice_count());
     [[unroll]] for (uint k = 0u; k < slice_count(); ++k) {
-        Slice s = make_slice((float(k) + noise.x) * (1.0 / float(slice_count())), position, normal, to_eye);
-        vec2 cosines = horizon_cosines(s, texel, noise.y);
-        float n = s.sin_n >= 0.0 ? acos(s.cos_n) : -acos(s.cos_n);
-        float h1 = min(acos(cosines.x), n + 0.5 * PI), h0 = max(-acos(cosines.y), n - 0.5 * PI);
-        float open = s.cos_n + n * s.sin_n;
-        float seen = inner_integral(h0, n, s.cos_n, s.sin_n) + inner_integral(h1, n, s.cos_n, s.sin_n);
+        Slice s = make_slice((float(k) + turn) * share, position, normal, to_eye);
+        reals cosines = horizon_cosines(s, texel, jitter);
+        real n = acos(s.cos_n);
+        n = choose(-n, n, above(s.sin_n, real(0.0)));
+        reals h = acos(cosines);
+        real h1 = min(first_side(h), n + 0.5 * PI), h0 = max(-other_side(h), n - 0.5 * PI);
+        real open = s.cos_n + n * s.sin_n;
+        real seen = inner_integral(h0, n, s.cos_n, s.sin_n) + inner_integral(h1, n, s.cos_n, s.sin_n);
         lost += s.normal_length * (open - seen);
-        if (BENT_NORMALS) {
-            vec2 t = bent_slice(h0, h1, n);
-            bent += s.normal_length * (t.x * s.outward + t.y * to_eye);
-        }
+        if (BENT_NORMALS)
+            bent = plus(bent, times(plus(times(s.outward, bent_outward(h0, h1, n)),
+                                         times(to_eye, bent_to_eye(h0, h1, n))), s.normal_length));
     }
-    return vec4(bent, 1.0 - lost / float(slice_count()));
+    return Visibility(bent, 1.0 - lost * share);
 }

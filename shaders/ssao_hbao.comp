@@ -15,33 +15,31 @@
 #include "horizon.glsl"
 
 /* Of both sides together. */
-float occlusion(Slice s, ivec2 texel, float jitter)
+real occlusion(Slice s, ivec2 texel, real jitter)
 {
     float radius = params.normal_x.w;
-    vec2 sine = vec2(params.bias_cosine), occluded = vec2(0.0);
-    vec2 along = SIDES * (s.normal_length * s.sin_n);
+    reals sine = reals(params.bias_cosine), occluded = reals(0.0);
+    reals along = SIDES * both(s.normal_length * s.sin_n), facing = both(s.normal_length * s.cos_n);
     [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
-        vec2 offset = step_offset(s, t, jitter, radius);
-        vec2 z = load_sides(texel, offset), x, y;
+        Real2 offset = step_offset(s, t, jitter, radius);
+        reals z = load_sides(texel, offset), x, y;
         slice_points(s, offset, z, x, y);
-        vec2 d2 = x * x + y * y;
-        vec2 weight = mix(vec2(0.0), falloff_weight(d2), greaterThan(z, vec2(0.0)));
-        vec2 elevation = (along * x + s.normal_length * s.cos_n * y) * inversesqrt(d2);
-        vec2 higher = mix(sine, max(sine, elevation), greaterThan(weight, vec2(0.0)));
+        reals d2 = x * x + y * y;
+        reals weight = mix(reals(0.0), falloff_weight(d2), greaterThan(z, reals(0.0)));
+        reals elevation = (along * x + facing * y) * inversesqrt(d2);
+        reals higher = mix(sine, max(sine, elevation), greaterThan(weight, reals(0.0)));
         occluded += weight * (higher - sine);
         sine = higher;
     }
-    return occluded.x + occluded.y;
+    return first_side(occluded) + other_side(occluded);
 }
 
-vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
 {
-    vec3 to_eye = eye_direction(texel);
-    vec2 noise = slice_noise(texel);
-    float occluded = 0.0;
-    [[unroll]] for (uint k = 0u; k < slice_count(); ++k) {
-        Slice s = make_slice((float(k) + noise.x) * (1.0 / float(slice_count())), position, normal, to_eye);
-        occluded += occlusion(s, texel, noise.y);
-    }
-    return vec4(vec3(0.0), 1.0 - occluded / float(2u * slice_count()));
+    Real3 to_eye = eye_direction(texel);
+    real turn = interleaved_gradient_noise(texel), jitter = r2_noise(texel), occluded = real(0.0);
+    float share = 1.0 / float(slice_count());
+    [[unroll]] for (uint k = 0u; k < slice_count(); ++k)
+        occluded += occlusion(make_slice((float(k) + turn) * share, position, normal, to_eye), texel, jitter);
+    return Visibility(Real3(real(0.0), real(0.0), real(0.0)), 1.0 - 0.5 * share * occluded);
 }

@@ -12,6 +12,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
+#define VKAO_APART
 #include "ssao.glsl"
 
 /* Directions on their way to texels: what a step in view space adds to (texel, 1) * z, in perspective, or (texel, z). A
@@ -28,7 +29,8 @@ vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
     vec3 t, b;
     tangents(normal, t, b);
     /* The kernel is turned with its frame: the directions in it are constants then. */
-    vec2 turn = full_turn(interleaved_gradient_noise(uvec2(texel), params.noise_index));
+    Real2 turns = full_turn(real(interleaved_gradient_noise(uvec2(texel), params.noise_index)));
+    vec2 turn = vec2(lane(turns.x, 0), lane(turns.y, 0));
     float shift = r2_noise(uvec2(texel), params.noise_index);
     vec3 across = to_texels(turn.x * t + turn.y * b), along = to_texels(turn.x * b - turn.y * t);
     vec3 up = to_texels(normal);

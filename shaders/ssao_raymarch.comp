@@ -10,6 +10,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
+#define VKAO_APART
 #include "ssao.glsl"
 #include "horizon.glsl"
 
@@ -35,14 +36,15 @@ float first_hit(vec3 position, vec3 normal, vec3 direction, float jitter)
         float depth = params.thickness_base + params.thickness_slope * min(lateral, radius);
         if (dot(normal, surface - point) > bias &&
             behind > 0.0 && behind < depth)
-            return falloff_weight(vec2(d * d)).x;
+            return falloff_weight(reals(d * d)).x;
     }
     return 0.0;
 }
 
 vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
 {
-    vec2 noise = slice_noise(texel);
+    vec2 noise = vec2(interleaved_gradient_noise(uvec2(texel), params.noise_index),
+                      r2_noise(uvec2(texel), params.noise_index));
     vec3 t, b;
     tangents(normal, t, b);
     vec3 bent = vec3(0.0);

@@ -16,6 +16,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
+#define VKAO_APART
 #include "ssao.glsl"
 
 /* Uniform in the unit ball from three numbers in [0,1). */

@@ -29,30 +29,29 @@ const float SECTORS = 31.0;
 /* g(c) = c (G1 + G3 c^2 + G5 c^4). Least squares, largest error .0014: below half a sector. */
 const float G1 = 0.99183605, G3 = -0.11897914, G5 = -0.08610474;
 
-vec2 g(vec2 c)
+reals g(reals c)
 {
-    vec2 c2 = c * c;
+    reals c2 = c * c;
     return c * (G1 + c2 * (G3 + G5 * c2));
 }
 
-/* Sector bound of cosine c is the polynomial k0 + k1 c + k2 c^2 + k3 c^3 + k5 c^5, inside the side's mass. Vectors hold
- * both sides. */
+/* Sector bound of cosine c is the polynomial k0 + k1 c + k2 c^2 + k3 c^3 + k5 c^5, inside the side's mass. */
 struct Masks {
-    vec2 low; /* cosine of the tangent plane */
-    vec2 mass;
-    vec2 k0, k1, k2, k3, k5;
+    reals low; /* cosine of the tangent plane */
+    reals mass;
+    reals k0, k1, k2, k3, k5;
 };
 
 Masks make_masks(Slice s)
 {
     Masks m;
-    vec2 sn = SIDES * s.sin_n;
+    reals sn = SIDES * both(s.sin_n), cn = both(0.5 * s.cos_n);
     m.low = -sn;
-    vec2 below = 0.5 * s.cos_n * m.low * m.low + sn * g(m.low);
-    m.mass = max(0.5 * s.cos_n + sn * (G1 + G3 + G5) - below, vec2(1.0e-4));
-    vec2 scale = SECTORS / m.mass;
+    reals below = cn * m.low * m.low + sn * g(m.low);
+    m.mass = max(cn + sn * (G1 + G3 + G5) - below, reals(1.0e-4));
+    reals scale = SECTORS / m.mass;
     m.k0 = VKAO_VBAO_ROUND - below * scale;
-    m.k2 = 0.5 * s.cos_n * scale;
+    m.k2 = cn * scale;
     sn *= scale;
     m.k1 = G1 * sn;
     m.k3 = G3 * sn;
@@ -60,79 +59,82 @@ Masks make_masks(Slice s)
     return m;
 }
 
-ivec2 sector(Masks m, vec2 c)
+ints sector(Masks m, reals c)
 {
     c = greater(c, m.low);
-    return min(ivec2(m.k0 + c * (m.k1 + c * (m.k2 + c * (m.k3 + c * c * m.k5)))), ivec2(31));
+    return min(ints(m.k0 + c * (m.k1 + c * (m.k2 + c * (m.k3 + c * c * m.k5)))), ints(31));
 }
 
-vec2 perpendicular(float c)
-{
-    return vec2(sqrt(max(0.0, 1.0 - c * c)), c);
-}
+/* What a slice loses of its mass, weighted, and of its moment along O and along V. */
+struct Hidden {
+    real mass, out_moment, eye_moment;
+};
 
-/* x: weighted share of the slice's mass that is hidden. yz: its moment along O and V. */
-vec3 hidden_mass(Slice s, ivec2 texel, float jitter)
+Hidden hidden_mass(Slice s, ivec2 texel, real jitter)
 {
     float radius = params.normal_x.w;
     float reach = radius * (flag(VKAO_FLAG_THRESHOLD) ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH);
-    vec2 tangent = SIDES * (s.sin_n / max(s.cos_n, 0.02));
+    reals tangent = SIDES * both(s.sin_n / max(s.cos_n, real(0.02)));
     Masks m = make_masks(s);
-    ivec2 mask = ivec2(0);
-    vec2 last_x = vec2(0.0), last_height = vec2(0.0), last_front = vec2(-2.0);
-    vec2 hidden = vec2(0.0);
-    vec3 moment = vec3(0.0);
-    vec2 next = step_offset(s, 0u, jitter, reach), next_z = load_sides(texel, next);
+    ints mask = ints(0);
+    reals last_x = reals(0.0), last_height = reals(0.0), last_front = reals(-2.0);
+    reals hidden = reals(0.0), out_moment = reals(0.0), eye_moment = reals(0.0);
+    Real2 next = step_offset(s, 0u, jitter, reach);
+    reals next_z = load_sides(texel, next);
     [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
-        vec2 offset = next, z = next_z, x, y;
+        Real2 offset = next;
+        reals z = next_z, x, y;
         next = step_offset(s, t + 1u, jitter, reach);
         if (STEPS == 0u || t + 1u < STEPS)
             next_z = load_sides(texel, next);
         slice_points(s, offset, z, x, y);
-        bvec2 seen = greaterThan(z, vec2(0.0));
-        vec2 gap = x - last_x, height = y + x * tangent;
-        bvec2 joined = lessThan(abs(height - last_height), VKAO_VBAO_JOIN * abs(gap));
-        vec2 moved = lesser(VKAO_VBAO_GAP_FRONT * gap, x - 1.0e-4 * radius);
-        moved = mix(vec2(0.0), moved, greaterThan(height, vec2(0.0)));
-        vec2 front_x = mix(x - moved, x, joined);
-        vec2 front = y * inversesqrt(front_x * front_x + y * y);
-        front = greater(front, mix(vec2(-2.0), last_front, joined));
-        vec2 thick_y = y - (params.thickness_base + params.thickness_slope * x);
-        vec2 back_x = x + VKAO_VBAO_GAP_BACK * gap;
-        vec2 back = thick_y * inversesqrt(back_x * back_x + thick_y * thick_y);
-        ivec2 high = sector(m, front - params.bias_cosine), low = min(sector(m, back), high);
-        ivec2 bits = (ivec2(1) << high) - (ivec2(1) << low);
-        bits = mix(ivec2(0), bits, seen);
-        ivec2 fresh = bits & ~mask;
+        bools seen = greaterThan(z, reals(0.0));
+        reals gap = x - last_x, height = y + x * tangent;
+        bools joined = lessThan(abs(height - last_height), VKAO_VBAO_JOIN * abs(gap));
+        reals moved = lesser(VKAO_VBAO_GAP_FRONT * gap, x - 1.0e-4 * radius);
+        moved = mix(reals(0.0), moved, greaterThan(height, reals(0.0)));
+        reals front_x = mix(x - moved, x, joined);
+        reals front = y * inversesqrt(front_x * front_x + y * y);
+        front = greater(front, mix(reals(-2.0), last_front, joined));
+        reals thick_y = y - (params.thickness_base + params.thickness_slope * x);
+        reals back_x = x + VKAO_VBAO_GAP_BACK * gap;
+        reals back = thick_y * inversesqrt(back_x * back_x + thick_y * thick_y);
+        ints high = sector(m, front - params.bias_cosine), low = min(sector(m, back), high);
+        ints bits = (ints(1) << high) - (ints(1) << low);
+        bits = mix(ints(0), bits, seen);
+        ints fresh = bits & ~mask;
         mask |= bits;
-        vec2 near_y = lesser(max(thick_y, vec2(0.0)), y);
-        vec2 w = falloff_weight(x * x + near_y * near_y) * vec2(bitCount(fresh));
+        reals near_y = lesser(max(thick_y, reals(0.0)), y);
+        reals w = falloff_weight(x * x + near_y * near_y) * reals(bitCount(fresh));
         hidden += w;
         if (BENT_NORMALS) {
-            vec2 middle = clamp(0.5 * (front + max(back, m.low)), vec2(-1.0), vec2(1.0));
+            reals middle = clamp(0.5 * (front + max(back, m.low)), reals(-1.0), reals(1.0));
             w *= m.mass;
-            moment.yz += w.x * perpendicular(middle.x) + w.y * vec2(-1.0, 1.0) * perpendicular(middle.y);
+            out_moment += w * SIDES * sqrt(max(reals(0.0), 1.0 - middle * middle));
+            eye_moment += w * middle;
         }
         last_x = mix(last_x, x, seen);
         last_height = mix(last_height, height, seen);
         last_front = mix(last_front, front, seen);
     }
-    moment.x = dot(hidden, m.mass);
-    return moment * (1.0 / SECTORS);
+    hidden *= m.mass;
+    return Hidden((first_side(hidden) + other_side(hidden)) * (1.0 / SECTORS),
+                  (first_side(out_moment) + other_side(out_moment)) * (1.0 / SECTORS),
+                  (first_side(eye_moment) + other_side(eye_moment)) * (1.0 / SECTORS));
 }
 
-vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
 {
-    vec3 to_eye = eye_direction(texel);
-    vec2 noise = slice_noise(texel);
-    vec3 bent = vec3(0.0);
-    float lost = 0.0;
+    Real3 to_eye = eye_direction(texel), bent = Real3(real(0.0), real(0.0), real(0.0));
+    real turn = interleaved_gradient_noise(texel), jitter = r2_noise(texel), lost = real(0.0);
+    float share = 1.0 / float(slice_count());
     [[unroll]] for (uint k = 0u; k < slice_count(); ++k) {
-        Slice s = make_slice((float(k) + noise.x) * (1.0 / float(slice_count())), position, normal, to_eye);
-        vec3 hidden = hidden_mass(s, texel, noise.y);
-        lost += s.normal_length * hidden.x;
-        bent += s.normal_length * (hidden.y * s.outward + hidden.z * to_eye);
+        Slice s = make_slice((float(k) + turn) * share, position, normal, to_eye);
+        Hidden hidden = hidden_mass(s, texel, jitter);
+        lost += s.normal_length * hidden.mass;
+        bent = plus(bent, times(plus(times(s.outward, hidden.out_moment), times(to_eye, hidden.eye_moment)),
+                                s.normal_length));
     }
     /* The mean direction of an open hemisphere is 2/3 of its normal. */
-    return vec4(normal * (2.0 / 3.0) - bent / float(slice_count()), 1.0 - lost / float(slice_count()));
+    return Visibility(plus(times(normal, real(2.0 / 3.0)), times(bent, real(-share))), 1.0 - lost * share);
 }

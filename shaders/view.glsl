@@ -34,11 +34,28 @@ float fetch_view_z(ivec2 texel)
 #endif
 }
 
-/* View z, 0 = background or outside the valid texels: prepare writes a border of zeros around them. */
+/* From where border_view_z counts: the first texel of the border. */
+ivec2 border_texel(ivec2 texel)
+{
+    return texel - unpack_texel(params.valid.x) + 1;
+}
+
+/* View z, 0 = background or outside the valid texels: prepare writes a border of zeros around them, to which what is
+ * outside is moved. As an unsigned number, what is too small is too large. */
+float border_view_z(ivec2 at)
+{
+    ivec2 low = unpack_texel(params.valid.x) - 1, high = unpack_texel(params.valid.y);
+    uvec2 inside = min(uvec2(at), uvec2(high - low));
+#ifdef VKAO_BUFFERS
+    return imageLoad(view_z_texels, int(inside.y * params.stride + inside.x) + (z_row(low.y) + low.x)).x;
+#else
+    return imageLoad(view_z_image, ivec2(inside) + low + VKAO_VIEW_Z_BORDER).x;
+#endif
+}
+
 float load_view_z(ivec2 texel)
 {
-    ivec2 low = unpack_texel(params.valid.x), high = unpack_texel(params.valid.y);
-    return fetch_view_z(clamp(texel, low - 1, high));
+    return border_view_z(border_texel(texel));
 }
 
 vec3 decode_octahedral(vec2 e)

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Numbers of the texels that an invocation shades side by side: one on a GPU, which has other invocations to turn to
+ * while it waits, and two neighbours of a row on a CPU, whose lanes have long chains of dependent operations and else
+ * nothing to fill the gaps with. `real` is a number per texel, `reals` one per texel for each of the two sides of a
+ * slice: first those of the side along O, then those of the other. */
+#ifndef VKAO_LANES_GLSL_
+#define VKAO_LANES_GLSL_
+
+#ifdef VKAO_BUFFERS
+#define real vec2
+#define reals vec4
+#define ints ivec4
+#define bools bvec4
+const int TEXELS = VKAO_SSAO_TEXELS;
+const real BESIDE = vec2(0.0, 1.0); /* x of the texels, from the first one's */
+
+real join(float of_texels[TEXELS])
+{
+    return vec2(of_texels[0], of_texels[1]);
+}
+
+float lane(real v, int i)
+{
+    return v[i];
+}
+
+real first_side(reals v)
+{
+    return v.xy;
+}
+
+real other_side(reals v)
+{
+    return v.zw;
+}
+
+real choose(real no, real yes, bvec2 which)
+{
+    return mix(no, yes, which);
+}
+
+bvec2 above(real a, real b)
+{
+    return greaterThan(a, b);
+}
+#else
+#define real float
+#define reals vec2
+#define ints ivec2
+#define bools bvec2
+const int TEXELS = 1;
+const real BESIDE = 0.0;
+
+real join(float of_texels[TEXELS])
+{
+    return of_texels[0];
+}
+
+float lane(real v, int i)
+{
+    return v;
+}
+
+real first_side(reals v)
+{
+    return v.x;
+}
+
+real other_side(reals v)
+{
+    return v.y;
+}
+
+real choose(real no, real yes, bool which)
+{
+    return which ? yes : no;
+}
+
+bool above(real a, real b)
+{
+    return a > b;
+}
+#endif
+
+const reals SIDES = reals(real(1.0), real(-1.0));
+
+/* The same on both sides. */
+reals both(real v)
+{
+    return reals(v, v);
+}
+
+/* max() and min() of numbers: those may have to look for NaN, which takes three instructions instead of one. */
+reals greater(reals a, reals b)
+{
+    return mix(b, a, greaterThan(a, b));
+}
+
+reals lesser(reals a, reals b)
+{
+    return mix(b, a, lessThan(a, b));
+}
+
+/* Vectors of the texels. */
+struct Real2 {
+    real x, y;
+};
+
+struct Real3 {
+    real x, y, z;
+};
+
+Real3 join3(vec3 of_texels[TEXELS])
+{
+    float x[TEXELS], y[TEXELS], z[TEXELS];
+    for (int i = 0; i < TEXELS; ++i) {
+        x[i] = of_texels[i].x;
+        y[i] = of_texels[i].y;
+        z[i] = of_texels[i].z;
+    }
+    return Real3(join(x), join(y), join(z));
+}
+
+vec3 lane3(Real3 v, int i)
+{
+    return vec3(lane(v.x, i), lane(v.y, i), lane(v.z, i));
+}
+
+real dot3(Real3 a, Real3 b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+Real3 times(Real3 v, real s)
+{
+    return Real3(v.x * s, v.y * s, v.z * s);
+}
+
+Real3 plus(Real3 a, Real3 b)
+{
+    return Real3(a.x + b.x, a.y + b.y, a.z + b.z);
+}
+
+#endif
