@@ -29,9 +29,9 @@ void record_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const struct view
         .flags = recording_flags(&grid, frame->packed, params, NULL),
         .noise_index = params->noise_index,
         .counts = params->slice_count | params->step_count << 8 | params->sample_count << 20,
-        .inverse_radius2 = 1.0f / (params->radius * params->radius),
+        .inverse_radius = 1.0f / params->radius,
         .bias_cosine = params->bias,
-        .thickness_base = thickness * (float)VKAO_THICKNESS_BASE * params->radius,
+        .thickness_base = thickness * (float)VKAO_THICKNESS_BASE,
         .thickness_slope = thickness * (float)VKAO_THICKNESS_SLOPE,
         .stride = frame->scratch.buffer.stride,
     };

@@ -11,12 +11,16 @@
 #define VKAO_HORIZON_GLSL_
 
 const float PI = 3.14159265358979324;
+/* A number below 2^22 plus this has no room for a fraction: its last bits are the nearest integer. */
+const float ROUND = 12582912.0;
+const int ROUND_BITS = 0x4b400000;
+const float MOST_TEXELS = 2.0e6;
 
 struct Slice {
     Real2 step;          /* direction on screen, in texels that one scene unit has at unit distance */
     real per_texel;      /* 1 / its length */
-    real scale;          /* scene units -> the same at the shaded point */
-    Real2 to_x, to_y;    /* texels off the shaded point -> x and y, per unit of view z in perspective */
+    real scale;          /* scene units -> the same at the shaded point; what it gives stays within MOST_TEXELS */
+    Real2 to_x, to_y;    /* texels off the shaded point -> x and y in radii, per unit of view z in perspective */
     real eye, origin;    /* y is origin - eye * view z, and what to_y adds */
     Real3 outward;       /* O: unit, in the slice, at right angles to V */
     real normal_length;  /* L */
@@ -42,6 +46,7 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
     s.step = Real2(d.x * params.inverse_unproject.x, d.y * params.inverse_unproject.y);
     s.per_texel = inversesqrt(s.step.x * s.step.x + s.step.y * s.step.y);
     s.scale = orthographic() ? real(1.0) : 1.0 / position.z;
+    s.scale = min(s.scale, s.per_texel * (MOST_TEXELS * params.inverse_radius));
     real along = d.x * to_eye.x + d.y * to_eye.y, inverse_o = inversesqrt(1.0 - along * along);
     s.outward = times(Real3(d.x - along * to_eye.x, d.y - along * to_eye.y, -along * to_eye.z), inverse_o);
     Real3 across = times(Real3(d.y * to_eye.z, -d.x * to_eye.z, d.x * to_eye.y - d.y * to_eye.x), inverse_o);
@@ -49,11 +54,12 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
     /* A sample's texel lies off the slice by rounding. It is moved into it along the tangent plane, which keeps its
      * height over that plane, so that a tilted wall still lies flat in the slice. */
     real moved = off / max(facing, real(0.02));
-    s.to_x = Real2(params.unproject.x * s.outward.x, params.unproject.y * s.outward.y);
-    s.to_y = Real2(params.unproject.x * (to_eye.x + across.x * moved), params.unproject.y * (to_eye.y + across.y * moved));
-    s.eye = orthographic() ? real(1.0) : -1.0 / to_eye.z;
+    vec2 radii = params.unproject.xy * params.inverse_radius;
+    s.to_x = Real2(radii.x * s.outward.x, radii.y * s.outward.y);
+    s.to_y = Real2(radii.x * (to_eye.x + across.x * moved), radii.y * (to_eye.y + across.y * moved));
+    s.eye = params.inverse_radius * (orthographic() ? real(1.0) : -1.0 / to_eye.z);
     /* It is taken to lie as deep as its depth may be wrong: a wall must not occlude itself by the steps of a format. */
-    s.origin = s.eye * position.z - 2.0 * depth_errors(position.z);
+    s.origin = s.eye * position.z - (2.0 * params.inverse_radius) * depth_errors(position.z);
     real length2 = max(1.0 - off * off, real(1.0e-12)), inverse = inversesqrt(length2);
     s.normal_length = length2 * inverse;
     s.cos_n = clamp(facing * inverse, real(0.0), real(1.0));
@@ -61,41 +67,55 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
     return s;
 }
 
-/* Texels off the shaded point of step t on the first side, at least 1 + t/2. Steps crowd near the point. */
-Real2 step_offset(Slice s, uint t, real jitter, float reach)
+/* Whole texels off the shaded point, on the first side. */
+struct Offset {
+    Real2 texels;
+    whole x, y; /* the same and ROUND_BITS */
+};
+
+Offset round_offset(real x, real y)
+{
+    precise real moved_x = x + ROUND, moved_y = y + ROUND;
+    precise real whole_x = moved_x - ROUND, whole_y = moved_y - ROUND;
+    return Offset(Real2(whole_x, whole_y), floatBitsToInt(moved_x), floatBitsToInt(moved_y));
+}
+
+/* Of step t, at least 1 + t/2 texels. Steps crowd near the point. */
+Offset step_offset(Slice s, uint t, real jitter, float reach)
 {
     real q = (float(t) + jitter) * (1.0 / float(step_count()));
     real far = (s.scale * reach) * (q * (VKAO_STEP_LINEAR + (1.0 - VKAO_STEP_LINEAR) * q));
     real least = s.per_texel * (1.0 + 0.5 * float(t));
     far = choose(least, far, above(far, least));
-    return Real2(roundEven(s.step.x * far), roundEven(s.step.y * far));
+    return round_offset(s.step.x * far, s.step.y * far);
 }
 
 /* View z of the texels at +offset and -offset. */
-reals load_sides(ivec2 texel, Real2 offset)
+reals load_sides(ivec2 texel, Offset offset)
 {
-    reals x = SIDES * both(offset.x), y = SIDES * both(offset.y), z;
     ivec2 first = border_texel(texel);
-    ints at_x = ints(x) + ints(both(BESIDE)) + first.x, at_y = ints(y) + first.y;
+    whole x = first.x + whole(BESIDE), y = whole(first.y);
+    ints at_x = ints((x - ROUND_BITS) + offset.x, (x + ROUND_BITS) - offset.x);
+    ints at_y = ints((y - ROUND_BITS) + offset.y, (y + ROUND_BITS) - offset.y);
+    reals z;
     [[unroll]] for (int i = 0; i < 2 * TEXELS; ++i)
         z[i] = border_view_z(ivec2(at_x[i], at_y[i]));
     return z;
 }
 
-/* Their coordinates in the slice. */
+/* Their coordinates in the slice, in radii. */
 void slice_points(Slice s, Real2 offset, reals z, out reals x, out reals y)
 {
     reals dx = both(s.to_x.x * offset.x + s.to_x.y * offset.y);
     reals dy = SIDES * both(s.to_y.x * offset.x + s.to_y.y * offset.y);
     x = orthographic() ? dx : z * dx;
-    y = orthographic() ? both(s.origin) + dy - z : both(s.origin) + z * (dy - both(s.eye));
+    y = orthographic() ? both(s.origin) + dy - z * params.inverse_radius : both(s.origin) + z * (dy - both(s.eye));
 }
 
-/* How an occluder at squared distance d2 counts: the definition of both ray-traced truths. */
+/* How an occluder at squared distance d2, in radii, counts: the definition of both ray-traced truths. */
 reals falloff_weight(reals d2)
 {
-    reals x = d2 * params.inverse_radius2;
-    return flag(VKAO_FLAG_THRESHOLD) ? reals(lessThanEqual(x, reals(1.0))) : max(reals(0.0), 1.0 - x);
+    return flag(VKAO_FLAG_THRESHOLD) ? reals(lessThanEqual(d2, reals(1.0))) : max(reals(0.0), 1.0 - d2);
 }
 
 #endif

@@ -10,6 +10,7 @@
 #ifdef VKAO_BUFFERS
 #define real vec2
 #define reals vec4
+#define whole ivec2
 #define ints ivec4
 #define bools bvec4
 const int TEXELS = VKAO_SSAO_TEXELS;
@@ -47,6 +48,7 @@ bvec2 above(real a, real b)
 #else
 #define real float
 #define reals vec2
+#define whole int
 #define ints ivec2
 #define bools bvec2
 const int TEXELS = 1;

@@ -168,9 +168,9 @@ struct vkao_ssao_block {
     VKAO_UINT(flags);
     VKAO_UINT(noise_index);
     VKAO_UINT(counts);            /* slices 8 bits, steps and samples 12 each, slices low */
-    VKAO_FLOAT(inverse_radius2);  /* 1 / radius^2 */
+    VKAO_FLOAT(inverse_radius);
     VKAO_FLOAT(bias_cosine);      /* bias / radius */
-    VKAO_FLOAT(thickness_base);   /* VBAO, RAYMARCH: scene units */
+    VKAO_FLOAT(thickness_base);   /* VBAO, RAYMARCH: radii */
     VKAO_FLOAT(thickness_slope);
     VKAO_UINT(stride);            /* texels in a row of buffers */
     VKAO_VEC2(inverse_unproject); /* 1 / unproject.xy */

@@ -20,15 +20,15 @@ reals horizon_cosines(Slice s, ivec2 texel, real jitter)
     float radius = params.normal_x.w;
     reals low = -SIDES * both(s.sin_n); /* cos(n +- pi/2): the tangent plane */
     reals horizon = low, open = low + params.bias_cosine;
-    Real2 next = step_offset(s, 0u, jitter, radius);
+    Offset next = step_offset(s, 0u, jitter, radius);
     reals next_z = load_sides(texel, next);
     [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
-        Real2 offset = next;
+        Offset offset = next;
         reals z = next_z, x, y;
         next = step_offset(s, t + 1u, jitter, radius);
         if (STEPS == 0u || t + 1u < STEPS)
             next_z = load_sides(texel, next);
-        slice_points(s, offset, z, x, y);
+        slice_points(s, offset.texels, z, x, y);
         reals d2 = x * x + y * y;
         reals weight = mix(reals(0.0), falloff_weight(d2), greaterThan(z, reals(0.0)));
         horizon = greater(horizon, low + weight * (y * inversesqrt(d2) - open));

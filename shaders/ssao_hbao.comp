@@ -21,9 +21,9 @@ real occlusion(Slice s, ivec2 texel, real jitter)
     reals sine = reals(params.bias_cosine), occluded = reals(0.0);
     reals along = SIDES * both(s.normal_length * s.sin_n), facing = both(s.normal_length * s.cos_n);
     [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
-        Real2 offset = step_offset(s, t, jitter, radius);
+        Offset offset = step_offset(s, t, jitter, radius);
         reals z = load_sides(texel, offset), x, y;
-        slice_points(s, offset, z, x, y);
+        slice_points(s, offset.texels, z, x, y);
         reals d2 = x * x + y * y;
         reals weight = mix(reals(0.0), falloff_weight(d2), greaterThan(z, reals(0.0)));
         reals elevation = (along * x + facing * y) * inversesqrt(d2);

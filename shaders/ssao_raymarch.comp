@@ -33,9 +33,10 @@ float first_hit(vec3 position, vec3 normal, vec3 direction, float jitter)
         vec3 v = surface - position;
         float lateral = length(v - dot(v, to_eye) * to_eye);
         float behind = dot(to_eye, surface - point);
-        float depth = params.thickness_base + params.thickness_slope * min(lateral, radius);
+        float depth = params.thickness_base * radius + params.thickness_slope * min(lateral, radius);
         if (dot(normal, surface - point) > bias &&
             behind > 0.0 && behind < depth)
+            d *= params.inverse_radius;
             return falloff_weight(reals(d * d)).x;
     }
     return 0.0;

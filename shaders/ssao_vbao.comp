@@ -26,20 +26,19 @@
 
 const float SECTORS = 31.0;
 
-/* g(c) = c (G1 + G3 c^2 + G5 c^4). Least squares, largest error .0014: below half a sector. */
-const float G1 = 0.99183605, G3 = -0.11897914, G5 = -0.08610474;
+/* g(c) = c (G1 + G3 c^2). Largest error .0053: below half a sector. */
+const float G1 = 1.0225, G3 = -0.232;
 
 reals g(reals c)
 {
-    reals c2 = c * c;
-    return c * (G1 + c2 * (G3 + G5 * c2));
+    return c * (G1 + c * c * G3);
 }
 
-/* Sector bound of cosine c is the polynomial k0 + k1 c + k2 c^2 + k3 c^3 + k5 c^5, inside the side's mass. */
+/* Sector bound of cosine c is the polynomial k0 + k1 c + k2 c^2 + k3 c^3, inside the side's mass. */
 struct Masks {
     reals low; /* cosine of the tangent plane */
     reals mass;
-    reals k0, k1, k2, k3, k5;
+    reals k0, k1, k2, k3;
 };
 
 Masks make_masks(Slice s)
@@ -48,21 +47,21 @@ Masks make_masks(Slice s)
     reals sn = SIDES * both(s.sin_n), cn = both(0.5 * s.cos_n);
     m.low = -sn;
     reals below = cn * m.low * m.low + sn * g(m.low);
-    m.mass = max(cn + sn * (G1 + G3 + G5) - below, reals(1.0e-4));
+    m.mass = max(cn + sn * (G1 + G3) - below, reals(1.0e-4));
     reals scale = SECTORS / m.mass;
     m.k0 = VKAO_VBAO_ROUND - below * scale;
     m.k2 = cn * scale;
     sn *= scale;
     m.k1 = G1 * sn;
     m.k3 = G3 * sn;
-    m.k5 = G5 * sn;
     return m;
 }
 
+/* At least 0, but for rounding not always at most 31. */
 ints sector(Masks m, reals c)
 {
     c = greater(c, m.low);
-    return min(ints(m.k0 + c * (m.k1 + c * (m.k2 + c * (m.k3 + c * c * m.k5)))), ints(31));
+    return ints(m.k0 + c * (m.k1 + c * (m.k2 + c * m.k3)));
 }
 
 /* What a slice loses of its mass, weighted, and of its moment along O and along V. */
@@ -79,27 +78,29 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter)
     ints mask = ints(0);
     reals last_x = reals(0.0), last_height = reals(0.0), last_front = reals(-2.0);
     reals hidden = reals(0.0), out_moment = reals(0.0), eye_moment = reals(0.0);
-    Real2 next = step_offset(s, 0u, jitter, reach);
+    Offset next = step_offset(s, 0u, jitter, reach);
     reals next_z = load_sides(texel, next);
     [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
-        Real2 offset = next;
+        Offset offset = next;
         reals z = next_z, x, y;
         next = step_offset(s, t + 1u, jitter, reach);
         if (STEPS == 0u || t + 1u < STEPS)
             next_z = load_sides(texel, next);
-        slice_points(s, offset, z, x, y);
+        slice_points(s, offset.texels, z, x, y);
         bools seen = greaterThan(z, reals(0.0));
         reals gap = x - last_x, height = y + x * tangent;
         bools joined = lessThan(abs(height - last_height), VKAO_VBAO_JOIN * abs(gap));
-        reals moved = lesser(VKAO_VBAO_GAP_FRONT * gap, x - 1.0e-4 * radius);
-        moved = mix(reals(0.0), moved, greaterThan(height, reals(0.0)));
-        reals front_x = mix(x - moved, x, joined);
-        reals front = y * inversesqrt(front_x * front_x + y * y);
-        front = greater(front, mix(reals(-2.0), last_front, joined));
+        reals front_x = mix(x, x - VKAO_VBAO_GAP_FRONT * gap, greaterThan(height, reals(0.0)));
+        front_x = mix(front_x, x, joined);
         reals thick_y = y - (params.thickness_base + params.thickness_slope * x);
         reals back_x = x + VKAO_VBAO_GAP_BACK * gap;
-        reals back = thick_y * inversesqrt(back_x * back_x + thick_y * thick_y);
-        ints high = sector(m, front - params.bias_cosine), low = min(sector(m, back), high);
+        /* Cosines of both edges by one division. */
+        reals front_length = sqrt(front_x * front_x + y * y);
+        reals back_length = sqrt(back_x * back_x + thick_y * thick_y);
+        reals inverse = 1.0 / (front_length * back_length);
+        reals front = y * (back_length * inverse), back = thick_y * (front_length * inverse);
+        front = greater(front, mix(reals(-2.0), last_front, joined));
+        ints high = min(sector(m, front - params.bias_cosine), ints(31)), low = min(sector(m, back), high);
         ints bits = (ints(1) << high) - (ints(1) << low);
         bits = mix(ints(0), bits, seen);
         ints fresh = bits & ~mask;
