@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "internal.h"
 
-static_assert(sizeof(struct vkao_blur_block) == 100, "as shaders/blur.comp lays it out");
+static_assert(sizeof(struct vkao_blur_block) == 104, "as shaders/blur.comp lays it out");
 
 static void record_direction(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline which,
                              const vkao_blur_params *params, struct vkao_blur_block *block,
@@ -45,6 +45,8 @@ static void record_strips(const vkao_frame *frame, VkCommandBuffer cmd,
         block->ring_row = (strip.y0 + ring - params->radius) / ring * ring - ring;
         record_direction(frame, cmd, PIPELINE_PACKED_BLUR_X, params, block, halfway);
         record_direction(frame, cmd, PIPELINE_PACKED_BLUR_Y, params, block, strip);
+        if (frame->staged && !frame->half_resolution)
+            record_copy(frame, cmd, strip);
         halfway.y0 = halfway.y1;
     }
 }
@@ -57,8 +59,9 @@ void record_blur(const vkao_frame *frame, VkCommandBuffer cmd, const struct view
         .radius = params->radius,
         .sharpness = params->sharpness,
         .normal_power = params->normal_power,
-        .flags = recording_flags(&grid, frame->packed, NULL, params),
+        .flags = recording_flags(&grid, frame_flags(frame), NULL, params),
         .stride = frame->scratch.buffer.stride,
+        .staged_stride = frame->scratch.buffer.staged_stride,
         .intensity = params->intensity,
         .power = params->power,
         .reference_z = view->reference_z,

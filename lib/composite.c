@@ -26,7 +26,7 @@ void record_composite(const vkao_frame *frame, VkCommandBuffer cmd,
         .mode = (uint32_t)params->mode,
         .multi_bounce = params->multi_bounce,
         .specular_occlusion = (uint32_t)params->specular,
-        .flags = recording_flags(&grid, frame->packed, NULL, NULL),
+        .flags = recording_flags(&grid, frame_flags(frame), NULL, NULL),
         .stride = frame->scratch.buffer.stride,
     };
     memcpy(block.unproject, grid.unproject, sizeof block.unproject);

@@ -150,6 +150,7 @@ VkDescriptorType binding_type(uint32_t binding)
     case VKAO_BINDING_PACKED_WORDS:
     case VKAO_BINDING_HALFWAY_WORDS:
     case VKAO_BINDING_BLURRED_WORDS:
+    case VKAO_BINDING_STAGED_WORDS:
         return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     default:
         return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;

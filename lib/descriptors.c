@@ -93,6 +93,9 @@ static bool binding_part(uint32_t binding, enum scratch_part *part)
     case VKAO_BINDING_BLURRED_WORDS:
         *part = PART_BLURRED;
         return true;
+    case VKAO_BINDING_STAGED_WORDS:
+        *part = PART_STAGED;
+        return true;
     default:
         return false;
     }

@@ -203,6 +203,8 @@ static vkao_result describe(const vkao_context *ctx, const vkao_frame_info *call
     frame->packed = ctx->buffers && (info->stages & both) == both &&
                     frame->images.ao_noisy.format == VK_FORMAT_UNDEFINED &&
                     frame->images.bent_normals.format == VK_FORMAT_UNDEFINED;
+    if (frame->packed && frame->images.ao_image)
+        frame->staged = vk_format_staged(frame->images.ao.format);
     return checked == VKAO_SUCCESS ? check_combination(frame) : checked;
 }
 
@@ -310,6 +312,11 @@ vkao_result vkao_frame_update(vkao_frame *frame, const vkao_images *images)
                                "%s.format is VkFormat %d, the frame was created with %d",
                                slots[i].name, (int)is, (int)was);
     }
+    if (!known.ao_image != !frame->images.ao_image)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "images.ao_image is %s, the frame was created %s it",
+                           known.ao_image ? "given" : "VK_NULL_HANDLE",
+                           known.ao_image ? "without" : "with");
     result = check_images(ctx, frame->stages, &known, true);
     if (result != VKAO_SUCCESS)
         return result;

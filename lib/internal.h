@@ -45,7 +45,8 @@ struct vkao_frame {
     VkExtent2D extent;
     bool half_resolution;
     vkao_images images;
-    bool packed; /* noisy AO goes to the blur through the scratch buffer */
+    bool packed;     /* noisy AO goes to the blur through the scratch buffer */
+    uint32_t staged; /* VKAO_STAGED_*: AO is copied to its image */
     struct scratch scratch;
     VkDeviceMemory memory; /* null if the caller's memory is used */
     VkDescriptorPool pool;
@@ -96,6 +97,8 @@ void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline
                      struct vkao_rect rect);
 /* Earlier vkao work on this queue -> the next dispatch. */
 void record_barrier(const vkao_frame *frame, VkCommandBuffer cmd);
+/* Staged AO of a strip -> its image. Later vkao work, and whoever waits for it, sees the copy as one of its writes. */
+void record_copy(const vkao_frame *frame, VkCommandBuffer cmd, struct vkao_rect strip);
 void record_label_begin(const vkao_frame *frame, VkCommandBuffer cmd, const char *name);
 void record_label_end(const vkao_frame *frame, VkCommandBuffer cmd);
 

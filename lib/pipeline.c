@@ -138,19 +138,21 @@ static uint32_t stage_flags(enum pipeline which)
                    bent = ENUM_FLAGS(VKAO_FLAG_BENT_SHIFT, 3),
                    depth = ENUM_FLAGS(VKAO_FLAG_DEPTH_SHIFT, 2) | VKAO_FLAG_ORTHOGRAPHIC |
                            VKAO_FLAG_FAR_IS_ONE,
-                   finish = bent | VKAO_FLAG_BLUR_NORMALS | VKAO_FLAG_NORMAL_POWER_8 |
-                            VKAO_FLAG_PHYSICAL;
+                   blur = normals | bent | VKAO_FLAG_BLUR_NORMALS | VKAO_FLAG_NORMAL_POWER_8 |
+                          VKAO_FLAG_PHYSICAL,
+                   finish = blur | ENUM_FLAGS(VKAO_FLAG_STAGED_SHIFT, 3);
     switch (which) {
     case PIPELINE_PREPARE:
         return depth | VKAO_FLAG_HALF_RESOLUTION;
     case PIPELINE_BLUR_X:
     case PIPELINE_BLUR_Y:
     case PIPELINE_PACKED_BLUR_X:
+        return blur | VKAO_FLAG_HALF_RESOLUTION;
     case PIPELINE_PACKED_BLUR_Y:
-        return normals | finish | VKAO_FLAG_HALF_RESOLUTION;
+        return finish | VKAO_FLAG_HALF_RESOLUTION;
     case PIPELINE_UPSAMPLE:
     case PIPELINE_PACKED_UPSAMPLE:
-        return normals | finish | depth;
+        return finish | depth;
     case PIPELINE_COMPOSITE:
     case PIPELINE_DEBUG:
         return 0;
@@ -201,10 +203,20 @@ static bool is_aligned(const float rows[3][3])
     return true;
 }
 
-uint32_t recording_flags(const struct view_constants *view, bool packed,
+static uint32_t way_flags(bool packed, uint32_t staged)
+{
+    return (packed ? VKAO_FLAG_PACKED : 0u) | staged << VKAO_FLAG_STAGED_SHIFT;
+}
+
+uint32_t frame_flags(const vkao_frame *frame)
+{
+    return way_flags(frame->packed, frame->staged);
+}
+
+uint32_t recording_flags(const struct view_constants *view, uint32_t way,
                          const vkao_ssao_params *ssao, const vkao_blur_params *blur)
 {
-    uint32_t flags = (view->encodings & 0xffu) << VKAO_FLAG_NORMALS_SHIFT |
+    uint32_t flags = way | (view->encodings & 0xffu) << VKAO_FLAG_NORMALS_SHIFT |
                      (view->encodings >> 8) << VKAO_FLAG_BENT_SHIFT |
                      view->depth_encoding << VKAO_FLAG_DEPTH_SHIFT;
     const struct {
@@ -215,7 +227,6 @@ uint32_t recording_flags(const struct view_constants *view, bool packed,
         {view->far_depth > 0.5f, VKAO_FLAG_FAR_IS_ONE},
         {is_aligned(view->normal_rows), VKAO_FLAG_NORMALS_ALIGNED},
         {view->grid_shift > 0, VKAO_FLAG_HALF_RESOLUTION},
-        {packed, VKAO_FLAG_PACKED},
         {ssao && ssao->falloff == VKAO_FALLOFF_THRESHOLD, VKAO_FLAG_THRESHOLD},
         {ssao && ssao->sphere_form == VKAO_SPHERE_LITERAL, VKAO_FLAG_SPHERE_LITERAL},
         {blur && blur->normal_power > 0.0f, VKAO_FLAG_BLUR_NORMALS},
@@ -346,11 +357,14 @@ static vkao_result plan_variant(const vkao_context *ctx, const struct vkao_logge
     const VkExtent2D any = {ctx->max_dimension, ctx->max_dimension};
     vkao_result result = vkao_import(log, "variant", caller_variant, &info, sizeof info);
     if (result == VKAO_SUCCESS &&
-        (info.half_resolution > 1 || info.bent_normals > 1 || info.reserved))
+        (info.half_resolution > 1 || info.bent_normals > 1))
         result = vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                             "variant.half_resolution is %u, bent_normals %u, reserved %u, want 0 "
-                             "or 1, 0 or 1, 0",
-                             info.half_resolution, info.bent_normals, info.reserved);
+                             "variant.half_resolution is %u, bent_normals %u, want 0 or 1",
+                             info.half_resolution, info.bent_normals);
+    if (result == VKAO_SUCCESS && info.staged_ao && !vk_format_is_ao(info.staged_ao))
+        result = vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                             "variant.staged_ao is VkFormat %d, which cannot hold AO",
+                             (int)info.staged_ao);
     if (result == VKAO_SUCCESS)
         result = vkao_import(log, "variant.view", info.view, &caller_view, sizeof caller_view);
     if (result == VKAO_SUCCESS)
@@ -363,6 +377,7 @@ static vkao_result plan_variant(const vkao_context *ctx, const struct vkao_logge
         return result;
     const vkao_blur_params *has_blur = info.blur ? &blur : NULL;
     const bool packed = ctx->buffers && has_blur && !info.bent_normals;
+    const uint32_t way = way_flags(packed, packed ? vk_format_staged(info.staged_ao) : 0);
     const enum pipeline stages[VARIANT_STAGES] = {
         PIPELINE_PREPARE,
         (enum pipeline)(PIPELINE_SSAO + (int)ssao.method),
@@ -377,7 +392,7 @@ static vkao_result plan_variant(const vkao_context *ctx, const struct vkao_logge
         struct view_constants grid = view;
         if (stages[i] == PIPELINE_UPSAMPLE || stages[i] == PIPELINE_PACKED_UPSAMPLE)
             grid.grid_shift = 0;
-        const uint32_t flags = recording_flags(&grid, packed, &ssao, has_blur);
+        const uint32_t flags = recording_flags(&grid, way, &ssao, has_blur);
         plan->stages[i] = (struct pipeline_variant){
             .which = stages[i],
             .bent = info.bent_normals && shaders[stages[i]].bent,
@@ -476,7 +491,7 @@ vkao_result pipelines_check(const vkao_frame *frame, const struct view_constants
         const enum pipeline which = stages[i].which;
         if (!stages[i].runs)
             continue;
-        const uint32_t flags = recording_flags(stages[i].grid, packed, ssao, blur);
+        const uint32_t flags = recording_flags(stages[i].grid, frame_flags(frame), ssao, blur);
         if (!pipeline_find(frame->ctx, which, frame_has_bent_normals(frame),
                            pipeline_key(which, flags, ssao, blur)))
             return vkao_refuse(&frame->ctx->log, VKAO_ERROR_INVALID_ARGUMENT,

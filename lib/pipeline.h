@@ -58,8 +58,11 @@ vkao_result pipelines_check(const vkao_frame *frame, const struct view_constants
 /* What a pipeline of that stage is told of a recording. */
 struct pipeline_key pipeline_key(enum pipeline which, uint32_t flags, const vkao_ssao_params *ssao,
                                  const vkao_blur_params *blur);
-/* Flags of shaders/params.h, of a view on the grid that the stages run on. ssao and blur may be NULL. */
-uint32_t recording_flags(const struct view_constants *grid, bool packed,
+/* In which way the frame's AO travels: VKAO_FLAG_PACKED and VKAO_STAGED_*. */
+uint32_t frame_flags(const vkao_frame *frame);
+/* Flags of shaders/params.h, of a view on the grid that the stages run on; way: frame_flags(). ssao and blur may be
+ * NULL. */
+uint32_t recording_flags(const struct view_constants *grid, uint32_t way,
                          const vkao_ssao_params *ssao, const vkao_blur_params *blur);
 /* Texels of one invocation. */
 VkExtent2D pipeline_texels(const vkao_context *ctx, enum pipeline which);

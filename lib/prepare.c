@@ -59,7 +59,7 @@ void record_prepare(const vkao_frame *frame, VkCommandBuffer cmd, const struct v
     struct vkao_prepare_block block = {
         .linearize = {view->linearize[0], view->linearize[1]},
         .far_z = view->far_z,
-        .flags = recording_flags(&grid, false, NULL, NULL),
+        .flags = recording_flags(&grid, 0, NULL, NULL),
         .stride = frame->scratch.buffer.stride,
     };
     memcpy(block.unproject, view->unproject,

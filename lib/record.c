@@ -91,6 +91,38 @@ void record_barrier(const vkao_frame *frame, VkCommandBuffer cmd)
                                       0, NULL);
 }
 
+static void transfer_barrier(const vkao_frame *frame, VkCommandBuffer cmd, bool before)
+{
+    const VkPipelineStageFlags compute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                               transfer = VK_PIPELINE_STAGE_TRANSFER_BIT;
+    const VkAccessFlags shader = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
+    const VkMemoryBarrier barrier = {
+        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
+        .srcAccessMask = before ? VK_ACCESS_SHADER_WRITE_BIT : VK_ACCESS_TRANSFER_WRITE_BIT,
+        .dstAccessMask =
+            before ? VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT : shader,
+    };
+    frame->ctx->vk.CmdPipelineBarrier(cmd, before ? compute : transfer, before ? transfer : compute,
+                                      0, 1, &barrier, 0, NULL, 0, NULL);
+}
+
+void record_copy(const vkao_frame *frame, VkCommandBuffer cmd, struct vkao_rect strip)
+{
+    const struct scratch_buffer *buffer = &frame->scratch.buffer;
+    const VkBufferImageCopy region = {
+        .bufferOffset = buffer->parts[PART_STAGED].offset + strip.x0 * buffer->staged_texel,
+        .bufferRowLength = buffer->staged_stride,
+        .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, frame->images.ao_mip_level,
+                             frame->images.ao_array_layer, 1},
+        .imageOffset = {(int32_t)strip.x0, (int32_t)strip.y0, 0},
+        .imageExtent = {strip.x1 - strip.x0, strip.y1 - strip.y0, 1},
+    };
+    transfer_barrier(frame, cmd, true);
+    frame->ctx->vk.CmdCopyBufferToImage(cmd, buffer->buffer, frame->images.ao_image,
+                                        VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+    transfer_barrier(frame, cmd, false);
+}
+
 void record_label_begin(const vkao_frame *frame, VkCommandBuffer cmd, const char *name)
 {
     if (frame->ctx->vk.CmdBeginDebugUtilsLabelEXT)

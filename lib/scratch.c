@@ -54,6 +54,19 @@ static void plan_images(const vkao_frame *frame, struct scratch_image images[SCR
 /* The largest that limits ask offsets of buffers to be a multiple of. */
 enum { PART_ALIGNMENT = 256 };
 
+static void plan_staged(const vkao_frame *frame, struct scratch_buffer *buffer)
+{
+    static const VkDeviceSize bytes[] = {[VKAO_STAGED_UNORM8] = 1,
+                                         [VKAO_STAGED_UNORM16] = 2,
+                                         [VKAO_STAGED_FLOAT16] = 2,
+                                         [VKAO_STAGED_FLOAT32] = 4};
+    const uint32_t window = VKAO_UPSAMPLE_WIDTH, most = VKAO_STRIP_ROWS;
+    buffer->staged_stride = (frame->extent.width + window - 1) / window * window;
+    buffer->staged_texel = bytes[frame->staged];
+    buffer->parts[PART_STAGED].bytes = buffer->staged_texel * buffer->staged_stride *
+                                       (frame->extent.height < most ? frame->extent.height : most);
+}
+
 static void plan_buffer(const vkao_frame *frame, struct scratch_buffer *buffer)
 {
     if (!frame->ctx->buffers || !(frame->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR)))
@@ -64,13 +77,16 @@ static void plan_buffer(const vkao_frame *frame, struct scratch_buffer *buffer)
     const VkDeviceSize stride = buffer->stride;
     buffer->parts[PART_VIEW_Z].bytes = stride * (grid.height + 2 * VKAO_VIEW_Z_BORDER) * 4;
     /* Shaders name these whether they are used or not. */
-    buffer->parts[PART_PACKED].bytes = buffer->parts[PART_BLURRED].bytes = PART_ALIGNMENT;
+    buffer->parts[PART_PACKED].bytes = buffer->parts[PART_BLURRED].bytes =
+        buffer->parts[PART_STAGED].bytes = PART_ALIGNMENT;
     if (frame->packed) {
         const uint32_t ring = VKAO_RING_ROWS;
         buffer->parts[PART_PACKED].bytes = stride * grid.height;
         buffer->parts[PART_HALFWAY].bytes = stride * ring * 2;
         if (frame->half_resolution)
             buffer->parts[PART_BLURRED].bytes = stride * grid.height * 2;
+        if (frame->staged)
+            plan_staged(frame, buffer);
     }
     for (int i = 0; i < PART_COUNT; ++i) {
         buffer->parts[i].offset = buffer->bytes;
@@ -138,8 +154,8 @@ static vkao_result create_buffer(const vkao_context *ctx, struct scratch_buffer 
                                            &(VkBufferCreateInfo){
                                                .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                                .size = buffer->bytes,
-                                               .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-
+                                               .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                                                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                                         VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT,
                                                .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
                                            },

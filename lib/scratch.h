@@ -23,10 +23,12 @@ struct scratch_image {
     VkDeviceSize offset;
 };
 
-enum scratch_part { PART_VIEW_Z, PART_PACKED, PART_HALFWAY, PART_BLURRED, PART_COUNT };
+enum scratch_part { PART_VIEW_Z, PART_PACKED, PART_HALFWAY, PART_BLURRED, PART_STAGED, PART_COUNT };
 
 struct scratch_buffer {
-    uint32_t stride; /* texels in a row */
+    uint32_t stride;        /* texels in a row */
+    uint32_t staged_stride; /* the same of PART_STAGED */
+    VkDeviceSize staged_texel; /* bytes */
     struct {
         VkDeviceSize offset, bytes; /* in the buffer; 0 bytes = not needed */
     } parts[PART_COUNT];

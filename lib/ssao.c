@@ -26,7 +26,7 @@ void record_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const struct view
         .normal_y[3] = params->bias * params->radius,
         .normal_z[3] = params->blocking_scale,
         .depth_error = {view->depth_error[0], view->depth_error[1]},
-        .flags = recording_flags(&grid, frame->packed, params, NULL),
+        .flags = recording_flags(&grid, frame_flags(frame), params, NULL),
         .noise_index = params->noise_index,
         .counts = params->slice_count | params->step_count << 8 | params->sample_count << 20,
         .inverse_radius = 1.0f / params->radius,

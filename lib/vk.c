@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "vk.h"
 
+#include "params.h"
+
 bool vk_table_load(struct vk_table *vk, const vkao_context_info *info, const char **missing)
 {
     *missing = NULL;
@@ -44,8 +46,23 @@ vkao_result vk_result(VkResult result)
 
 bool vk_format_is_ao(VkFormat format)
 {
-    return format == VK_FORMAT_R8_UNORM || format == VK_FORMAT_R16_UNORM ||
-           format == VK_FORMAT_R16_SFLOAT || format == VK_FORMAT_R32_SFLOAT;
+    return vk_format_staged(format) != VKAO_STAGED_NONE;
+}
+
+uint32_t vk_format_staged(VkFormat format)
+{
+    switch (format) {
+    case VK_FORMAT_R8_UNORM:
+        return VKAO_STAGED_UNORM8;
+    case VK_FORMAT_R16_UNORM:
+        return VKAO_STAGED_UNORM16;
+    case VK_FORMAT_R16_SFLOAT:
+        return VKAO_STAGED_FLOAT16;
+    case VK_FORMAT_R32_SFLOAT:
+        return VKAO_STAGED_FLOAT32;
+    default:
+        return VKAO_STAGED_NONE;
+    }
 }
 
 struct depth_format {

@@ -44,7 +44,8 @@
     X(CmdBindPipeline)                                                                             \
     X(CmdBindDescriptorSets)                                                                       \
     X(CmdPushConstants)                                                                            \
-    X(CmdDispatch)
+    X(CmdDispatch)                                                                                 \
+    X(CmdCopyBufferToImage)
 
 /* Present only where VK_EXT_debug_utils is enabled; NULL otherwise. */
 #define VKAO_DEBUG_FUNCTIONS(X)                                                                    \
@@ -69,6 +70,8 @@ vkao_result vk_result(VkResult result);
 bool vk_format_is_sampled_float(VkFormat format);
 /* Formats of AO images. */
 bool vk_format_is_ao(VkFormat format);
+/* The VKAO_STAGED_* that such a format can be copied from. */
+uint32_t vk_format_staged(VkFormat format);
 /* Depth formats and one-component floats. */
 bool vk_format_is_depth(VkFormat format);
 /* Size of one step of a depth value in [0.5,1), and whether the format floats; 0 for other formats. */

@@ -16,7 +16,7 @@ layout(binding = VKAO_BINDING_HALFWAY_WORDS) readonly buffer Halfway { uvec2 hal
 layout(binding = VKAO_BINDING_BLURRED_WORDS) writeonly buffer Blurred { uvec2 blurred_ao[]; };
 #include "view.glsl"
 #include "blur_window.glsl"
-#include "finish.glsl"
+#include "staged.glsl"
 
 const int WINDOW = VKAO_BLUR_Y_HEIGHT + 2 * RADIUS;
 
@@ -83,19 +83,14 @@ vec4 blurred_slowly(ivec2 texel)
 /* Four texels of a row. */
 void put(ivec2 texel, vec4 z, vec4 fine)
 {
-    ivec2 low = unpack_texel(params.rect.x), high = unpack_texel(params.rect.y);
     if (flag(VKAO_FLAG_HALF_RESOLUTION)) {
         ivec4 v = ivec4(fine + (float(VKAO_CODE_OPEN) + 0.5));
-        if (texel.y < high.y)
+        if (texel.y < int(params.rect.y >> 16))
             blurred_ao[(buffer_row(texel.y) + texel.x) >> 2] = uvec2(v.xz | v.yw << 16);
         return;
     }
-    vec4 ao = fine * (1.0 / (VKAO_CODE_SCALE * VKAO_CODE_FINE)) + 1.0;
-    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) {
-        int x = texel.x + i;
-        if (x >= low.x && x < high.x && texel.y < high.y)
-            finish(ivec2(x, texel.y), vec4(0.0, 0.0, 0.0, ao[i]), z[i] >= BACKGROUND_Z);
-    }
+    put_ao(texel, fine * (1.0 / (VKAO_CODE_SCALE * VKAO_CODE_FINE)) + 1.0,
+           greaterThanEqual(z, vec4(BACKGROUND_Z)));
 }
 
 void blur_window(ivec2 texel)

@@ -23,14 +23,20 @@ vec4 encode_normal(vec3 n, uint encoding)
     return vec4(unorm ? e * 0.5 + 0.5 : e, 0.0);
 }
 
-/* result.w: visibility; result.xyz: mean visible direction in view space, of any length. background is seen nothing of:
- * it is open, and its bent normal is zero, as its normal is. */
+/* What is seen nothing of, background, is open. */
+float final_ao(float visibility, bool background)
+{
+    float ao = clamp(visibility, 0.0, 1.0);
+    if (!flag(VKAO_FLAG_PHYSICAL))
+        ao = pow(clamp(1.0 - params.intensity * (1.0 - visibility), 0.0, 1.0), params.power);
+    return background ? 1.0 : ao;
+}
+
+/* result.w: visibility; result.xyz: mean visible direction in view space, of any length; that of background is zero, as
+ * its normal is. */
 void finish(ivec2 texel, vec4 result, bool background)
 {
-    float ao = clamp(result.w, 0.0, 1.0);
-    if (!flag(VKAO_FLAG_PHYSICAL))
-        ao = pow(clamp(1.0 - params.intensity * (1.0 - result.w), 0.0, 1.0), params.power);
-    imageStore(ao_out, texel, vec4(background ? 1.0 : ao));
+    imageStore(ao_out, texel, vec4(final_ao(result.w, background)));
     if (BENT_NORMALS) {
         vec3 n = params.normal_x.xyz * result.x + params.normal_y.xyz * result.y + params.normal_z.xyz * result.z;
         float length2 = dot(n, n);

@@ -38,6 +38,11 @@ uint depth_encoding()
     return (flags() >> VKAO_FLAG_DEPTH_SHIFT) & 3u;
 }
 
+uint staged_format()
+{
+    return (flags() >> VKAO_FLAG_STAGED_SHIFT) & 7u;
+}
+
 /* texel << grid_shift() is the image's. */
 uint grid_shift()
 {

@@ -50,7 +50,8 @@
 #define VKAO_BINDING_PACKED_WORDS 19
 #define VKAO_BINDING_HALFWAY_WORDS 20
 #define VKAO_BINDING_BLURRED_WORDS 21
-#define VKAO_BINDING_COUNT 22
+#define VKAO_BINDING_STAGED_WORDS 22
+#define VKAO_BINDING_COUNT 23
 
 /* Specialization constants. Counts that are 0, and flags that are VKAO_FLAGS_UNKNOWN, come from the push constants:
  * that is the general pipeline of a stage. A variant has them all, so that loops unroll and branches go. */
@@ -76,9 +77,16 @@
 #define VKAO_FLAG_SPHERE_LITERAL 0x2000u
 #define VKAO_FLAG_BLUR_NORMALS 0x4000u  /* normal_power > 0 */
 #define VKAO_FLAG_PHYSICAL 0x8000u      /* intensity 1, power 1 */
-
-#define VKAO_FLAG_NORMAL_POWER_8 0x20000u
 #define VKAO_FLAG_PACKED 0x10000u       /* AO goes through buffers, not images */
+#define VKAO_FLAG_NORMAL_POWER_8 0x20000u
+#define VKAO_FLAG_STAGED_SHIFT 18       /* VKAO_STAGED_*, 3 bits */
+
+/* What the last shader writes: texels of the AO image, or words that will be copied into it, in one of these formats. */
+#define VKAO_STAGED_NONE 0
+#define VKAO_STAGED_UNORM8 1
+#define VKAO_STAGED_UNORM16 2
+#define VKAO_STAGED_FLOAT16 3
+#define VKAO_STAGED_FLOAT32 4
 
 /* Texels of zeros around view z, so that taps outside read background without a test. */
 #define VKAO_VIEW_Z_BORDER 1
@@ -91,14 +99,15 @@
  * Noisy AO is a byte per texel, coded as (ao + OFFSET) * SCALE: one slice per texel sees between -.55 and 2 of what a
  * whole hemisphere sees, 1 must be exact, and next to its noise the rounding is nothing. AO between the directions of
  * the blur is a 16-bit word per texel, 256 times that code; that buffer is a ring of VKAO_RING_ROWS rows, the blur goes
- * down the image in strips. */
+ * down the image in strips. If AO is staged, a strip of the image's rows has a buffer too; its rows have no padding and
+ * begin at multiples of VKAO_UPSAMPLE_WIDTH. */
 #define VKAO_BUFFER_PAD 16
 #define VKAO_CODE_SCALE 100.0
 #define VKAO_CODE_OFFSET 0.55
 #define VKAO_CODE_FINE 256.0
 #define VKAO_CODE_OPEN 39680 /* fine code of 1; numbers are relative to it, so that what is open stays exactly 1 */
-#define VKAO_RING_ROWS 288
-#define VKAO_STRIP_ROWS 256 /* a ring holds a strip and the largest radius on both sides of it */
+#define VKAO_RING_ROWS 160
+#define VKAO_STRIP_ROWS 128 /* a ring holds a strip and the largest radius on both sides of it */
 
 /* Texels per invocation in the shaders for buffers. */
 #define VKAO_PREPARE_WIDTH 4
@@ -191,6 +200,7 @@ struct vkao_blur_block {
     VKAO_FLOAT(reference_z); /* what sharpness is relative to in orthographic views; 0 = the texel's own z */
     VKAO_UINT(stride);       /* texels in a row of buffers */
     VKAO_UINT(ring_row);     /* image row in row 0 of the ring, or VKAO_RING_ROWS rows before that */
+    VKAO_UINT(staged_stride); /* texels in a row of staged AO; row 0 is the rect's first */
 };
 
 /* valid is the half-resolution one, which load_view_z checks. */
@@ -208,6 +218,7 @@ struct vkao_upsample_block {
     VKAO_FLOAT(power);
     VKAO_UINT(flags);
     VKAO_UINT(stride); /* texels in a row of buffers */
+    VKAO_UINT(staged_stride);
 };
 
 struct vkao_composite_block {

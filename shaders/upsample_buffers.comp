@@ -16,7 +16,7 @@ layout(binding = VKAO_BINDING_Z_WORDS) readonly buffer ViewZ { vec4 view_z[]; };
 layout(binding = VKAO_BINDING_BLURRED_WORDS) readonly buffer Blurred { uvec2 blurred_ao[]; };
 #include "view.glsl"
 #include "depth.glsl"
-#include "finish.glsl"
+#include "staged.glsl"
 #include "surface.glsl"
 
 /* One more of each than there are columns, so that the last odd one has a neighbour. */
@@ -97,12 +97,15 @@ float blend(int dx, int dy, float z, vec4 normal, vec2 slope, Neighbour n[4])
     return mean.weights > 0.0 ? mean.sum / mean.weights : 0.0;
 }
 
-void put(ivec2 texel, float z, float fine)
+/* A row of the window. */
+void put(ivec2 texel, float z[VKAO_UPSAMPLE_WIDTH], float fine[VKAO_UPSAMPLE_WIDTH])
 {
-    ivec2 low = unpack_texel(params.rect.x), high = unpack_texel(params.rect.y);
-    float ao = fine * (1.0 / (VKAO_CODE_SCALE * VKAO_CODE_FINE)) + 1.0;
-    if (all(greaterThanEqual(texel, low)) && all(lessThan(texel, high)))
-        finish(texel, vec4(0.0, 0.0, 0.0, ao), z >= BACKGROUND_Z);
+    [[unroll]] for (int i = 0; i < VKAO_UPSAMPLE_WIDTH; i += 4) {
+        vec4 v = vec4(fine[i], fine[i + 1], fine[i + 2], fine[i + 3]);
+        vec4 depths = vec4(z[i], z[i + 1], z[i + 2], z[i + 3]);
+        put_ao(texel + ivec2(i, 0), v * (1.0 / (VKAO_CODE_SCALE * VKAO_CODE_FINE)) + 1.0,
+               greaterThanEqual(depths, vec4(BACKGROUND_Z)));
+    }
 }
 
 void main()
@@ -124,8 +127,8 @@ void main()
             normal[row][i] = flag(VKAO_FLAG_BLUR_NORMALS) ? full_normal(texel + ivec2(i, row)) : vec4(0.0);
         }
     }
+    float row_z[2][VKAO_UPSAMPLE_WIDTH], row[2][VKAO_UPSAMPLE_WIDTH];
     [[unroll]] for (int i = 0; i < VKAO_UPSAMPLE_WIDTH; ++i) {
-        ivec2 at = texel + ivec2(i, 0), below = at + ivec2(0, 1);
         bool even = (i & 1) == 0;
         int left = even ? i : i - 1, right = even ? i : i + 1;
         Neighbour n[4];
@@ -135,13 +138,17 @@ void main()
         }
         vec2 slope = vec2(0.0, local_slope(z[0][i], z[1][i], z[2][i]));
         if (even) {
-            put(at, z[0][i], fine[0][i / 2]);
-            put(below, z[1][i], blend(0, 1, z[1][i], normal[1][i], slope, n));
+            row[0][i] = fine[0][i / 2];
+            row[1][i] = blend(0, 1, z[1][i], normal[1][i], slope, n);
         } else {
             slope.x = local_slope(z[1][i - 1], z[1][i], z[1][i + 1]);
             vec2 across = vec2(local_slope(z[0][i - 1], z[0][i], z[0][i + 1]), 0.0);
-            put(at, z[0][i], blend(1, 0, z[0][i], normal[0][i], across, n));
-            put(below, z[1][i], blend(1, 1, z[1][i], normal[1][i], slope, n));
+            row[0][i] = blend(1, 0, z[0][i], normal[0][i], across, n);
+            row[1][i] = blend(1, 1, z[1][i], normal[1][i], slope, n);
         }
+        row_z[0][i] = z[0][i];
+        row_z[1][i] = z[1][i];
     }
+    put(texel, row_z[0], row[0]);
+    put(texel + ivec2(0, 1), row_z[1], row[1]);
 }

@@ -129,7 +129,7 @@ typedef struct vkao_variant {
     uint32_t struct_size;
     VkBool32 half_resolution; /* as in vkao_frame_info */
     VkBool32 bent_normals;    /* VK_TRUE: for frames with images.bent_normals */
-    uint32_t reserved;        /* zero */
+    VkFormat staged_ao;       /* images.ao.format of frames with images.ao_image; UNDEFINED = for frames without */
     const vkao_view *view;
     const vkao_ssao_params *ssao;
     const vkao_blur_params *blur; /* NULL = no BLUR */
@@ -230,6 +230,11 @@ typedef struct vkao_images {
     vkao_image bent_normals;
     vkao_image albedo;   /* diffuse reflectance in rgb, for composite.multi_bounce; as color */
     vkao_image specular; /* indirect specular light in rgb, roughness in alpha, for composite.specular; as color */
+    /* Optional: the image behind ao.view, created with TRANSFER_DST too. Where scratch is in BUFFERS and the frame has no
+     * ao_noisy and no bent_normals, BLUR then copies rows into it instead of storing texel by texel, which takes a CPU
+     * a third of BLUR's time. Ignored elsewhere. Waiting for the stage's shader writes waits for the copy. */
+    VkImage ao_image;
+    uint32_t ao_mip_level, ao_array_layer; /* of ao.view in ao_image */
 } vkao_images;
 
 static inline vkao_images vkao_images_default(void)

@@ -80,6 +80,8 @@ void ao_session_destroy(struct ao_session *session)
     free(session);
 }
 
+static const VkFormat ao_format = VK_FORMAT_R32_SFLOAT;
+
 static bool create_frame(struct ao_session *session, const struct ao_job *job,
                          struct tool_error *err)
 {
@@ -93,7 +95,7 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
                            VK_IMAGE_USAGE_SAMPLED_BIT},
         [IMAGE_COLOR] = {job->color != NULL, VK_FORMAT_R32G32B32A32_SFLOAT,
                          VK_IMAGE_USAGE_SAMPLED_BIT},
-        [IMAGE_AO] = {true, VK_FORMAT_R32_SFLOAT,
+        [IMAGE_AO] = {true, ao_format,
                       VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
         [IMAGE_OUTPUT] = {job->color != NULL, VK_FORMAT_R32G32B32A32_SFLOAT,
                           VK_IMAGE_USAGE_STORAGE_BIT},
@@ -110,6 +112,7 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
     vkao_images images = vkao_images_default();
     images.depth = gpu_image_slot(&session->images[IMAGE_DEPTH]);
     images.ao = gpu_image_slot(&session->images[IMAGE_AO]);
+    images.ao_image = session->images[IMAGE_AO].image;
     if (job->normals)
         images.normals = gpu_image_slot(&session->images[IMAGE_NORMALS]);
     if (job->color) {
@@ -147,6 +150,7 @@ static bool fit_context(struct ao_session *session, const struct ao_job *job,
         .struct_size = sizeof variant,
         .half_resolution = job->half_resolution,
         .bent_normals = job->bent_normals,
+        .staged_ao = ao_format,
         .view = &job->view,
         .ssao = &job->ssao,
         .blur = &job->blur,

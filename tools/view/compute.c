@@ -60,6 +60,7 @@ bool computation_create(struct computation *c, struct gpu *gpu, const vkao_conte
               (!shape.composite || gpu_image_create(gpu, VK_FORMAT_R32G32B32A32_SFLOAT,
                                                     shape.extent, usage, &c->output, err));
     images.ao = gpu_image_slot(&c->ao);
+    images.ao_image = c->ao.image;
     if (shape.bent)
         images.bent_normals = gpu_image_slot(&c->bent);
     if (shape.composite)
