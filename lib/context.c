@@ -143,17 +143,14 @@ VkDescriptorType binding_type(uint32_t binding)
     case VKAO_BINDING_OUTPUT:
     case VKAO_BINDING_BENT_WRITE:
         return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-    case VKAO_BINDING_Z_TEXELS:
-    case VKAO_BINDING_PACKED_TEXELS:
-        return VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
     case VKAO_BINDING_Z_WORDS:
-    case VKAO_BINDING_PACKED_WORDS:
     case VKAO_BINDING_HALFWAY_WORDS:
     case VKAO_BINDING_BLURRED_WORDS:
     case VKAO_BINDING_STAGED_WORDS:
         return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     default:
-        return VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+        return scratch_view(binding) ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
+                                     : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
     }
 }
 

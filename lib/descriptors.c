@@ -76,31 +76,6 @@ static void describe_images(const vkao_frame *frame, struct image_binding table[
         table[i] = (struct image_binding){i, used[i], rows[i]};
 }
 
-static bool binding_part(uint32_t binding, enum scratch_part *part)
-{
-    switch (binding) {
-    case VKAO_BINDING_Z_TEXELS:
-    case VKAO_BINDING_Z_WORDS:
-        *part = PART_VIEW_Z;
-        return true;
-    case VKAO_BINDING_PACKED_TEXELS:
-    case VKAO_BINDING_PACKED_WORDS:
-        *part = PART_PACKED;
-        return true;
-    case VKAO_BINDING_HALFWAY_WORDS:
-        *part = PART_HALFWAY;
-        return true;
-    case VKAO_BINDING_BLURRED_WORDS:
-        *part = PART_BLURRED;
-        return true;
-    case VKAO_BINDING_STAGED_WORDS:
-        *part = PART_STAGED;
-        return true;
-    default:
-        return false;
-    }
-}
-
 void descriptors_write(const vkao_frame *frame)
 {
     const struct scratch_buffer *buffer = &frame->scratch.buffer;
@@ -111,9 +86,8 @@ void descriptors_write(const vkao_frame *frame)
     uint32_t count = 0;
     describe_images(frame, table);
     for (uint32_t i = 0; i < VKAO_BINDING_COUNT; ++i) {
-        enum scratch_part part = PART_COUNT;
-        const bool in_buffer = binding_part(i, &part);
-        if (in_buffer ? !buffer->parts[part].bytes : !table[i].used)
+        const struct scratch_view *view = scratch_view(i);
+        if (view ? !buffer->parts[view->part].bytes : !table[i].used)
             continue;
         images[count] = (VkDescriptorImageInfo){.imageView = table[i].image.view,
                                                 .imageLayout = table[i].image.layout};
@@ -125,12 +99,13 @@ void descriptors_write(const vkao_frame *frame)
             .descriptorType = binding_type(i),
             .pImageInfo = &images[count],
         };
-        if (in_buffer) {
-            buffers[count] = (VkDescriptorBufferInfo){buffer->buffer, buffer->parts[part].offset,
-                                                      buffer->parts[part].bytes};
+        if (view) {
+            buffers[count] =
+                (VkDescriptorBufferInfo){buffer->buffer, buffer->parts[view->part].offset,
+                                         buffer->parts[view->part].bytes};
             writes[count].pImageInfo = NULL;
             writes[count].pBufferInfo = &buffers[count];
-            writes[count].pTexelBufferView = &buffer->views[part];
+            writes[count].pTexelBufferView = &buffer->views[i - VKAO_BINDING_Z];
         }
         ++count;
     }
@@ -143,8 +118,8 @@ vkao_result descriptors_create(vkao_frame *frame)
     const VkDescriptorPoolSize sizes[] = {
         {VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE, VKAO_BINDING_COUNT},
         {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VKAO_BINDING_COUNT},
-        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VKAO_BINDING_COUNT},
-        {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 2},
+        {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, SCRATCH_VIEWS},
+        {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, SCRATCH_VIEWS},
     };
     VkResult result =
         ctx->vk.CreateDescriptorPool(ctx->device,

@@ -211,27 +211,46 @@ static vkao_result bind_image(const vkao_context *ctx, struct scratch_image *ima
     return VKAO_SUCCESS;
 }
 
+const struct scratch_view *scratch_view(uint32_t binding)
+{
+    static const struct scratch_view views[SCRATCH_VIEWS] = {
+#define VIEW(name) [VKAO_BINDING_##name - VKAO_BINDING_Z]
+        VIEW(Z) = {PART_VIEW_Z, VK_FORMAT_R32_SFLOAT},
+        VIEW(Z4) = {PART_VIEW_Z, VK_FORMAT_R32G32B32A32_SFLOAT},
+        VIEW(PACKED_WRITE) = {PART_PACKED, VK_FORMAT_R16_UINT},
+        VIEW(PACKED_READ) = {PART_PACKED, VK_FORMAT_R32_UINT},
+        VIEW(HALFWAY_READ2) = {PART_HALFWAY, VK_FORMAT_R32_UINT},
+        VIEW(BLURRED_READ2) = {PART_BLURRED, VK_FORMAT_R32_UINT},
+        VIEW(Z_WORDS) = {PART_VIEW_Z, VK_FORMAT_UNDEFINED},
+        VIEW(HALFWAY_WORDS) = {PART_HALFWAY, VK_FORMAT_UNDEFINED},
+        VIEW(BLURRED_WORDS) = {PART_BLURRED, VK_FORMAT_UNDEFINED},
+        VIEW(STAGED_WORDS) = {PART_STAGED, VK_FORMAT_UNDEFINED},
+#undef VIEW
+    };
+    return binding >= VKAO_BINDING_Z ? &views[binding - VKAO_BINDING_Z] : NULL;
+}
+
 static vkao_result bind_buffer(const vkao_context *ctx, struct scratch_buffer *buffer,
                                VkDeviceMemory memory, VkDeviceSize offset)
 {
-    static const VkFormat formats[PART_COUNT] = {
-        [PART_VIEW_Z] = VK_FORMAT_R32_SFLOAT, [PART_PACKED] = VK_FORMAT_R16_UINT};
     VkResult result =
         ctx->vk.BindBufferMemory(ctx->device, buffer->buffer, memory, offset + buffer->offset);
     if (result != VK_SUCCESS)
         return vkao_vk_failed(&ctx->log, "vkBindBufferMemory", result);
-    for (int i = 0; i < PART_COUNT; ++i) {
-        if (formats[i] == VK_FORMAT_UNDEFINED || !buffer->parts[i].bytes)
+    for (uint32_t i = 0; i < SCRATCH_VIEWS; ++i) {
+        const struct scratch_view *view = scratch_view(VKAO_BINDING_Z + i);
+        if (!view->format || !buffer->parts[view->part].bytes)
             continue;
-        result = ctx->vk.CreateBufferView(ctx->device,
-                                          &(VkBufferViewCreateInfo){
-                                              .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
-                                              .buffer = buffer->buffer,
-                                              .format = formats[i],
-                                              .offset = buffer->parts[i].offset,
-                                              .range = buffer->parts[i].bytes,
-                                          },
-                                          ctx->allocator, &buffer->views[i]);
+        result = ctx->vk.CreateBufferView(
+            ctx->device,
+            &(VkBufferViewCreateInfo){
+                .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                .buffer = buffer->buffer,
+                .format = view->format,
+                .offset = buffer->parts[view->part].offset,
+                .range = buffer->parts[view->part].bytes,
+            },
+            ctx->allocator, &buffer->views[i]);
         if (result != VK_SUCCESS) {
             buffer->views[i] = VK_NULL_HANDLE;
             return vkao_vk_failed(&ctx->log, "vkCreateBufferView", result);
@@ -258,7 +277,7 @@ vkao_result scratch_bind(const vkao_context *ctx, struct scratch *scratch, VkDev
 
 void scratch_destroy(const vkao_context *ctx, struct scratch *scratch)
 {
-    for (int i = 0; i < PART_COUNT; ++i) {
+    for (uint32_t i = 0; i < SCRATCH_VIEWS; ++i) {
         if (scratch->buffer.views[i])
             ctx->vk.DestroyBufferView(ctx->device, scratch->buffer.views[i], ctx->allocator);
     }

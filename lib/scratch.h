@@ -7,6 +7,8 @@
 
 #include "vk.h"
 
+#include "params.h"
+
 enum scratch_slot {
     SCRATCH_VIEW_Z,
     SCRATCH_NOISY,   /* if the SSAO stage feeds BLUR and the caller gave no ao_noisy */
@@ -25,6 +27,17 @@ struct scratch_image {
 
 enum scratch_part { PART_VIEW_Z, PART_PACKED, PART_HALFWAY, PART_BLURRED, PART_STAGED, PART_COUNT };
 
+/* Bindings from VKAO_BINDING_Z on. */
+enum { SCRATCH_VIEWS = VKAO_BINDING_COUNT - VKAO_BINDING_Z };
+
+struct scratch_view {
+    enum scratch_part part;
+    VkFormat format; /* of texels; UNDEFINED = as words */
+};
+
+/* What a VKAO_BINDING_* is of the buffer, NULL if it is not in it. */
+const struct scratch_view *scratch_view(uint32_t binding);
+
 struct scratch_buffer {
     uint32_t stride;        /* texels in a row */
     uint32_t staged_stride; /* the same of PART_STAGED */
@@ -34,8 +47,8 @@ struct scratch_buffer {
     } parts[PART_COUNT];
     VkDeviceSize bytes; /* 0 = not needed */
     VkBuffer buffer;
-    VkBufferView views[PART_COUNT]; /* as texels: PART_VIEW_Z and PART_PACKED */
-    VkDeviceSize offset;            /* in the memory */
+    VkBufferView views[SCRATCH_VIEWS]; /* [binding - VKAO_BINDING_Z] */
+    VkDeviceSize offset;               /* in the memory */
 };
 
 struct scratch {

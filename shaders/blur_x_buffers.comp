@@ -11,8 +11,8 @@
 
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_blur_block params; };
-layout(binding = VKAO_BINDING_Z_WORDS) readonly buffer ViewZ { vec4 view_z[]; };
-layout(binding = VKAO_BINDING_PACKED_WORDS) readonly buffer Packed { uint packed_ao[]; };
+layout(binding = VKAO_BINDING_Z4, rgba32f) uniform readonly imageBuffer view_z4;
+layout(binding = VKAO_BINDING_PACKED_READ, r32ui) uniform readonly uimageBuffer packed_ao;
 layout(binding = VKAO_BINDING_HALFWAY_WORDS) writeonly buffer Halfway { uint halfway[]; };
 #include "view.glsl"
 #include "blur_window.glsl"
@@ -23,7 +23,7 @@ const int WINDOW = VKAO_BLUR_X_WIDTH + 2 * REACH;
 float fetch_code(ivec2 texel)
 {
     int i = buffer_row(texel.y) + texel.x;
-    return float(int(packed_ao[i >> 2] >> ((i & 3) << 3)) & 255);
+    return float(int(imageLoad(packed_ao, i >> 2).x >> ((i & 3) << 3)) & 255);
 }
 
 /* For any radius, tap by tap. */
@@ -53,8 +53,8 @@ void blur_window(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
     bool use_normals = flag(VKAO_FLAG_BLUR_NORMALS);
     int z_word = (z_row(texel.y) + texel.x - REACH) >> 2, code_word = (buffer_row(texel.y) + texel.x - REACH) >> 2;
     [[unroll]] for (int j = 0; j < WINDOW / 4; ++j) {
-        vec4 z4 = view_z[z_word + j];
-        int word = int(packed_ao[code_word + j]);
+        vec4 z4 = imageLoad(view_z4, z_word + j);
+        int word = int(imageLoad(packed_ao, code_word + j).x);
         [[unroll]] for (int i = 0; i < 4; ++i) {
             z[4 * j + i] = surface_z(z4[i]);
             code[4 * j + i] = float((word >> (8 * i)) & 255);

@@ -11,8 +11,8 @@
 
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_blur_block params; };
-layout(binding = VKAO_BINDING_Z_WORDS) readonly buffer ViewZ { vec4 view_z[]; };
-layout(binding = VKAO_BINDING_HALFWAY_WORDS) readonly buffer Halfway { uvec2 halfway[]; };
+layout(binding = VKAO_BINDING_Z4, rgba32f) uniform readonly imageBuffer view_z4;
+layout(binding = VKAO_BINDING_HALFWAY_READ2, r32ui) uniform readonly uimageBuffer halfway;
 layout(binding = VKAO_BINDING_BLURRED_WORDS) writeonly buffer Blurred { uvec2 blurred_ao[]; };
 #include "view.glsl"
 #include "blur_window.glsl"
@@ -23,14 +23,15 @@ const int WINDOW = VKAO_BLUR_Y_HEIGHT + 2 * RADIUS;
 vec4 load_z(ivec2 texel)
 {
     int low = int(params.valid.x >> 16), high = int(params.valid.y >> 16);
-    vec4 z = view_z[(z_row(clamp(texel.y, low - 1, high)) + texel.x) >> 2];
+    vec4 z = imageLoad(view_z4, (z_row(clamp(texel.y, low - 1, high)) + texel.x) >> 2);
     return mix(vec4(BACKGROUND_Z), z, greaterThan(z, vec4(0.0)));
 }
 
 /* Relative to what is open. */
 vec4 load_codes(ivec2 texel)
 {
-    ivec2 word = ivec2(halfway[(ring_row(texel.y) * int(params.stride) + VKAO_BUFFER_PAD + texel.x) >> 2]);
+    int at = (ring_row(texel.y) * int(params.stride) + VKAO_BUFFER_PAD + texel.x) >> 1;
+    ivec2 word = ivec2(imageLoad(halfway, at).x, imageLoad(halfway, at + 1).x);
     return vec4(ivec4(word.x & 0xffff, (word.x >> 16) & 0xffff, word.y & 0xffff, (word.y >> 16) & 0xffff) -
                 VKAO_CODE_OPEN);
 }

@@ -15,7 +15,7 @@ layout(binding = VKAO_BINDING_OUTPUT) uniform writeonly image2D output_image;
 #define VKAO_UNPROJECT
 #include "view.glsl"
 #ifdef VKAO_BUFFERS
-layout(binding = VKAO_BINDING_PACKED_WORDS) readonly buffer Packed { uint packed_ao[]; };
+layout(binding = VKAO_BINDING_PACKED_READ, r32ui) uniform readonly uimageBuffer packed_ao;
 #endif
 
 float noisy_ao(ivec2 texel)
@@ -23,7 +23,7 @@ float noisy_ao(ivec2 texel)
 #ifdef VKAO_BUFFERS
     if (flag(VKAO_FLAG_PACKED)) {
         int i = buffer_row(texel.y) + texel.x;
-        return float((packed_ao[i >> 2] >> ((i & 3) << 3)) & 255u) / VKAO_CODE_SCALE - VKAO_CODE_OFFSET;
+        return float((imageLoad(packed_ao, i >> 2).x >> ((i & 3) << 3)) & 255u) / VKAO_CODE_SCALE - VKAO_CODE_OFFSET;
     }
 #endif
     return texelFetch(noisy_image, texel, 0).x;

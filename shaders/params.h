@@ -43,15 +43,19 @@
 #define VKAO_BINDING_BENT_READ 13
 #define VKAO_BINDING_ALBEDO 14
 #define VKAO_BINDING_SPECULAR 15
-/* Scratch in buffers, see VKAO_BUFFERS below: the same memory as texels and as words. */
-#define VKAO_BINDING_Z_TEXELS 16
-#define VKAO_BINDING_Z_WORDS 17
-#define VKAO_BINDING_PACKED_TEXELS 18
-#define VKAO_BINDING_PACKED_WORDS 19
-#define VKAO_BINDING_HALFWAY_WORDS 20
-#define VKAO_BINDING_BLURRED_WORDS 21
-#define VKAO_BINDING_STAGED_WORDS 22
-#define VKAO_BINDING_COUNT 23
+/* Scratch in buffers, see VKAO_BUFFERS below: the same memory as storage texel buffers, which a CPU reads with vector
+ * gathers and not lane by lane, and as storage buffers, to which it writes faster. */
+#define VKAO_BINDING_Z 16            /* r32f */
+#define VKAO_BINDING_Z4 17           /* rgba32f */
+#define VKAO_BINDING_PACKED_WRITE 18 /* r16ui: VKAO_SSAO_TEXELS codes */
+#define VKAO_BINDING_PACKED_READ 19  /* r32ui: 4 codes */
+#define VKAO_BINDING_HALFWAY_READ2 20 /* r32ui: 2 fine codes */
+#define VKAO_BINDING_BLURRED_READ2 21 /* r32ui: the same */
+#define VKAO_BINDING_Z_WORDS 22
+#define VKAO_BINDING_HALFWAY_WORDS 23
+#define VKAO_BINDING_BLURRED_WORDS 24
+#define VKAO_BINDING_STAGED_WORDS 25
+#define VKAO_BINDING_COUNT 26
 
 /* Specialization constants. Counts that are 0, and flags that are VKAO_FLAGS_UNKNOWN, come from the push constants:
  * that is the general pipeline of a stage. A variant has them all, so that loops unroll and branches go. */

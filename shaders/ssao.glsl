@@ -19,7 +19,7 @@ layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_ssao_block params; };
 layout(binding = VKAO_BINDING_NOISY_WRITE) uniform writeonly image2D noisy_image;
 #ifdef VKAO_BUFFERS
-layout(binding = VKAO_BINDING_PACKED_TEXELS) uniform writeonly uimageBuffer packed_texels;
+layout(binding = VKAO_BINDING_PACKED_WRITE) uniform writeonly uimageBuffer packed_texels;
 #endif
 #define VKAO_UNPROJECT
 #include "lanes.glsl"

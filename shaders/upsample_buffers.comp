@@ -12,8 +12,8 @@
 
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_upsample_block params; };
-layout(binding = VKAO_BINDING_Z_WORDS) readonly buffer ViewZ { vec4 view_z[]; };
-layout(binding = VKAO_BINDING_BLURRED_WORDS) readonly buffer Blurred { uvec2 blurred_ao[]; };
+layout(binding = VKAO_BINDING_Z4, rgba32f) uniform readonly imageBuffer view_z4;
+layout(binding = VKAO_BINDING_BLURRED_READ2, r32ui) uniform readonly uimageBuffer blurred_ao;
 #include "view.glsl"
 #include "depth.glsl"
 #include "staged.glsl"
@@ -35,14 +35,15 @@ void load_half_row(ivec2 texel, out float z[HALF_COLUMNS], out float fine[HALF_C
 {
     int y = clamp(texel.y, int(params.valid.x >> 16) - 1, int(params.valid.y >> 16));
     int z_word = (z_row(y) + texel.x) >> 2;
-    int code_word = (buffer_row(min(y, int(params.valid.y >> 16) - 1)) + texel.x) >> 2;
-    vec4 z4 = view_z[z_word], codes = unpack_codes(blurred_ao[code_word]);
+    int code_word = (buffer_row(min(y, int(params.valid.y >> 16) - 1)) + texel.x) >> 1;
+    vec4 z4 = imageLoad(view_z4, z_word);
+    vec4 codes = unpack_codes(uvec2(imageLoad(blurred_ao, code_word).x, imageLoad(blurred_ao, code_word + 1).x));
     [[unroll]] for (int i = 0; i < HALF_COLUMNS - 1; ++i) {
         z[i] = surface_z(z4[i]);
         fine[i] = codes[i];
     }
-    z[HALF_COLUMNS - 1] = surface_z(view_z[z_word + 1].x);
-    fine[HALF_COLUMNS - 1] = float((int(blurred_ao[code_word + 1].x) & 0xffff) - VKAO_CODE_OPEN);
+    z[HALF_COLUMNS - 1] = surface_z(fetch_view_z(ivec2(texel.x + HALF_COLUMNS - 1, y)));
+    fine[HALF_COLUMNS - 1] = float((int(imageLoad(blurred_ao, code_word + 2).x) & 0xffff) - VKAO_CODE_OPEN);
 }
 
 float full_z(ivec2 texel)

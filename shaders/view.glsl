@@ -8,7 +8,7 @@
 
 #ifdef VKAO_BUFFERS
 #include "buffers.glsl"
-layout(binding = VKAO_BINDING_Z_TEXELS, r32f) uniform readonly imageBuffer view_z_texels;
+layout(binding = VKAO_BINDING_Z, r32f) uniform readonly imageBuffer view_z_texels;
 #else
 layout(binding = VKAO_BINDING_VIEW_Z, VKAO_VIEW_Z_FORMAT) uniform readonly image2D view_z_image;
 #endif
