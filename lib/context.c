@@ -101,9 +101,10 @@ static vkao_result check_info(const struct vkao_logger *log, const vkao_context_
 /* Noisy AO as texels to write; view z as texels is mandatory. */
 static bool has_buffer_formats(const vkao_context *ctx)
 {
-    VkFormatProperties packed;
-    ctx->vk.GetPhysicalDeviceFormatProperties(ctx->physical_device, VK_FORMAT_R16_UINT, &packed);
-    return packed.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT;
+    VkFormatProperties one, two;
+    ctx->vk.GetPhysicalDeviceFormatProperties(ctx->physical_device, VK_FORMAT_R8_UINT, &one);
+    ctx->vk.GetPhysicalDeviceFormatProperties(ctx->physical_device, VK_FORMAT_R16_UINT, &two);
+    return one.bufferFeatures & two.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT;
 }
 
 static vkao_result read_device(vkao_context *ctx, vkao_scratch_layout layout)
@@ -128,8 +129,8 @@ static vkao_result read_device(vkao_context *ctx, vkao_scratch_layout layout)
     ctx->buffers = wanted && has_buffer_formats(ctx);
     if (layout == VKAO_SCRATCH_BUFFERS && !ctx->buffers)
         return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
-                           "context.scratch_layout is BUFFERS, but the device cannot store R16_UINT "
-                           "texels in buffers");
+                           "context.scratch_layout is BUFFERS, but the device cannot store R8_UINT and "
+                           "R16_UINT texels in buffers");
     return VKAO_SUCCESS;
 }
 

@@ -100,12 +100,12 @@ static const struct shader shaders[PIPELINE_COUNT] = {
                                   {VKAO_UPSAMPLE_WIDTH, VKAO_UPSAMPLE_HEIGHT}},
     [PIPELINE_COMPOSITE] = {SHADER(composite), VK_FALSE, false, ONE_TEXEL},
     [PIPELINE_DEBUG] = {SHADER(debug), VK_FALSE, false, ONE_TEXEL},
-    [PIPELINE_SSAO + VKAO_SSAO_SPHERE] = {SHADER(ssao_sphere), VK_FALSE, false, SSAO_TEXELS},
+    [PIPELINE_SSAO + VKAO_SSAO_SPHERE] = {SHADER(ssao_sphere), VK_FALSE, false, ONE_TEXEL},
     [PIPELINE_SSAO + VKAO_SSAO_HEMISPHERE] = {SHADER(ssao_hemisphere), VK_FALSE, false, SSAO_TEXELS},
     [PIPELINE_SSAO + VKAO_SSAO_HBAO] = {SHADER(ssao_hbao), VK_FALSE, false, SSAO_TEXELS},
     [PIPELINE_SSAO + VKAO_SSAO_GTAO] = {SHADER(ssao_gtao), VK_FALSE, true, SSAO_TEXELS},
     [PIPELINE_SSAO + VKAO_SSAO_VBAO] = {SHADER(ssao_vbao), VK_FALSE, true, SSAO_TEXELS},
-    [PIPELINE_SSAO + VKAO_SSAO_RAYMARCH] = {SHADER(ssao_raymarch), VK_FALSE, true, SSAO_TEXELS},
+    [PIPELINE_SSAO + VKAO_SSAO_RAYMARCH] = {SHADER(ssao_raymarch), VK_FALSE, true, ONE_TEXEL},
 };
 
 static enum build context_build(const vkao_context *ctx)

@@ -12,7 +12,7 @@
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_blur_block params; };
 layout(binding = VKAO_BINDING_Z4, rgba32f) uniform readonly imageBuffer view_z4;
-layout(binding = VKAO_BINDING_PACKED_READ, r32ui) uniform readonly uimageBuffer packed_ao;
+layout(binding = VKAO_BINDING_PACKED_READ4, r32ui) uniform readonly uimageBuffer packed_ao;
 layout(binding = VKAO_BINDING_HALFWAY_WORDS) writeonly buffer Halfway { uint halfway[]; };
 #include "view.glsl"
 #include "blur_window.glsl"

@@ -4,6 +4,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
 
@@ -14,8 +15,9 @@ layout(binding = VKAO_BINDING_BENT_READ) uniform texture2D bent_image;
 layout(binding = VKAO_BINDING_OUTPUT) uniform writeonly image2D output_image;
 #define VKAO_UNPROJECT
 #include "view.glsl"
+#include "normals.glsl"
 #ifdef VKAO_BUFFERS
-layout(binding = VKAO_BINDING_PACKED_READ, r32ui) uniform readonly uimageBuffer packed_ao;
+layout(binding = VKAO_BINDING_PACKED_READ4, r32ui) uniform readonly uimageBuffer packed_ao;
 #endif
 
 float noisy_ao(ivec2 texel)
@@ -39,7 +41,7 @@ vec4 debug_view(ivec2 texel)
         return vec4(vec3(z > 0.0 ? noisy_ao(at) : 1.0), 1.0);
     vec3 n = vec3(0.0);
     if (z > 0.0 && params.mode == VKAO_GLSL_COMPOSITE_NORMALS)
-        n = view_normal(at, view_position(vec2(at), z));
+        n = lane3(view_normals(at, view_positions(at, real(z))), 0);
     if (params.mode == VKAO_GLSL_COMPOSITE_BENT_NORMALS)
         n = to_view(decode_direction(texelFetch(bent_image, texel, 0).xyz, bent_encoding()));
     n.z = -n.z; /* towards the eye is what pictures of normals show as blue */

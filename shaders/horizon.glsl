@@ -11,15 +11,10 @@
 #define VKAO_HORIZON_GLSL_
 
 const float PI = 3.14159265358979324;
-/* A number below 2^22 plus this has no room for a fraction: its last bits are the nearest integer. */
-const float ROUND = 12582912.0;
-const int ROUND_BITS = 0x4b400000;
-const float MOST_TEXELS = 2.0e6;
-
 struct Slice {
     Real2 step;          /* direction on screen, in texels that one scene unit has at unit distance */
     real per_texel;      /* 1 / its length */
-    real scale;          /* scene units -> the same at the shaded point; what it gives stays within MOST_TEXELS */
+    real scale;          /* scene units -> the same at the shaded point */
     Real2 to_x, to_y;    /* texels off the shaded point -> x and y in radii, per unit of view z in perspective */
     real eye, origin;    /* y is origin - eye * view z, and what to_y adds */
     Real3 outward;       /* O: unit, in the slice, at right angles to V */
@@ -32,10 +27,8 @@ Real3 eye_direction(ivec2 texel)
 {
     if (orthographic())
         return Real3(real(0.0), real(0.0), real(-1.0));
-    real x = (float(texel.x) + BESIDE) * params.unproject.x + params.unproject.z;
-    real y = real(float(texel.y) * params.unproject.y + params.unproject.w);
-    real z = -inversesqrt(x * x + y * y + 1.0);
-    return Real3(x * z, y * z, z);
+    Real3 away = view_positions(texel, real(1.0));
+    return times(away, -inversesqrt(dot3(away, away)));
 }
 
 /* turn in [0,1) is half the circle. */
@@ -46,7 +39,6 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
     s.step = Real2(d.x * params.inverse_unproject.x, d.y * params.inverse_unproject.y);
     s.per_texel = inversesqrt(s.step.x * s.step.x + s.step.y * s.step.y);
     s.scale = orthographic() ? real(1.0) : 1.0 / position.z;
-    s.scale = min(s.scale, s.per_texel * (MOST_TEXELS * params.inverse_radius));
     real along = d.x * to_eye.x + d.y * to_eye.y, inverse_o = inversesqrt(1.0 - along * along);
     s.outward = times(Real3(d.x - along * to_eye.x, d.y - along * to_eye.y, -along * to_eye.z), inverse_o);
     Real3 across = times(Real3(d.y * to_eye.z, -d.x * to_eye.z, d.x * to_eye.y - d.y * to_eye.x), inverse_o);
@@ -59,7 +51,7 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
     s.to_y = Real2(radii.x * (to_eye.x + across.x * moved), radii.y * (to_eye.y + across.y * moved));
     s.eye = params.inverse_radius * (orthographic() ? real(1.0) : -1.0 / to_eye.z);
     /* It is taken to lie as deep as its depth may be wrong: a wall must not occlude itself by the steps of a format. */
-    s.origin = s.eye * position.z - (2.0 * params.inverse_radius) * depth_errors(position.z);
+    s.origin = s.eye * position.z - (2.0 * params.inverse_radius) * depth_error(position.z);
     real length2 = max(1.0 - off * off, real(1.0e-12)), inverse = inversesqrt(length2);
     s.normal_length = length2 * inverse;
     s.cos_n = clamp(facing * inverse, real(0.0), real(1.0));
@@ -67,18 +59,10 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
     return s;
 }
 
-/* Whole texels off the shaded point, on the first side. */
+/* Texels off the shaded point, on the first side. */
 struct Offset {
-    Real2 texels;
-    whole x, y; /* the same and ROUND_BITS */
+    Rounded x, y;
 };
-
-Offset round_offset(real x, real y)
-{
-    precise real moved_x = x + ROUND, moved_y = y + ROUND;
-    precise real whole_x = moved_x - ROUND, whole_y = moved_y - ROUND;
-    return Offset(Real2(whole_x, whole_y), floatBitsToInt(moved_x), floatBitsToInt(moved_y));
-}
 
 /* Of step t, at least 1 + t/2 texels. Steps crowd near the point. */
 Offset step_offset(Slice s, uint t, real jitter, float reach)
@@ -87,7 +71,7 @@ Offset step_offset(Slice s, uint t, real jitter, float reach)
     real far = (s.scale * reach) * (q * (VKAO_STEP_LINEAR + (1.0 - VKAO_STEP_LINEAR) * q));
     real least = s.per_texel * (1.0 + 0.5 * float(t));
     far = choose(least, far, above(far, least));
-    return round_offset(s.step.x * far, s.step.y * far);
+    return Offset(rounded(s.step.x * far), rounded(s.step.y * far));
 }
 
 /* View z of the texels at +offset and -offset. */
@@ -95,8 +79,8 @@ reals load_sides(ivec2 texel, Offset offset)
 {
     ivec2 first = border_texel(texel);
     whole x = first.x + whole(BESIDE), y = whole(first.y);
-    ints at_x = ints((x - ROUND_BITS) + offset.x, (x + ROUND_BITS) - offset.x);
-    ints at_y = ints((y - ROUND_BITS) + offset.y, (y + ROUND_BITS) - offset.y);
+    ints at_x = ints((x - ROUND_BITS) + offset.x.bits, (x + ROUND_BITS) - offset.x.bits);
+    ints at_y = ints((y - ROUND_BITS) + offset.y.bits, (y + ROUND_BITS) - offset.y.bits);
     reals z;
     [[unroll]] for (int i = 0; i < 2 * TEXELS; ++i)
         z[i] = border_view_z(ivec2(at_x[i], at_y[i]));
@@ -104,10 +88,10 @@ reals load_sides(ivec2 texel, Offset offset)
 }
 
 /* Their coordinates in the slice, in radii. */
-void slice_points(Slice s, Real2 offset, reals z, out reals x, out reals y)
+void slice_points(Slice s, Offset offset, reals z, out reals x, out reals y)
 {
-    reals dx = both(s.to_x.x * offset.x + s.to_x.y * offset.y);
-    reals dy = SIDES * both(s.to_y.x * offset.x + s.to_y.y * offset.y);
+    reals dx = both(s.to_x.x * offset.x.number + s.to_x.y * offset.y.number);
+    reals dy = SIDES * both(s.to_y.x * offset.x.number + s.to_y.y * offset.y.number);
     x = orthographic() ? dx : z * dx;
     y = orthographic() ? both(s.origin) + dy - z * params.inverse_radius : both(s.origin) + z * (dy - both(s.eye));
 }

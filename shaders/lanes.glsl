@@ -2,12 +2,12 @@
  *
  * Numbers of the texels that an invocation shades side by side: one on a GPU, which has other invocations to turn to
  * while it waits, and two neighbours of a row on a CPU, whose lanes have long chains of dependent operations and else
- * nothing to fill the gaps with. `real` is a number per texel, `reals` one per texel for each of the two sides of a
+ * nothing to fill the gaps with: VKAO_SIDE_BY_SIDE. `real` is a number per texel, `reals` one per texel for each of the two sides of a
  * slice: first those of the side along O, then those of the other. */
 #ifndef VKAO_LANES_GLSL_
 #define VKAO_LANES_GLSL_
 
-#ifdef VKAO_BUFFERS
+#if defined(VKAO_BUFFERS) && defined(VKAO_SIDE_BY_SIDE)
 #define real vec2
 #define reals vec4
 #define whole ivec2
@@ -15,6 +15,11 @@
 #define bools bvec4
 const int TEXELS = VKAO_SSAO_TEXELS;
 const real BESIDE = vec2(0.0, 1.0); /* x of the texels, from the first one's */
+
+int lane(whole v, int i)
+{
+    return v[i];
+}
 
 real join(float of_texels[TEXELS])
 {
@@ -24,6 +29,12 @@ real join(float of_texels[TEXELS])
 float lane(real v, int i)
 {
     return v[i];
+}
+
+/* Bytes into a word. */
+int pack_codes(whole codes)
+{
+    return codes.x | codes.y << 8;
 }
 
 real first_side(reals v)
@@ -54,6 +65,11 @@ bvec2 above(real a, real b)
 const int TEXELS = 1;
 const real BESIDE = 0.0;
 
+int lane(whole v, int i)
+{
+    return v;
+}
+
 real join(float of_texels[TEXELS])
 {
     return of_texels[0];
@@ -62,6 +78,11 @@ real join(float of_texels[TEXELS])
 float lane(real v, int i)
 {
     return v;
+}
+
+int pack_codes(whole codes)
+{
+    return codes;
 }
 
 real first_side(reals v)
@@ -102,6 +123,22 @@ reals greater(reals a, reals b)
 reals lesser(reals a, reals b)
 {
     return mix(b, a, lessThan(a, b));
+}
+
+/* The nearest integer, as a number and with ROUND_BITS as an integer. A number below 2^22 plus ROUND has no room for a
+ * fraction: its last bits are that integer. Whatever larger ones become, infinities and NaN too, lies in no image. */
+struct Rounded {
+    real number;
+    whole bits;
+};
+
+const float ROUND = 12582912.0;
+const int ROUND_BITS = 0x4b400000;
+
+Rounded rounded(real v)
+{
+    precise real moved = v + ROUND, number = moved - ROUND;
+    return Rounded(number, floatBitsToInt(moved));
 }
 
 /* Vectors of the texels. */

@@ -47,15 +47,16 @@
  * gathers and not lane by lane, and as storage buffers, to which it writes faster. */
 #define VKAO_BINDING_Z 16            /* r32f */
 #define VKAO_BINDING_Z4 17           /* rgba32f */
-#define VKAO_BINDING_PACKED_WRITE 18 /* r16ui: VKAO_SSAO_TEXELS codes */
-#define VKAO_BINDING_PACKED_READ 19  /* r32ui: 4 codes */
-#define VKAO_BINDING_HALFWAY_READ2 20 /* r32ui: 2 fine codes */
-#define VKAO_BINDING_BLURRED_READ2 21 /* r32ui: the same */
-#define VKAO_BINDING_Z_WORDS 22
-#define VKAO_BINDING_HALFWAY_WORDS 23
-#define VKAO_BINDING_BLURRED_WORDS 24
-#define VKAO_BINDING_STAGED_WORDS 25
-#define VKAO_BINDING_COUNT 26
+#define VKAO_BINDING_PACKED_WRITE 18  /* r8ui: a code */
+#define VKAO_BINDING_PACKED_WRITE2 19 /* r16ui: 2 codes */
+#define VKAO_BINDING_PACKED_READ4 20  /* r32ui: 4 codes */
+#define VKAO_BINDING_HALFWAY_READ2 21 /* r32ui: 2 fine codes */
+#define VKAO_BINDING_BLURRED_READ2 22 /* r32ui: the same */
+#define VKAO_BINDING_Z_WORDS 23
+#define VKAO_BINDING_HALFWAY_WORDS 24
+#define VKAO_BINDING_BLURRED_WORDS 25
+#define VKAO_BINDING_STAGED_WORDS 26
+#define VKAO_BINDING_COUNT 27
 
 /* Specialization constants. Counts that are 0, and flags that are VKAO_FLAGS_UNKNOWN, come from the push constants:
  * that is the general pipeline of a stage. A variant has them all, so that loops unroll and branches go. */
@@ -115,7 +116,7 @@
 
 /* Texels per invocation in the shaders for buffers. */
 #define VKAO_PREPARE_WIDTH 4
-#define VKAO_SSAO_TEXELS 2
+#define VKAO_SSAO_TEXELS 2 /* of the methods that are VKAO_SIDE_BY_SIDE */
 #define VKAO_BLUR_X_WIDTH 8
 #define VKAO_BLUR_Y_WIDTH 4
 #define VKAO_BLUR_Y_HEIGHT 8

@@ -2,9 +2,7 @@
  *
  * The frame of every SSAO method: TEXELS of the rect per invocation, background exactly 1. The includer defines
  *     Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
- * for them, texel being the first. A method that does not profit from shading them side by side defines VKAO_APART and
- *     vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
- * whose w is visibility and whose xyz, if BENT_NORMALS, is the mean visible direction, of any length. */
+ * for them, texel being the first, and VKAO_SIDE_BY_SIDE if it profits from more than one. */
 #ifndef VKAO_SSAO_GLSL_
 #define VKAO_SSAO_GLSL_
 
@@ -18,12 +16,14 @@ layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 #endif
 layout(push_constant) uniform Block { vkao_ssao_block params; };
 layout(binding = VKAO_BINDING_NOISY_WRITE) uniform writeonly image2D noisy_image;
-#ifdef VKAO_BUFFERS
-layout(binding = VKAO_BINDING_PACKED_WRITE) uniform writeonly uimageBuffer packed_texels;
-#endif
 #define VKAO_UNPROJECT
 #include "lanes.glsl"
+#ifdef VKAO_BUFFERS
+layout(binding = TEXELS == 1 ? VKAO_BINDING_PACKED_WRITE : VKAO_BINDING_PACKED_WRITE2) uniform writeonly
+    uimageBuffer packed_codes;
+#endif
 #include "view.glsl"
+#include "normals.glsl"
 #include "noise.glsl"
 
 struct Visibility {
@@ -47,35 +47,35 @@ uint sample_count()
 }
 
 /* Any two unit vectors that make an orthonormal basis with n (Duff et al., JCGT 6(1), 2017). */
-void tangents(vec3 n, out vec3 t, out vec3 b)
+void tangents(Real3 n, out Real3 t, out Real3 b)
 {
-    float s = n.z >= 0.0 ? 1.0 : -1.0;
-    float a = -1.0 / (s + n.z);
-    float c = n.x * n.y * a;
-    t = vec3(1.0 + s * n.x * n.x * a, s * c, -s * n.x);
-    b = vec3(c, s + n.y * n.y * a, -n.y);
+    real s = choose(real(-1.0), real(1.0), above(n.z, real(0.0)));
+    real a = -1.0 / (s + n.z);
+    real c = n.x * n.y * a;
+    t = Real3(1.0 + s * n.x * n.x * a, s * c, -s * n.x);
+    b = Real3(c, s + n.y * n.y * a, -n.y);
 }
 
 /* How far a view z may be off through the precision of the depth that it came from. */
-float depth_error(float z)
+real depth_error(real z)
 {
-    float line = params.depth_error.x + params.depth_error.y * z;
+    real line = params.depth_error.x + params.depth_error.y * z;
     return orthographic() ? line : z * line;
 }
 
 /* Length of a point of the kernel, u uniform in [0,1). A point at length l is hidden if its ray hits anything within l,
  * so the distribution of l carries the falloff: P(l > t) = 1 - (t/R)^2 for l = R sqrt(u), the smooth one. For the
  * threshold a ray counts alike wherever it hits, so the lengths crowd towards R. */
-float point_length(float u, float radius)
+real point_length(real u, float radius)
 {
     return radius * (flag(VKAO_FLAG_THRESHOLD) ? sqrt(sqrt(u)) : sqrt(u));
 }
 
 /* How much an occluder counts whose view z is dz off the shaded point's: all within the radius, then less and less, as
  * the surface in front need not reach down to the point behind it. */
-float range_weight(float dz, float radius)
+real range_weight(real dz, float radius)
 {
-    float t = radius / max(abs(dz), radius);
+    real t = radius / max(abs(dz), real(radius));
     return t * t * (3.0 - 2.0 * t);
 }
 
@@ -85,13 +85,6 @@ float range_weight(float dz, float radius)
 bool stands_in_front(vec3 occluder, vec3 position, vec3 normal, float point_height)
 {
     return dot(normal, occluder - position) > point_height;
-}
-
-/* How far a view z may be off through the precision of the depth that it came from. */
-real depth_errors(real z)
-{
-    real line = params.depth_error.x + params.depth_error.y * z;
-    return orthographic() ? line : z * line;
 }
 
 real interleaved_gradient_noise(ivec2 texel)
@@ -110,31 +103,15 @@ real r2_noise(ivec2 texel)
     return join(u);
 }
 
-#ifdef VKAO_APART
-vec4 visibility(ivec2 texel, vec3 position, vec3 normal);
-
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
-{
-    vec3 bent[TEXELS];
-    float open[TEXELS];
-    [[unroll]] for (int i = 0; i < TEXELS; ++i) {
-        vec4 v = visibility(texel + ivec2(i, 0), lane3(position, i), lane3(normal, i));
-        bent[i] = v.xyz;
-        open[i] = v.w;
-    }
-    return Visibility(join3(bent), join(open));
-}
-#else
 Visibility visibility(ivec2 texel, Real3 position, Real3 normal);
-#endif
 
 void store_noisy(ivec2 texel, Visibility v)
 {
 #ifdef VKAO_BUFFERS
     /* All of the texels at once, those beyond the rect as well: what they are does not depend on it. */
     if (flag(VKAO_FLAG_PACKED)) {
-        ivec2 code = ivec2(clamp((v.open + VKAO_CODE_OFFSET) * VKAO_CODE_SCALE, 0.0, 255.0) + 0.5);
-        imageStore(packed_texels, (buffer_row(texel.y) + texel.x) >> 1, uvec4(code.x | code.y << 8));
+        whole code = whole(clamp((v.open + VKAO_CODE_OFFSET) * VKAO_CODE_SCALE, 0.0, 255.0) + 0.5);
+        imageStore(packed_codes, (buffer_row(texel.y) + texel.x) / TEXELS, uvec4(pack_codes(code)));
         return;
     }
 #endif
@@ -146,30 +123,14 @@ void store_noisy(ivec2 texel, Visibility v)
     }
 }
 
-/* The texel whose centre is nearest, of any point within the valid texels; what lies outside stays there. Cutting off
- * the fraction is cheaper than rounding down, and the same from -1 on, where the border begins. */
-ivec2 nearest_texel(vec2 point)
-{
-    return ivec2(point + 1.5) - 1;
-}
-
 void main()
 {
     ivec2 low = unpack_texel(params.rect.x), high = unpack_texel(params.rect.y);
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy) * ivec2(TEXELS, 1) + ivec2(low.x & ~(TEXELS - 1), low.y);
     /* Straight on, also where there is nothing to do: a driver in software runs both sides of a branch anyway. */
-    float view_z[TEXELS];
-    vec3 normals[TEXELS];
-    [[unroll]] for (int i = 0; i < TEXELS; ++i) {
-        ivec2 at = texel + ivec2(i, 0);
-        view_z[i] = load_view_z(at);
-        normals[i] = view_normal(at, view_position(vec2(at), view_z[i]));
-    }
-    real z = join(view_z);
-    real x = (float(texel.x) + BESIDE) * params.unproject.x + params.unproject.z;
-    real y = real(float(texel.y) * params.unproject.y + params.unproject.w);
-    Real3 position = orthographic() ? Real3(x, y, z) : Real3(x * z, y * z, z);
-    Visibility v = visibility(texel, position, join3(normals));
+    real z = load_view_zs(texel);
+    Real3 position = view_positions(texel, z);
+    Visibility v = visibility(texel, position, view_normals(texel, position));
     v.open = choose(real(1.0), v.open, above(z, real(0.0)));
     if (BENT_NORMALS) {
         v.bent.x = choose(real(0.0), v.bent.x, above(z, real(0.0)));

@@ -11,6 +11,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
+#define VKAO_SIDE_BY_SIDE
 #include "ssao.glsl"
 #include "horizon.glsl"
 
@@ -28,7 +29,7 @@ reals horizon_cosines(Slice s, ivec2 texel, real jitter)
         next = step_offset(s, t + 1u, jitter, radius);
         if (STEPS == 0u || t + 1u < STEPS)
             next_z = load_sides(texel, next);
-        slice_points(s, offset.texels, z, x, y);
+        slice_points(s, offset, z, x, y);
         reals d2 = x * x + y * y;
         reals weight = mix(reals(0.0), falloff_weight(d2), greaterThan(z, reals(0.0)));
         horizon = greater(horizon, low + weight * (y * inversesqrt(d2) - open));

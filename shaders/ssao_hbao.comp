@@ -11,6 +11,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
+#define VKAO_SIDE_BY_SIDE
 #include "ssao.glsl"
 #include "horizon.glsl"
 
@@ -23,7 +24,7 @@ real occlusion(Slice s, ivec2 texel, real jitter)
     [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
         Offset offset = step_offset(s, t, jitter, radius);
         reals z = load_sides(texel, offset), x, y;
-        slice_points(s, offset.texels, z, x, y);
+        slice_points(s, offset, z, x, y);
         reals d2 = x * x + y * y;
         reals weight = mix(reals(0.0), falloff_weight(d2), greaterThan(z, reals(0.0)));
         reals elevation = (along * x + facing * y) * inversesqrt(d2);

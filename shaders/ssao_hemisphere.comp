@@ -12,45 +12,78 @@
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
-#define VKAO_APART
+#define VKAO_SIDE_BY_SIDE
 #include "ssao.glsl"
 
 /* Directions on their way to texels: what a step in view space adds to (texel, 1) * z, in perspective, or (texel, z). A
  * point is projected by one division, without going through view space. */
-vec3 to_texels(vec3 direction)
+Real3 to_texels(Real3 direction)
 {
-    vec2 xy = orthographic() ? direction.xy : direction.xy - params.unproject.zw * direction.z;
-    return vec3(xy * params.inverse_unproject, direction.z);
+    real x = direction.x, y = direction.y;
+    if (!orthographic()) {
+        x -= params.unproject.z * direction.z;
+        y -= params.unproject.w * direction.z;
+    }
+    return Real3(x * params.inverse_unproject.x, y * params.inverse_unproject.y, direction.z);
 }
 
-vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
+Real3 weighted(Real3 a, real wa, Real3 b, real wb)
 {
-    float radius = params.normal_x.w, bias = params.normal_y.w + depth_error(position.z);
-    vec3 t, b;
+    return plus(times(a, wa), times(b, wb));
+}
+
+/* View z of the texels nearest to some points. */
+real load_rounded(Rounded x, Rounded y)
+{
+    ivec2 to_border = border_texel(ivec2(-ROUND_BITS));
+    whole at_x = x.bits + to_border.x, at_y = y.bits + to_border.y;
+    float z[TEXELS];
+    [[unroll]] for (int i = 0; i < TEXELS; ++i)
+        z[i] = border_view_z(ivec2(lane(at_x, i), lane(at_y, i)));
+    return join(z);
+}
+
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
+{
+    float radius = params.normal_x.w;
+    Real3 t, b;
     tangents(normal, t, b);
     /* The kernel is turned with its frame: the directions in it are constants then. */
-    Real2 turns = full_turn(real(interleaved_gradient_noise(uvec2(texel), params.noise_index)));
-    vec2 turn = vec2(lane(turns.x, 0), lane(turns.y, 0));
-    float shift = r2_noise(uvec2(texel), params.noise_index);
-    vec3 across = to_texels(turn.x * t + turn.y * b), along = to_texels(turn.x * b - turn.y * t);
-    vec3 up = to_texels(normal);
-    vec3 center = orthographic() ? vec3(texel, position.z) : vec3(vec2(texel) * position.z, position.z);
+    Real2 turn = full_turn(interleaved_gradient_noise(texel));
+    real shift = r2_noise(texel);
+    Real3 across = to_texels(weighted(t, turn.x, b, turn.y)), along = to_texels(weighted(b, turn.x, t, -turn.y));
+    Real3 up = to_texels(normal);
+    real center_x = float(texel.x) + BESIDE, center_y = real(float(texel.y));
+    if (!orthographic()) {
+        center_x *= position.z;
+        center_y *= position.z;
+    }
     /* stands_in_front, in texels: the height of an occluder is dot(normal, occluder) - dot(normal, position). */
-    vec2 slope = normal.xy * params.unproject.xy;
-    float level = dot(normal.xy, params.unproject.zw) + (orthographic() ? 0.0 : normal.z);
-    float least = dot(normal, position) + bias;
-    float blocked = 0.0;
+    real slope_x = normal.x * params.unproject.x, slope_y = normal.y * params.unproject.y;
+    real level = normal.x * params.unproject.z + normal.y * params.unproject.w;
+    level += orthographic() ? real(0.0) : normal.z;
+    real least = dot3(normal, position) + params.normal_y.w + depth_error(position.z);
+    real blocked = real(0.0);
     [[unroll]] for (uint k = 0u; k < sample_count(); ++k) {
         float r2 = (float(k) + 0.5) / float(sample_count()), r = sqrt(r2), height = sqrt(1.0 - r2);
         float angle = float(k) * GOLDEN_ANGLE;
-        float len = point_length(fract(golden_sequence(k) + shift), radius);
-        vec3 point = center + len * (r * cos(angle) * across + r * sin(angle) * along + height * up);
-        ivec2 at = nearest_texel(orthographic() ? point.xy : point.xy * (1.0 / point.z));
-        float scene_z = load_view_z(at);
-        float over = dot(slope, vec2(at)) + level;
+        float a = r * cos(angle), c = r * sin(angle);
+        real len = point_length(fract(golden_sequence(k) + shift), radius);
+        real x = center_x + len * (a * across.x + c * along.x + height * up.x);
+        real y = center_y + len * (a * across.y + c * along.y + height * up.y);
+        real z = position.z + len * (a * across.z + c * along.z + height * up.z);
+        if (!orthographic()) {
+            real inverse = 1.0 / z;
+            x *= inverse;
+            y *= inverse;
+        }
+        Rounded at_x = rounded(x), at_y = rounded(y);
+        real scene_z = load_rounded(at_x, at_y);
+        real over = slope_x * at_x.number + slope_y * at_y.number + level;
         over = orthographic() ? over + normal.z * scene_z : over * scene_z;
-        bool hit = min(scene_z, point.z) > 0.0 && over > len * height + least;
-        blocked += hit ? range_weight(scene_z - position.z, radius) : 0.0;
+        real weight = range_weight(scene_z - position.z, radius);
+        weight = choose(real(0.0), weight, above(over, len * height + least));
+        blocked += choose(real(0.0), weight, above(min(scene_z, z), real(0.0)));
     }
-    return vec4(vec3(0.0), 1.0 - blocked / float(sample_count()));
+    return Visibility(Real3(real(0.0), real(0.0), real(0.0)), 1.0 - blocked / float(sample_count()));
 }

@@ -10,7 +10,6 @@
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
-#define VKAO_APART
 #include "ssao.glsl"
 #include "horizon.glsl"
 
@@ -34,29 +33,30 @@ float first_hit(vec3 position, vec3 normal, vec3 direction, float jitter)
         float lateral = length(v - dot(v, to_eye) * to_eye);
         float behind = dot(to_eye, surface - point);
         float depth = params.thickness_base * radius + params.thickness_slope * min(lateral, radius);
-        if (dot(normal, surface - point) > bias &&
-            behind > 0.0 && behind < depth)
+        if (dot(normal, surface - point) > bias && behind > 0.0 && behind < depth) {
             d *= params.inverse_radius;
             return falloff_weight(reals(d * d)).x;
+        }
     }
     return 0.0;
 }
 
-vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
 {
-    vec2 noise = vec2(interleaved_gradient_noise(uvec2(texel), params.noise_index),
-                      r2_noise(uvec2(texel), params.noise_index));
-    vec3 t, b;
+    float turn = TWO_PI * interleaved_gradient_noise(texel), shift = r2_noise(texel);
+    Real3 t, b;
     tangents(normal, t, b);
+    vec3 p = lane3(position, 0), n = lane3(normal, 0);
     vec3 bent = vec3(0.0);
     float lost = 0.0;
     for (uint k = 0u; k < sample_count(); ++k) {
-        float r2 = (float(k) + noise.y) / float(sample_count());
-        float angle = float(k) * GOLDEN_ANGLE + TWO_PI * noise.x;
-        vec3 direction = sqrt(r2) * (cos(angle) * t + sin(angle) * b) + sqrt(1.0 - r2) * normal;
-        float hit = first_hit(position, normal, direction, fract(golden_sequence(k) + noise.y));
+        float r2 = (float(k) + shift) / float(sample_count());
+        float angle = float(k) * GOLDEN_ANGLE + turn;
+        vec3 across = cos(angle) * lane3(t, 0) + sin(angle) * lane3(b, 0);
+        vec3 direction = sqrt(r2) * across + sqrt(1.0 - r2) * n;
+        float hit = first_hit(p, n, direction, fract(golden_sequence(k) + shift));
         lost += hit;
         bent += (1.0 - hit) * direction;
     }
-    return vec4(bent, 1.0 - lost / float(sample_count()));
+    return Visibility(Real3(bent.x, bent.y, bent.z), 1.0 - lost / float(sample_count()));
 }

@@ -16,7 +16,6 @@
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
-#define VKAO_APART
 #include "ssao.glsl"
 
 /* Uniform in the unit ball from three numbers in [0,1). */
@@ -36,7 +35,7 @@ vec3 table_point(uint k)
 float literal_blocking(ivec2 texel, vec3 position)
 {
     float radius = params.normal_x.w, scale = params.normal_z.w;
-    float turn = TWO_PI * interleaved_gradient_noise(uvec2(texel), params.noise_index);
+    float turn = TWO_PI * interleaved_gradient_noise(texel);
     vec2 rotation = vec2(cos(turn), sin(turn));
     float factor = 0.0;
     for (uint k = 0u; k < sample_count(); ++k) {
@@ -65,8 +64,8 @@ float hidden(vec3 position, vec3 normal, vec3 offset)
 
 float rescaled_blocking(ivec2 texel, vec3 position, vec3 normal)
 {
-    float turn = TWO_PI * interleaved_gradient_noise(uvec2(texel), params.noise_index);
-    float shift = r2_noise(uvec2(texel), params.noise_index);
+    float turn = TWO_PI * interleaved_gradient_noise(texel);
+    float shift = r2_noise(texel);
     uint pairs = (sample_count() + 1u) / 2u;
     float blocked = 0.0;
     for (uint k = 0u; k < pairs; ++k) {
@@ -80,9 +79,11 @@ float rescaled_blocking(ivec2 texel, vec3 position, vec3 normal)
     return blocked / float(2u * pairs);
 }
 
-vec4 visibility(ivec2 texel, vec3 position, vec3 normal)
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
 {
-    if (!flag(VKAO_FLAG_SPHERE_LITERAL))
-        return vec4(vec3(0.0), min(1.0, 2.0 * (1.0 - rescaled_blocking(texel, position, normal))));
-    return vec4(vec3(0.0), 1.0 - literal_blocking(texel, position));
+    vec3 p = lane3(position, 0);
+    float open = flag(VKAO_FLAG_SPHERE_LITERAL)
+                     ? 1.0 - literal_blocking(texel, p)
+                     : min(1.0, 2.0 * (1.0 - rescaled_blocking(texel, p, lane3(normal, 0))));
+    return Visibility(Real3(0.0, 0.0, 0.0), open);
 }

@@ -21,6 +21,7 @@
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
+#define VKAO_SIDE_BY_SIDE
 #include "ssao.glsl"
 #include "horizon.glsl"
 
@@ -86,7 +87,7 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter)
         next = step_offset(s, t + 1u, jitter, reach);
         if (STEPS == 0u || t + 1u < STEPS)
             next_z = load_sides(texel, next);
-        slice_points(s, offset.texels, z, x, y);
+        slice_points(s, offset, z, x, y);
         bools seen = greaterThan(z, reals(0.0));
         reals gap = x - last_x, height = y + x * tangent;
         bools joined = lessThan(abs(height - last_height), VKAO_VBAO_JOIN * abs(gap));

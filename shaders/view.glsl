@@ -108,54 +108,12 @@ vec3 direction_to_eye(vec3 position)
     return orthographic() ? vec3(0.0, 0.0, -1.0) : -normalize(position);
 }
 
-/* Surface tangent along one screen axis. Of the two neighbour pairs, the one whose straight continuation meets the
- * centre better lies on the centre's surface. 1/z is what continues straight on screen in perspective; both misses are
- * fractions there, compared without dividing. */
-vec3 tangent_from_depth(ivec2 texel, ivec2 axis, vec3 center)
-{
-    vec4 z = vec4(load_view_z(texel - 2 * axis), load_view_z(texel - axis), load_view_z(texel + axis),
-                  load_view_z(texel + 2 * axis));
-    vec2 far_z = z.xw, near_z = z.yz;
-    vec2 line = near_z - center.z, curve = 2.0 * near_z - far_z - center.z;
-    vec2 line_scale = vec2(1.0), curve_scale = vec2(1.0);
-    if (!orthographic()) {
-        vec2 n = near_z / center.z, f = far_z / center.z;
-        line = 1.0 - n;
-        line_scale = n;
-        curve = 2.0 * f - n * (1.0 + f);
-        curve_scale = n * f;
-    }
-    /* Without a second neighbour the first one alone decides, by how far it is off. */
-    bvec2 curved = greaterThan(far_z, vec2(0.0)), there = greaterThan(near_z, vec2(0.0));
-    vec2 miss = abs(mix(line, curve, curved)), scale = mix(line_scale, curve_scale, curved);
-    bool before = there.x && (!there.y || miss.x * scale.y < miss.y * scale.x);
-    float side = before ? -1.0 : 1.0, side_z = before ? near_z.x : there.y ? near_z.y : center.z;
-    return side * (view_position(vec2(texel) + side * vec2(axis), side_z) - center);
-}
-
-vec3 normal_from_depth(ivec2 texel, vec3 center)
-{
-    vec3 n = cross(tangent_from_depth(texel, ivec2(1, 0), center), tangent_from_depth(texel, ivec2(0, 1), center));
-    return normalize(n);
-}
-
 /* Stored directions to view space. */
 vec3 to_view(vec3 stored)
 {
     if (flag(VKAO_FLAG_NORMALS_ALIGNED))
         return vec3(params.normal_x.x, params.normal_y.y, params.normal_z.z) * stored;
     return vec3(dot(params.normal_x.xyz, stored), dot(params.normal_y.xyz, stored), dot(params.normal_z.xyz, stored));
-}
-
-/* Unit view-space normal that faces the eye, of a texel of the grid. */
-vec3 view_normal(ivec2 texel, vec3 center)
-{
-    vec3 stored = decode_normal(texel << grid_shift());
-    vec3 n = to_view(stored);
-    /* Always computed, seldom taken: costs a driver in software less than the branch. */
-    vec3 own = normal_from_depth(texel, center);
-    n = dot(n, n) > 0.0 ? n : own;
-    return (orthographic() ? n.z : dot(n, center)) > 0.0 ? -n : n;
 }
 
 #endif
