@@ -148,6 +148,8 @@ VkDescriptorType binding_type(uint32_t binding)
     case VKAO_BINDING_HALFWAY_WORDS:
     case VKAO_BINDING_BLURRED_WORDS:
     case VKAO_BINDING_STAGED_WORDS:
+    case VKAO_BINDING_PACKED_WORDS:
+    case VKAO_BINDING_TILES:
         return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     default:
         return scratch_view(binding) ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER

@@ -35,6 +35,7 @@
 #include "ssao_vbao.comp.h"
 #include "ssao_vbao_buf.comp.h"
 #include "ssao_vbao_z16.comp.h"
+#include "tiles_buf.comp.h"
 #include "upsample.comp.h"
 #include "upsample_buf.comp.h"
 #include "upsample_buffers_buf.comp.h"
@@ -83,6 +84,11 @@ static const struct shader shaders[PIPELINE_COUNT] = {
     [PIPELINE_BLUR_X] = {SHADER(blur), VK_FALSE, true, ONE_TEXEL},
     [PIPELINE_BLUR_Y] = {SHADER(blur), VK_TRUE, true, ONE_TEXEL},
     [PIPELINE_UPSAMPLE] = {SHADER(upsample), VK_FALSE, true, ONE_TEXEL},
+    [PIPELINE_TILES] = {"tiles",
+                        {[BUILD_BUFFERS] = CODE(tiles_buf_comp)},
+                        VK_FALSE,
+                        true,
+                        ONE_TEXEL},
     [PIPELINE_PACKED_BLUR_X] = {"blur_x",
                                 {[BUILD_BUFFERS] = CODE(blur_x_buffers_buf_comp)},
                                 VK_FALSE,
@@ -124,7 +130,7 @@ static_assert(sizeof(struct pipeline_key) ==
 
 VkExtent2D pipeline_group(const vkao_context *ctx, enum pipeline which)
 {
-    return ctx->buffers && which >= PIPELINE_SSAO
+    return ctx->buffers && (which >= PIPELINE_SSAO || which == PIPELINE_TILES)
                ? (VkExtent2D){VKAO_ROW_GROUP_WIDTH, 1}
                : (VkExtent2D){VKAO_GROUP_WIDTH, VKAO_GROUP_HEIGHT};
 }
@@ -142,6 +148,8 @@ static uint32_t stage_flags(enum pipeline which)
                           VKAO_FLAG_PHYSICAL,
                    finish = blur | ENUM_FLAGS(VKAO_FLAG_STAGED_SHIFT, 3);
     switch (which) {
+    case PIPELINE_TILES:
+        return VKAO_FLAG_PACKED;
     case PIPELINE_PREPARE:
         return depth | VKAO_FLAG_HALF_RESOLUTION;
     case PIPELINE_BLUR_X:
@@ -337,7 +345,7 @@ static vkao_result add_variant(vkao_context *ctx, VkPipelineCache cache,
 }
 
 /* Of one variant, at most. */
-enum { VARIANT_STAGES = 5 };
+enum { VARIANT_STAGES = 6 };
 
 /* What a variant asks for, stage by stage. */
 struct variant_plan {
@@ -380,20 +388,23 @@ static vkao_result plan_variant(const vkao_context *ctx, const struct vkao_logge
     const uint32_t way = way_flags(packed, packed ? vk_format_staged(info.staged_ao) : 0);
     const enum pipeline stages[VARIANT_STAGES] = {
         PIPELINE_PREPARE,
+        PIPELINE_TILES,
         (enum pipeline)(PIPELINE_SSAO + (int)ssao.method),
         packed ? PIPELINE_PACKED_BLUR_X : PIPELINE_BLUR_X,
         packed ? PIPELINE_PACKED_BLUR_Y : PIPELINE_BLUR_Y,
         packed ? PIPELINE_PACKED_UPSAMPLE : PIPELINE_UPSAMPLE,
     };
     view.grid_shift = info.half_resolution;
-    plan->count = !has_blur ? 2 : info.half_resolution ? 5 : 4;
-    for (size_t i = 0; i < plan->count; ++i) {
+    plan->count = 0;
+    for (size_t i = 0; i < (!has_blur ? 3 : info.half_resolution ? 6 : 5); ++i) {
+        if (!shaders[stages[i]].builds[context_build(ctx)].code)
+            continue;
         /* Upsampling is of the image's own grid. */
         struct view_constants grid = view;
         if (stages[i] == PIPELINE_UPSAMPLE || stages[i] == PIPELINE_PACKED_UPSAMPLE)
             grid.grid_shift = 0;
         const uint32_t flags = recording_flags(&grid, way, &ssao, has_blur);
-        plan->stages[i] = (struct pipeline_variant){
+        plan->stages[plan->count++] = (struct pipeline_variant){
             .which = stages[i],
             .bent = info.bent_normals && shaders[stages[i]].bent,
             .key = pipeline_key(stages[i], flags, &ssao, has_blur),
@@ -481,6 +492,7 @@ vkao_result pipelines_check(const vkao_frame *frame, const struct view_constants
         const struct view_constants *grid;
     } stages[] = {
         {true, PIPELINE_PREPARE, &grid},
+        {ssao && frame->ctx->buffers, PIPELINE_TILES, &grid},
         {ssao, ssao ? (enum pipeline)(PIPELINE_SSAO + (int)ssao->method) : PIPELINE_SSAO, &grid},
         {blur, packed ? PIPELINE_PACKED_BLUR_X : PIPELINE_BLUR_X, &grid},
         {blur, packed ? PIPELINE_PACKED_BLUR_Y : PIPELINE_BLUR_Y, &grid},

@@ -14,6 +14,7 @@ enum pipeline {
     PIPELINE_BLUR_X,
     PIPELINE_BLUR_Y,
     PIPELINE_UPSAMPLE,
+    PIPELINE_TILES, /* of SSAO with scratch in buffers */
     PIPELINE_PACKED_BLUR_X, /* the same for AO in buffers */
     PIPELINE_PACKED_BLUR_Y,
     PIPELINE_PACKED_UPSAMPLE,

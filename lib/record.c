@@ -71,6 +71,11 @@ void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline
                                   &frame->set, 0, NULL);
     ctx->vk.CmdPushConstants(cmd, ctx->pipeline_layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
                              (uint32_t)block_bytes, block);
+    if (ctx->buffers && which >= PIPELINE_SSAO) {
+        const struct scratch_buffer *buffer = &frame->scratch.buffer;
+        ctx->vk.CmdDispatchIndirect(cmd, buffer->buffer, buffer->parts[PART_TILES].offset);
+        return;
+    }
     /* Invocations begin at multiples of their width, as words of a buffer do. */
     const VkExtent2D texels = pipeline_texels(ctx, which), group = pipeline_group(ctx, which);
     const uint32_t width = texels.width * group.width, height = texels.height * group.height;
@@ -79,31 +84,35 @@ void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline
                         (rect.y1 - rect.y0 + height - 1) / height, 1);
 }
 
-void record_barrier(const vkao_frame *frame, VkCommandBuffer cmd)
+void record_stages(const vkao_frame *frame, VkCommandBuffer cmd, enum stages before,
+                   enum stages after)
 {
+    static const struct {
+        VkPipelineStageFlags stages;
+        VkAccessFlags writes, all;
+    } what[] = {
+        [STAGES_COMPUTE] = {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_WRITE_BIT,
+                            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT},
+        [STAGES_TRANSFER] = {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT,
+                             VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT},
+        [STAGES_INDIRECT] = {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT |
+                                 VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+                             VK_ACCESS_SHADER_WRITE_BIT,
+                             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
+                                 VK_ACCESS_INDIRECT_COMMAND_READ_BIT},
+    };
     const VkMemoryBarrier barrier = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-        .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
-        .dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
+        .srcAccessMask = what[before].writes,
+        .dstAccessMask = what[after].all,
     };
-    frame->ctx->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                                      VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1, &barrier, 0, NULL,
-                                      0, NULL);
+    frame->ctx->vk.CmdPipelineBarrier(cmd, what[before].stages, what[after].stages, 0, 1, &barrier,
+                                      0, NULL, 0, NULL);
 }
 
-static void transfer_barrier(const vkao_frame *frame, VkCommandBuffer cmd, bool before)
+void record_barrier(const vkao_frame *frame, VkCommandBuffer cmd)
 {
-    const VkPipelineStageFlags compute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                               transfer = VK_PIPELINE_STAGE_TRANSFER_BIT;
-    const VkAccessFlags shader = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
-    const VkMemoryBarrier barrier = {
-        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-        .srcAccessMask = before ? VK_ACCESS_SHADER_WRITE_BIT : VK_ACCESS_TRANSFER_WRITE_BIT,
-        .dstAccessMask =
-            before ? VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT : shader,
-    };
-    frame->ctx->vk.CmdPipelineBarrier(cmd, before ? compute : transfer, before ? transfer : compute,
-                                      0, 1, &barrier, 0, NULL, 0, NULL);
+    record_stages(frame, cmd, STAGES_COMPUTE, STAGES_COMPUTE);
 }
 
 void record_copy(const vkao_frame *frame, VkCommandBuffer cmd, struct vkao_rect strip)
@@ -117,10 +126,10 @@ void record_copy(const vkao_frame *frame, VkCommandBuffer cmd, struct vkao_rect 
         .imageOffset = {(int32_t)strip.x0, (int32_t)strip.y0, 0},
         .imageExtent = {strip.x1 - strip.x0, strip.y1 - strip.y0, 1},
     };
-    transfer_barrier(frame, cmd, true);
+    record_stages(frame, cmd, STAGES_COMPUTE, STAGES_TRANSFER);
     frame->ctx->vk.CmdCopyBufferToImage(cmd, buffer->buffer, frame->images.ao_image,
                                         VK_IMAGE_LAYOUT_GENERAL, 1, &region);
-    transfer_barrier(frame, cmd, false);
+    record_stages(frame, cmd, STAGES_TRANSFER, STAGES_COMPUTE);
 }
 
 void record_label_begin(const vkao_frame *frame, VkCommandBuffer cmd, const char *name)

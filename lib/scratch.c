@@ -76,6 +76,10 @@ static void plan_buffer(const vkao_frame *frame, struct scratch_buffer *buffer)
     buffer->stride = (grid.width + window - 1) / window * window + 2 * VKAO_BUFFER_PAD;
     const VkDeviceSize stride = buffer->stride;
     buffer->parts[PART_VIEW_Z].bytes = stride * (grid.height + 2 * VKAO_VIEW_Z_BORDER) * 4;
+    /* A rect may begin within a tile of this many at most. */
+    const VkDeviceSize columns = (grid.width + 3) / VKAO_ROW_GROUP_WIDTH + 1,
+                       rows = (grid.height + VKAO_TILE_HEIGHT - 1) / VKAO_TILE_HEIGHT;
+    buffer->parts[PART_TILES].bytes = sizeof(struct vkao_tiles_head) + columns * rows * 4;
     /* Shaders name these whether they are used or not. */
     buffer->parts[PART_PACKED].bytes = buffer->parts[PART_BLURRED].bytes =
         buffer->parts[PART_STAGED].bytes = PART_ALIGNMENT;
@@ -155,6 +159,8 @@ static vkao_result create_buffer(const vkao_context *ctx, struct scratch_buffer 
                                                .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                                .size = buffer->bytes,
                                                .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                                                        VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                                                        VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
                                                         VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
                                                         VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT,
                                                .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
@@ -226,6 +232,8 @@ const struct scratch_view *scratch_view(uint32_t binding)
         VIEW(HALFWAY_WORDS) = {PART_HALFWAY, VK_FORMAT_UNDEFINED},
         VIEW(BLURRED_WORDS) = {PART_BLURRED, VK_FORMAT_UNDEFINED},
         VIEW(STAGED_WORDS) = {PART_STAGED, VK_FORMAT_UNDEFINED},
+        VIEW(PACKED_WORDS) = {PART_PACKED, VK_FORMAT_UNDEFINED},
+        VIEW(TILES) = {PART_TILES, VK_FORMAT_UNDEFINED},
 #undef VIEW
     };
     return binding >= VKAO_BINDING_Z ? &views[binding - VKAO_BINDING_Z] : NULL;

@@ -25,7 +25,7 @@ struct scratch_image {
     VkDeviceSize offset;
 };
 
-enum scratch_part { PART_VIEW_Z, PART_PACKED, PART_HALFWAY, PART_BLURRED, PART_STAGED, PART_COUNT };
+enum scratch_part { PART_VIEW_Z, PART_PACKED, PART_HALFWAY, PART_BLURRED, PART_STAGED, PART_TILES, PART_COUNT };
 
 /* Bindings from VKAO_BINDING_Z on. */
 enum { SCRATCH_VIEWS = VKAO_BINDING_COUNT - VKAO_BINDING_Z };

@@ -12,8 +12,34 @@ static_assert(VKAO_GLSL_NORMALS_FROM_DEPTH == (int)VKAO_NORMALS_FROM_DEPTH &&
                   VKAO_GLSL_NORMALS_OCT_UNORM == (int)VKAO_NORMALS_OCT_UNORM,
               "params.h repeats public enums");
 
-/* Whole workgroups. */
-enum { STRIP_TEXELS = 5 * VKAO_ROW_GROUP_WIDTH * VKAO_SSAO_TEXELS };
+/* Where SSAO has work to do, into the list that its dispatch reads. */
+static void record_tiles(const vkao_frame *frame, VkCommandBuffer cmd, uint32_t flags,
+                         struct vkao_rect rect, uint32_t tile_width)
+{
+    static_assert(VKAO_STRIP_TEXELS % (VKAO_ROW_GROUP_WIDTH * VKAO_SSAO_TEXELS) == 0,
+                  "strips are of whole tiles");
+    const struct vk_table *vk = &frame->ctx->vk;
+    const struct scratch_buffer *buffer = &frame->scratch.buffer;
+    const uint32_t height = VKAO_TILE_HEIGHT, x0 = rect.x0 - rect.x0 % 4;
+    struct vkao_tiles_block block = {
+        .tiles = {(rect.x1 - x0 + tile_width - 1) / tile_width,
+                  (rect.y1 - rect.y0 + height - 1) / height},
+        .flags = flags,
+        .stride = buffer->stride,
+        .tile_width = tile_width,
+        .strip_columns = VKAO_STRIP_TEXELS / tile_width,
+    };
+    rect_pack(rect, block.rect);
+    const uint32_t strips = (block.tiles[0] + block.strip_columns - 1) / block.strip_columns;
+    const struct vkao_rect tiles = {0, 0, strips * block.strip_columns * block.tiles[1], 1};
+    const struct vkao_tiles_head none = {.group_rows = height, .one = 1};
+    record_stages(frame, cmd, STAGES_COMPUTE, STAGES_TRANSFER);
+    vk->CmdUpdateBuffer(cmd, buffer->buffer, buffer->parts[PART_TILES].offset, sizeof none, &none);
+    record_stages(frame, cmd, STAGES_TRANSFER, STAGES_COMPUTE);
+    record_dispatch(frame, cmd, PIPELINE_TILES, pipeline_key(PIPELINE_TILES, flags, NULL, NULL),
+                    &block, sizeof block, tiles);
+    record_stages(frame, cmd, STAGES_COMPUTE, STAGES_INDIRECT);
+}
 
 void record_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view,
                  const vkao_ssao_params *params, uint32_t border)
@@ -40,19 +66,17 @@ void record_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const struct view
     memcpy(block.unproject, grid.unproject, sizeof block.unproject);
     copy_normal_rows(view, block.normal_x, block.normal_y, block.normal_z);
     rect_pack(grid.valid, block.valid);
+    rect_pack(rect, block.rect);
     record_label_begin(frame, cmd, "vkao ssao");
-    record_barrier(
-        frame,
-        cmd); /* prepare wrote view z; the last blur or composite may still read what we write */
     const enum pipeline which = (enum pipeline)(PIPELINE_SSAO + (int)params->method);
     const struct pipeline_key key = pipeline_key(which, block.flags, params, NULL);
-    /* On a CPU one strip after the other, so that the texels within reach stay in its cache. */
-    const uint32_t width = frame->ctx->buffers ? STRIP_TEXELS : rect.x1 - rect.x0;
-    for (struct vkao_rect strip = rect; strip.x0 < rect.x1; strip.x0 = strip.x1) {
-        strip.x1 = rect.x1 - strip.x0 > width ? strip.x0 + width : rect.x1;
-        rect_pack(strip, block.rect);
-        record_dispatch(frame, cmd, which, key, &block, sizeof block, strip);
-    }
+    /* prepare wrote view z; the last blur or composite may still read what we write */
+    record_barrier(frame, cmd);
+    if (frame->ctx->buffers)
+        record_tiles(frame, cmd, block.flags, rect,
+                     pipeline_texels(frame->ctx, which).width *
+                         pipeline_group(frame->ctx, which).width);
+    record_dispatch(frame, cmd, which, key, &block, sizeof block, rect);
     record_label_end(frame, cmd);
 }
 

@@ -44,6 +44,8 @@
     X(CmdBindPipeline)                                                                             \
     X(CmdBindDescriptorSets)                                                                       \
     X(CmdPushConstants)                                                                            \
+    X(CmdUpdateBuffer)                                                                             \
+    X(CmdDispatchIndirect)                                                                         \
     X(CmdDispatch)                                                                                 \
     X(CmdCopyBufferToImage)
 

@@ -56,7 +56,9 @@
 #define VKAO_BINDING_HALFWAY_WORDS 24
 #define VKAO_BINDING_BLURRED_WORDS 25
 #define VKAO_BINDING_STAGED_WORDS 26
-#define VKAO_BINDING_COUNT 27
+#define VKAO_BINDING_PACKED_WORDS 27
+#define VKAO_BINDING_TILES 28        /* vkao_tiles_head, tiles */
+#define VKAO_BINDING_COUNT 29
 
 /* Specialization constants. Counts that are 0, and flags that are VKAO_FLAGS_UNKNOWN, come from the push constants:
  * that is the general pipeline of a stage. A variant has them all, so that loops unroll and branches go. */
@@ -116,7 +118,9 @@
 
 /* Texels per invocation in the shaders for buffers. */
 #define VKAO_PREPARE_WIDTH 4
-#define VKAO_SSAO_TEXELS 2 /* of the methods that are VKAO_SIDE_BY_SIDE */
+#define VKAO_TILE_HEIGHT 8    /* rows of a tile of SSAO; a group is one of its rows */
+#define VKAO_STRIP_TEXELS 640 /* width of a strip of tiles, a multiple of every group's */
+#define VKAO_SSAO_TEXELS 2    /* of the methods that are VKAO_SIDE_BY_SIDE */
 #define VKAO_BLUR_X_WIDTH 8
 #define VKAO_BLUR_Y_WIDTH 4
 #define VKAO_BLUR_Y_HEIGHT 8
@@ -188,6 +192,23 @@ struct vkao_ssao_block {
     VKAO_FLOAT(thickness_slope);
     VKAO_UINT(stride);            /* texels in a row of buffers */
     VKAO_VEC2(inverse_unproject); /* 1 / unproject.xy */
+};
+
+struct vkao_tiles_block {
+    VKAO_UVEC2(rect);
+    VKAO_UVEC2(tiles);        /* columns and rows of them */
+    VKAO_UINT(flags);
+    VKAO_UINT(stride);        /* texels in a row of buffers */
+    VKAO_UINT(tile_width);
+    VKAO_UINT(strip_columns); /* of tiles */
+};
+
+/* What an indirect dispatch reads; then come the tiles, texels packed as those of rects. */
+struct vkao_tiles_head {
+    VKAO_UINT(group_rows); /* VKAO_TILE_HEIGHT */
+    VKAO_UINT(count);
+    VKAO_UINT(one);
+    VKAO_UINT(reserved);
 };
 
 struct vkao_blur_block {

@@ -21,6 +21,7 @@ layout(binding = VKAO_BINDING_NOISY_WRITE) uniform writeonly image2D noisy_image
 #ifdef VKAO_BUFFERS
 layout(binding = TEXELS == 1 ? VKAO_BINDING_PACKED_WRITE : VKAO_BINDING_PACKED_WRITE2) uniform writeonly
     uimageBuffer packed_codes;
+layout(binding = VKAO_BINDING_TILES) readonly buffer Tiles { vkao_tiles_head head; uint tiles[]; };
 #endif
 #include "view.glsl"
 #include "normals.glsl"
@@ -125,10 +126,20 @@ void store_noisy(ivec2 texel, Visibility v)
 
 void main()
 {
-    ivec2 low = unpack_texel(params.rect.x), high = unpack_texel(params.rect.y);
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) * ivec2(TEXELS, 1) + ivec2(low.x & ~(TEXELS - 1), low.y);
+#ifdef VKAO_BUFFERS
     /* Straight on, also where there is nothing to do: a driver in software runs both sides of a branch anyway. */
+    ivec2 texel = unpack_texel(tiles[gl_WorkGroupID.y]);
+    texel += ivec2(int(gl_LocalInvocationID.x) * TEXELS, gl_WorkGroupID.x);
+#else
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(params.rect.x);
+#endif
     real z = load_view_zs(texel);
+#ifndef VKAO_BUFFERS
+    if (z <= 0.0) {
+        store_noisy(texel, Visibility(Real3(0.0, 0.0, 0.0), 1.0));
+        return;
+    }
+#endif
     Real3 position = view_positions(texel, z);
     Visibility v = visibility(texel, position, view_normals(texel, position));
     v.open = choose(real(1.0), v.open, above(z, real(0.0)));
@@ -137,7 +148,7 @@ void main()
         v.bent.y = choose(real(0.0), v.bent.y, above(z, real(0.0)));
         v.bent.z = choose(real(0.0), v.bent.z, above(z, real(0.0)));
     }
-    if (all(lessThan(texel, high)))
+    if (all(lessThan(texel, unpack_texel(params.rect.y))))
         store_noisy(texel, v);
 }
 
