@@ -182,6 +182,10 @@ static vkao_result describe(const vkao_context *ctx, const vkao_frame_info *call
     if (!info->stages || (info->stages & ~VKAO_STAGE_ALL))
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
                            "frame.stages is 0x%x, want bits of 0x%x", info->stages, VKAO_STAGE_ALL);
+    if (info->stages & ~ctx->stage_mask)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "frame.stages is 0x%x, but the context was created with stage_mask 0x%x",
+                           info->stages, ctx->stage_mask);
     if (!info->extent.width || !info->extent.height)
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
                            "frame.extent is %ux%u, want at least 1x1", info->extent.width,

@@ -27,6 +27,7 @@ struct vkao_context {
     VkAllocationCallbacks allocator_copy;
     const VkAllocationCallbacks *allocator; /* &allocator_copy or NULL */
     uint32_t method_mask;
+    vkao_stage_flags stage_mask;
     bool half_view_z;
     bool buffers; /* scratch is in buffers, and shaders are those for it */
     uint32_t max_texels, max_buffer;

@@ -14,8 +14,8 @@ enum pipeline {
     PIPELINE_BLUR_X,
     PIPELINE_BLUR_Y,
     PIPELINE_UPSAMPLE,
-    PIPELINE_TILES, /* of SSAO with scratch in buffers */
-    PIPELINE_PACKED_BLUR_X, /* the same for AO in buffers */
+    PIPELINE_TILES,         /* of SSAO, for scratch in buffers */
+    PIPELINE_PACKED_BLUR_X, /* the same as above for AO in buffers */
     PIPELINE_PACKED_BLUR_Y,
     PIPELINE_PACKED_UPSAMPLE,
     PIPELINE_COMPOSITE,
@@ -30,19 +30,29 @@ struct pipeline_key {
     uint32_t flags, slices, steps, samples, radius;
 };
 
-struct pipeline_variant {
+struct pipeline_entry {
     enum pipeline which;
-    VkBool32 bent;
+    VkBool32 bent; /* also computes bent normals */
     struct pipeline_key key;
     VkPipeline pipeline;
+    vkao_result result; /* of its creation */
 };
 
 struct pipelines {
-    /* [1] also computes bent normals. Null for methods that were not asked for, or know no bent normals. */
-    VkPipeline general[PIPELINE_COUNT][2];
-    struct pipeline_variant *variants;
-    uint32_t variant_count;
+    struct pipeline_entry *entries;
+    uint32_t count;
 };
+
+/* What a pipeline is made of. */
+struct shader_code {
+    const char *name;
+    const uint32_t *code; /* NULL = not in the context's build */
+    size_t bytes;
+    VkBool32 vertical; /* VKAO_CONSTANT_BLUR_VERTICAL */
+    bool bent;         /* has a form with VKAO_CONSTANT_BENT_NORMALS */
+};
+
+struct shader_code shader_code(const vkao_context *ctx, enum pipeline which);
 
 /* Creates what the info asks for; info is checked. On failure the rest is for pipelines_destroy. */
 vkao_result pipelines_create(vkao_context *ctx, const vkao_context_info *info);
@@ -59,7 +69,9 @@ vkao_result pipelines_check(const vkao_frame *frame, const struct view_constants
 /* What a pipeline of that stage is told of a recording. */
 struct pipeline_key pipeline_key(enum pipeline which, uint32_t flags, const vkao_ssao_params *ssao,
                                  const vkao_blur_params *blur);
-/* In which way the frame's AO travels: VKAO_FLAG_PACKED and VKAO_STAGED_*. */
+/* In which way AO travels: VKAO_FLAG_PACKED and VKAO_STAGED_*. */
+uint32_t recording_way(bool packed, uint32_t staged);
+/* The frame's. */
 uint32_t frame_flags(const vkao_frame *frame);
 /* Flags of shaders/params.h, of a view on the grid that the stages run on; way: frame_flags(). ssao and blur may be
  * NULL. */

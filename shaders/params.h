@@ -123,7 +123,7 @@
 #define VKAO_SSAO_TEXELS 2    /* of the methods that are VKAO_SIDE_BY_SIDE */
 #define VKAO_BLUR_X_WIDTH 8
 #define VKAO_BLUR_Y_WIDTH 4
-#define VKAO_BLUR_Y_HEIGHT 8
+#define VKAO_BLUR_Y_HEIGHT 4
 #define VKAO_UPSAMPLE_WIDTH 8
 #define VKAO_UPSAMPLE_HEIGHT 2
 

@@ -106,6 +106,14 @@ typedef enum vkao_ssao_method {
 
 /* --- Context: one per VkDevice --- */
 
+/* Stages that a frame is built for. SSAO and BLUR imply the prepare stage (depth -> view z in scratch).
+ * Without BLUR the SSAO stage writes `ao` itself. */
+typedef uint32_t vkao_stage_flags;
+#define VKAO_STAGE_SSAO 0x1u      /* reads depth, normals;             writes ao_noisy */
+#define VKAO_STAGE_BLUR 0x2u      /* reads ao_noisy, depth, normals;   writes ao */
+#define VKAO_STAGE_COMPOSITE 0x4u /* reads ao, color, direct;          writes output */
+#define VKAO_STAGE_ALL 0x7u
+
 typedef struct vkao_view vkao_view;
 typedef struct vkao_ssao_params vkao_ssao_params;
 typedef struct vkao_blur_params vkao_blur_params;
@@ -134,6 +142,9 @@ typedef struct vkao_variant {
     const vkao_ssao_params *ssao;
     const vkao_blur_params *blur; /* NULL = no BLUR */
 } vkao_variant;
+
+/* Has to call job(data, i) once for each i < count, in any order and in any threads, and to return when all are done. */
+typedef void (*vkao_parallel_fn)(void *user_data, uint32_t count, void (*job)(void *data, uint32_t i), void *data);
 
 /* Pipelines and layouts. Immutable once created; owns no device memory.
  * Thread-safety: any number of threads may use one context at once; destroying it is the exception. */
@@ -177,6 +188,12 @@ typedef struct vkao_context_info {
      * other settings is then an error. */
     VkBool32 variants_only;
     vkao_scratch_layout scratch_layout; /* Default AUTO */
+    /* Optional: compiles pipelines side by side during vkao_context_create; log and allocator are then called from its
+     * threads. NULL = one after the other. */
+    vkao_parallel_fn parallel;
+    void *parallel_user_data;
+    vkao_stage_flags stage_mask; /* stages that frames may have. 0 = all. Others cost no time here */
+    uint32_t reserved;           /* zero */
 } vkao_context_info;
 
 /* Sets the members that vkao needs to VK_TRUE, leaves the others alone. Call before vkCreateDevice. */
@@ -194,14 +211,6 @@ VKAO_API VkBool32 vkao_context_has_variant(const vkao_context *ctx, const vkao_v
 VKAO_API void vkao_context_destroy(vkao_context *ctx);
 
 /* --- Frame: the images that one frame in flight works on --- */
-
-/* Stages that a frame is built for. SSAO and BLUR imply the prepare stage (depth -> view z in scratch).
- * Without BLUR the SSAO stage writes `ao` itself. */
-typedef uint32_t vkao_stage_flags;
-#define VKAO_STAGE_SSAO 0x1u      /* reads depth, normals;             writes ao_noisy */
-#define VKAO_STAGE_BLUR 0x2u      /* reads ao_noisy, depth, normals;   writes ao */
-#define VKAO_STAGE_COMPOSITE 0x4u /* reads ao, color, direct;          writes output */
-#define VKAO_STAGE_ALL 0x7u
 
 /* A caller-owned image as the library sees it: a 2D view with one mip level and one array layer. Layered or
  * stereo images need one view and one frame per layer. All zero = slot not used. */

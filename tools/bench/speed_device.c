@@ -25,6 +25,14 @@ static vkao_view room_view(VkExtent2D extent)
     return view;
 }
 
+static const VkFormat depth_format = VK_FORMAT_R32_SFLOAT, normal_format = VK_FORMAT_R8G8B8A8_SNORM,
+                      ao_format = VK_FORMAT_R8_UNORM, color_format = VK_FORMAT_R16G16B16A16_SFLOAT;
+
+static vkao_stage_flags stages_of(struct speed_features features)
+{
+    return VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (features.composite ? VKAO_STAGE_COMPOSITE : 0u);
+}
+
 bool speed_device_compile(struct speed_device *d, const struct config *configs, size_t count,
                           struct tool_error *err)
 {
@@ -38,6 +46,7 @@ bool speed_device_compile(struct speed_device *d, const struct config *configs, 
             .struct_size = sizeof variants[i],
             .half_resolution = jobs[i].half_resolution,
             .bent_normals = d->features.bent_normals,
+            .staged_ao = ao_format,
             .view = &view,
             .ssao = &jobs[i].ssao,
             .blur = &jobs[i].blur,
@@ -47,6 +56,7 @@ bool speed_device_compile(struct speed_device *d, const struct config *configs, 
     info.variants = variants;
     info.variant_count = (uint32_t)count;
     info.variants_only = VK_TRUE;
+    info.stage_mask = stages_of(d->features);
     stage_clock_hook(&info);
     vkao_context_destroy(d->ctx);
     double start = speed_now_ms();
@@ -67,8 +77,6 @@ void speed_device_destroy(struct speed_device *d)
 /* --- Images --- */
 
 /* What engines have: 8-bit normals and AO, half-float colour. */
-static const VkFormat depth_format = VK_FORMAT_R32_SFLOAT, normal_format = VK_FORMAT_R8G8B8A8_SNORM,
-                      ao_format = VK_FORMAT_R8_UNORM, color_format = VK_FORMAT_R16G16B16A16_SFLOAT;
 
 static vkao_image slot(VkFormat format, const struct gpu_image *image)
 {
@@ -85,6 +93,8 @@ void speed_frame_info(struct speed_features features, VkExtent2D extent, bool ha
     images->depth = slot(depth_format, on ? &on->depth : NULL);
     images->normals = slot(normal_format, on ? &on->normals : NULL);
     images->ao = slot(ao_format, on ? &on->ao : NULL);
+    if (on)
+        images->ao_image = on->ao.image;
     if (features.bent_normals)
         images->bent_normals = slot(normal_format, on ? &on->bent : NULL);
     if (features.composite) {
@@ -93,8 +103,7 @@ void speed_frame_info(struct speed_features features, VkExtent2D extent, bool ha
     }
     *info = (vkao_frame_info){
         .struct_size = sizeof *info,
-        .stages =
-            VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (features.composite ? VKAO_STAGE_COMPOSITE : 0u),
+        .stages = stages_of(features),
         .extent = extent,
         .images = images,
         .half_resolution = half_resolution,

@@ -20,6 +20,7 @@ struct ao_session {
     struct gpu *gpu;
     uint32_t method_mask; /* 0 = ctx is made for the job at hand */
     vkao_context *ctx;
+    vkao_stage_flags stages; /* that ctx has for the job at hand */
     vkao_frame *frame;
     struct gpu_image
         images[IMAGE_COUNT]; /* of the last job; kept while the next one has the same shape */
@@ -82,6 +83,11 @@ void ao_session_destroy(struct ao_session *session)
 
 static const VkFormat ao_format = VK_FORMAT_R32_SFLOAT;
 
+static vkao_stage_flags job_stages(const struct ao_job *job)
+{
+    return VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (job->color ? VKAO_STAGE_COMPOSITE : 0u);
+}
+
 static bool create_frame(struct ao_session *session, const struct ao_job *job,
                          struct tool_error *err)
 {
@@ -121,12 +127,10 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
     }
     if (job->bent_normals)
         images.bent_normals = gpu_image_slot(&session->images[IMAGE_BENT]);
-    vkao_stage_flags stages =
-        VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (job->color ? VKAO_STAGE_COMPOSITE : 0u);
     vkao_result result = vkao_frame_create(session->ctx,
                                            &(vkao_frame_info){
                                                .struct_size = sizeof(vkao_frame_info),
-                                               .stages = stages,
+                                               .stages = job_stages(job),
                                                .extent = extent,
                                                .images = &images,
                                                .half_resolution = job->half_resolution,
@@ -155,7 +159,9 @@ static bool fit_context(struct ao_session *session, const struct ao_job *job,
         .ssao = &job->ssao,
         .blur = &job->blur,
     };
-    if (session->method_mask || (session->ctx && vkao_context_has_variant(session->ctx, &variant)))
+    const vkao_stage_flags stages = job_stages(job);
+    if (session->method_mask || (session->ctx && !(stages & ~session->stages) &&
+                                 vkao_context_has_variant(session->ctx, &variant)))
         return true;
     drop_frame(session);
     vkao_context_destroy(session->ctx);
@@ -163,6 +169,7 @@ static bool fit_context(struct ao_session *session, const struct ao_job *job,
     info.variants = &variant;
     info.variant_count = 1;
     info.variants_only = VK_TRUE;
+    info.stage_mask = session->stages = stages;
     /* Buffers of CPUs have limits that images have not. */
     const uint64_t bytes = ((uint64_t)job->width + 36) * ((uint64_t)job->height + 2) * 4;
     if (bytes > session->gpu->properties.limits.maxStorageBufferRange)

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "gpu.h"
 
+#include "parallel.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -393,6 +395,7 @@ vkao_context_info gpu_context_info(const struct gpu *gpu, uint32_t method_mask)
         .enabled_features = &gpu->features,
         .log = print_log,
         .debug_labels = gpu->messenger != VK_NULL_HANDLE,
+        .parallel = parallel_run,
     };
 }
 
