@@ -65,78 +65,101 @@ ints sector(Masks m, reals c)
     return ints(m.k0 + c * (m.k1 + c * (m.k2 + c * m.k3)));
 }
 
+/* How far a march of both sides has come. */
+struct March {
+    ints mask; /* sectors that are hidden */
+    reals last_x, last_height, last_front;
+    reals hidden; /* sectors, weighted */
+    reals out_moment, eye_moment;
+    Offset next; /* of the step to come */
+    reals next_z;
+};
+
+/* Takes what a sample of both sides hides first. */
+void hide(inout March march, Slice s, Masks m, reals tangent, Offset offset, reals z)
+{
+    reals x, y;
+    slice_points(s, offset, z, x, y);
+    bools seen = greaterThan(z, reals(0.0));
+    reals gap = x - march.last_x, height = y + x * tangent;
+    bools joined = lessThan(abs(height - march.last_height), VKAO_VBAO_JOIN * abs(gap));
+    reals front_x = mix(x, x - VKAO_VBAO_GAP_FRONT * gap, greaterThan(height, reals(0.0)));
+    front_x = mix(front_x, x, joined);
+    reals thick_y = y - (params.thickness_base + params.thickness_slope * x);
+    reals back_x = x + VKAO_VBAO_GAP_BACK * gap;
+    /* Cosines of both edges by one division. */
+    reals front_length = sqrt(front_x * front_x + y * y);
+    reals back_length = sqrt(back_x * back_x + thick_y * thick_y);
+    reals inverse = 1.0 / (front_length * back_length);
+    reals front = y * (back_length * inverse), back = thick_y * (front_length * inverse);
+    front = greater(front, mix(reals(-2.0), march.last_front, joined));
+    ints high = min(sector(m, front - params.bias_cosine), ints(31)), low = min(sector(m, back), high);
+    ints bits = (ints(1) << high) - (ints(1) << low);
+    bits = mix(ints(0), bits, seen);
+    ints fresh = bits & ~march.mask;
+    march.mask |= bits;
+    reals near_y = lesser(max(thick_y, reals(0.0)), y);
+    reals w = falloff_weight(x * x + near_y * near_y) * reals(bitCount(fresh));
+    march.hidden += w;
+    if (BENT_NORMALS) {
+        reals middle = clamp(0.5 * (front + max(back, m.low)), reals(-1.0), reals(1.0));
+        w *= m.mass;
+        march.out_moment += w * SIDES * sqrt(max(reals(0.0), 1.0 - middle * middle));
+        march.eye_moment += w * middle;
+    }
+    march.last_x = mix(march.last_x, x, seen);
+    march.last_height = mix(march.last_height, height, seen);
+    march.last_front = mix(march.last_front, front, seen);
+}
+
 /* What a slice loses of its mass, weighted, and of its moment along O and along V. */
 struct Hidden {
     real mass, out_moment, eye_moment;
 };
 
+real both_sides(reals sectors)
+{
+    return (first_side(sectors) + other_side(sectors)) * (1.0 / SECTORS);
+}
+
 Hidden hidden_mass(Slice s, ivec2 texel, real jitter)
 {
-    float radius = params.normal_x.w;
-    float reach = radius * (flag(VKAO_FLAG_THRESHOLD) ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH);
+    float reach = params.normal_x.w;
+    reach *= flag(VKAO_FLAG_THRESHOLD) ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH;
     reals tangent = SIDES * both(s.sin_n / max(s.cos_n, real(0.02)));
     Masks m = make_masks(s);
-    ints mask = ints(0);
-    reals last_x = reals(0.0), last_height = reals(0.0), last_front = reals(-2.0);
-    reals hidden = reals(0.0), out_moment = reals(0.0), eye_moment = reals(0.0);
-    Offset next = step_offset(s, 0u, jitter, reach);
-    reals next_z = load_sides(texel, next);
+    const reals none = reals(0.0);
+    Offset first = step_offset(s, 0u, jitter, reach);
+    March march = March(ints(0), none, none, reals(-2.0), none, none, none, first, load_sides(texel, first));
     [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
-        Offset offset = next;
-        reals z = next_z, x, y;
-        next = step_offset(s, t + 1u, jitter, reach);
+        Offset offset = march.next;
+        reals z = march.next_z;
+        march.next = step_offset(s, t + 1u, jitter, reach);
         if (STEPS == 0u || t + 1u < STEPS)
-            next_z = load_sides(texel, next);
-        slice_points(s, offset, z, x, y);
-        bools seen = greaterThan(z, reals(0.0));
-        reals gap = x - last_x, height = y + x * tangent;
-        bools joined = lessThan(abs(height - last_height), VKAO_VBAO_JOIN * abs(gap));
-        reals front_x = mix(x, x - VKAO_VBAO_GAP_FRONT * gap, greaterThan(height, reals(0.0)));
-        front_x = mix(front_x, x, joined);
-        reals thick_y = y - (params.thickness_base + params.thickness_slope * x);
-        reals back_x = x + VKAO_VBAO_GAP_BACK * gap;
-        /* Cosines of both edges by one division. */
-        reals front_length = sqrt(front_x * front_x + y * y);
-        reals back_length = sqrt(back_x * back_x + thick_y * thick_y);
-        reals inverse = 1.0 / (front_length * back_length);
-        reals front = y * (back_length * inverse), back = thick_y * (front_length * inverse);
-        front = greater(front, mix(reals(-2.0), last_front, joined));
-        ints high = min(sector(m, front - params.bias_cosine), ints(31)), low = min(sector(m, back), high);
-        ints bits = (ints(1) << high) - (ints(1) << low);
-        bits = mix(ints(0), bits, seen);
-        ints fresh = bits & ~mask;
-        mask |= bits;
-        reals near_y = lesser(max(thick_y, reals(0.0)), y);
-        reals w = falloff_weight(x * x + near_y * near_y) * reals(bitCount(fresh));
-        hidden += w;
-        if (BENT_NORMALS) {
-            reals middle = clamp(0.5 * (front + max(back, m.low)), reals(-1.0), reals(1.0));
-            w *= m.mass;
-            out_moment += w * SIDES * sqrt(max(reals(0.0), 1.0 - middle * middle));
-            eye_moment += w * middle;
-        }
-        last_x = mix(last_x, x, seen);
-        last_height = mix(last_height, height, seen);
-        last_front = mix(last_front, front, seen);
+            march.next_z = load_sides(texel, march.next);
+        hide(march, s, m, tangent, offset, z);
     }
-    hidden *= m.mass;
-    return Hidden((first_side(hidden) + other_side(hidden)) * (1.0 / SECTORS),
-                  (first_side(out_moment) + other_side(out_moment)) * (1.0 / SECTORS),
-                  (first_side(eye_moment) + other_side(eye_moment)) * (1.0 / SECTORS));
+    return Hidden(both_sides(march.hidden * m.mass), both_sides(march.out_moment), both_sides(march.eye_moment));
+}
+
+void add_slice(inout Visibility v, uint k, ivec2 texel, Real3 position, Real3 normal, Real3 to_eye, real turn,
+               real jitter)
+{
+    float share = 1.0 / float(slice_count());
+    Slice s = make_slice((float(k) + turn) * share, position, normal, to_eye);
+    Hidden hidden = hidden_mass(s, texel, jitter);
+    v.open -= s.normal_length * hidden.mass * share;
+    Real3 moment = plus(times(s.outward, hidden.out_moment), times(to_eye, hidden.eye_moment));
+    v.bent = plus(v.bent, times(moment, -share * s.normal_length));
 }
 
 Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
 {
-    Real3 to_eye = eye_direction(texel), bent = Real3(real(0.0), real(0.0), real(0.0));
-    real turn = interleaved_gradient_noise(texel), jitter = r2_noise(texel), lost = real(0.0);
-    float share = 1.0 / float(slice_count());
-    [[unroll]] for (uint k = 0u; k < slice_count(); ++k) {
-        Slice s = make_slice((float(k) + turn) * share, position, normal, to_eye);
-        Hidden hidden = hidden_mass(s, texel, jitter);
-        lost += s.normal_length * hidden.mass;
-        bent = plus(bent, times(plus(times(s.outward, hidden.out_moment), times(to_eye, hidden.eye_moment)),
-                                s.normal_length));
-    }
+    Real3 to_eye = eye_direction(texel);
+    real turn = interleaved_gradient_noise(texel), jitter = r2_noise(texel);
     /* The mean direction of an open hemisphere is 2/3 of its normal. */
-    return Visibility(plus(times(normal, real(2.0 / 3.0)), times(bent, real(-share))), 1.0 - lost * share);
+    Visibility v = Visibility(times(normal, real(2.0 / 3.0)), real(1.0));
+    [[unroll]] for (uint k = 0u; k < slice_count(); ++k)
+        add_slice(v, k, texel, position, normal, to_eye, turn, jitter);
+    return v;
 }
