@@ -20,6 +20,7 @@ layout(binding = VKAO_BINDING_HALFWAY_READ) uniform texture2D halfway_image;
 layout(binding = VKAO_BINDING_HALFWAY_WRITE) uniform writeonly image2D halfway_out;
 #include "view.glsl"
 #include "finish.glsl"
+#include "surface.glsl"
 
 const ivec2 AXIS = VERTICAL ? ivec2(0, 1) : ivec2(1, 0);
 
@@ -31,10 +32,7 @@ vec4 load_noisy(ivec2 texel)
 
 float local_slope(ivec2 texel, float z)
 {
-    float before = load_view_z(texel - AXIS), after = load_view_z(texel + AXIS);
-    float a = before > 0.0 ? z - before : 3.0e38, b = after > 0.0 ? after - z : 3.0e38;
-    float slope = abs(a) < abs(b) ? a : b;
-    return abs(slope) < 3.0e38 ? slope : 0.0;
+    return local_slope(surface_z(load_view_z(texel - AXIS)), z, surface_z(load_view_z(texel + AXIS)));
 }
 
 float normal_weight(vec3 normal, ivec2 texel)
@@ -48,7 +46,7 @@ float normal_weight(vec3 normal, ivec2 texel)
 vec4 blurred(ivec2 texel, float z)
 {
     float slope = local_slope(texel, z);
-    float edge = params.sharpness / (params.reference_z > 0.0 ? params.reference_z : z);
+    float edge = edge_stop(z, params.sharpness, params.reference_z);
     bool use_normals = flag(VKAO_FLAG_BLUR_NORMALS);
     vec3 normal = use_normals ? decode_normal(texel << grid_shift()) : vec3(0.0);
     /* The outermost tap keeps exp(-2) of the centre's weight. */
@@ -59,7 +57,8 @@ vec4 blurred(ivec2 texel, float z)
         ivec2 at = texel + k * AXIS;
         float tap_z = k == 0 ? 0.0 : load_view_z(at);
         if (tap_z > 0.0) {
-            float w = exp(fall * float(k * k)) * max(0.0, 1.0 - edge * abs(tap_z - z - slope * float(k)));
+            float off = off_surface(z, slope, tap_z, local_slope(at, tap_z), float(k));
+            float w = exp(fall * float(k * k)) * max(0.0, 1.0 - edge * off);
             if (use_normals)
                 w *= normal_weight(normal, at);
             sum += w * load_noisy(at);

@@ -9,15 +9,13 @@ layout(constant_id = VKAO_CONSTANT_RADIUS) const int RADIUS = 0;
 
 #include "surface.glsl"
 
+/* Texels beyond the radius whose depths tell slopes: see off_surface. */
+const int MARGIN = int((FLAGS / VKAO_FLAG_HALF_RESOLUTION) & 1u);
+
 /* The outermost tap keeps exp(-2) of the centre's weight. */
 float gaussian(int k, int radius)
 {
     return exp(-2.0 / float(radius * radius) * float(k * k));
-}
-
-float tap_weight(int k, float gauss, float z, float slope, float edge, float tap_z)
-{
-    return gauss * max(0.0, 1.0 - edge * abs(tap_z - z - slope * float(k)));
 }
 
 /* A normal, and in w 1 if there is none. */

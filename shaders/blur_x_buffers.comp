@@ -17,7 +17,7 @@ layout(binding = VKAO_BINDING_HALFWAY_WORDS) writeonly buffer Halfway { uint hal
 #include "view.glsl"
 #include "blur_window.glsl"
 
-const int REACH = (RADIUS + 3) & ~3; /* windows begin and end at whole words */
+const int REACH = (RADIUS + MARGIN + 3) & ~3; /* windows begin and end at whole words */
 const int WINDOW = VKAO_BLUR_X_WIDTH + 2 * REACH;
 
 float fetch_code(ivec2 texel)
@@ -26,19 +26,25 @@ float fetch_code(ivec2 texel)
     return float(int(imageLoad(packed_ao, i >> 2).x >> ((i & 3) << 3)) & 255);
 }
 
+float slope_at(ivec2 texel)
+{
+    return local_slope(surface_z(load_view_z(texel - ivec2(1, 0))), surface_z(load_view_z(texel)),
+                       surface_z(load_view_z(texel + ivec2(1, 0))));
+}
+
 /* For any radius, tap by tap. */
 float blurred_slowly(ivec2 texel)
 {
     int radius = int(params.radius);
     float z = surface_z(fetch_view_z(texel)), edge = edge_stop(z, params.sharpness, params.reference_z);
-    float slope = local_slope(surface_z(load_view_z(texel - ivec2(1, 0))), z,
-                              surface_z(load_view_z(texel + ivec2(1, 0))));
+    float slope = slope_at(texel);
     bool use_normals = flag(VKAO_FLAG_BLUR_NORMALS);
     vec4 normal = use_normals ? window_normal(texel) : vec4(0.0);
     float sum = fetch_code(texel), weights = 1.0;
     for (int k = -radius; k <= radius; ++k) {
         ivec2 at = texel + ivec2(k, 0);
-        float w = tap_weight(k, gaussian(k, max(radius, 1)), z, slope, edge, surface_z(load_view_z(at)));
+        float off = off_surface(z, slope, surface_z(load_view_z(at)), slope_at(at), float(k));
+        float w = gaussian(k, max(radius, 1)) * max(0.0, 1.0 - edge * off);
         w = k == 0 ? 0.0 : use_normals ? w * normal_weight(normal, window_normal(at), params.normal_power) : w;
         sum += w * fetch_code(at);
         weights += w;
@@ -48,7 +54,7 @@ float blurred_slowly(ivec2 texel)
 
 void blur_window(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
 {
-    float z[WINDOW], code[WINDOW];
+    float z[WINDOW], code[WINDOW], slope[WINDOW];
     vec4 normal[WINDOW];
     bool use_normals = flag(VKAO_FLAG_BLUR_NORMALS);
     int z_word = (z_row(texel.y) + texel.x - REACH) >> 2, code_word = (buffer_row(texel.y) + texel.x - REACH) >> 2;
@@ -62,15 +68,18 @@ void blur_window(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
                 normal[4 * j + i] = window_normal(texel + ivec2(4 * j + i - REACH, 0));
         }
     }
+    /* Those that nothing uses cost nothing. */
+    [[unroll]] for (int i = 1; i < WINDOW - 1; ++i)
+        slope[i] = local_slope(z[i - 1], z[i], z[i + 1]);
     [[unroll]] for (int i = 0; i < VKAO_BLUR_X_WIDTH; ++i) {
         int c = REACH + i;
-        float slope = local_slope(z[c - 1], z[c], z[c + 1]);
         float edge = edge_stop(z[c], params.sharpness, params.reference_z);
         float sum = code[c], weights = 1.0;
         [[unroll]] for (int k = -RADIUS; k <= RADIUS; ++k) {
             if (k == 0)
                 continue;
-            float w = tap_weight(k, gaussian(k, RADIUS), z[c], slope, edge, z[c + k]);
+            float off = off_surface(z[c], slope[c], z[c + k], slope[c + k], float(k));
+            float w = gaussian(k, RADIUS) * max(0.0, 1.0 - edge * off);
             if (use_normals)
                 w *= normal_weight(normal[c], normal[c + k], params.normal_power);
             sum += w * code[c + k];

@@ -18,7 +18,7 @@ layout(binding = VKAO_BINDING_BLURRED_WORDS) writeonly buffer Blurred { uvec2 bl
 #include "blur_window.glsl"
 #include "staged.glsl"
 
-const int WINDOW = VKAO_BLUR_Y_HEIGHT + 2 * RADIUS;
+const int WINDOW = VKAO_BLUR_Y_HEIGHT + 2 * (RADIUS + MARGIN);
 
 vec4 load_z(ivec2 texel)
 {
@@ -36,9 +36,28 @@ vec4 load_codes(ivec2 texel)
                 VKAO_CODE_OPEN);
 }
 
-vec4 tap_weights(int k, int radius, vec4 z, vec4 slope, vec4 edge, vec4 tap_z)
+vec4 slopes(vec4 before, vec4 z, vec4 after)
 {
-    return gaussian(k, radius) * max(vec4(0.0), 1.0 - edge * abs(tap_z - z - slope * float(k)));
+    vec4 slope;
+    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i)
+        slope[i] = local_slope(before[i], z[i], after[i]);
+    return slope;
+}
+
+vec4 slopes_at(ivec2 texel)
+{
+    return slopes(load_z(texel - ivec2(0, 1)), load_z(texel), load_z(texel + ivec2(0, 1)));
+}
+
+vec4 tap_weights(int k, int radius, vec4 z, vec4 slope, vec4 tap_z, vec4 tap_slope)
+{
+    vec4 w;
+    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) {
+        float edge = edge_stop(z[i], params.sharpness, params.reference_z);
+        float off = off_surface(z[i], slope[i], tap_z[i], tap_slope[i], float(k));
+        w[i] = gaussian(k, radius) * max(0.0, 1.0 - edge * off);
+    }
+    return w;
 }
 
 vec4 normal_weights(ivec2 texel, ivec2 tap)
@@ -49,30 +68,15 @@ vec4 normal_weights(ivec2 texel, ivec2 tap)
     return w;
 }
 
-struct Column {
-    vec4 z, slope, edge;
-};
-
-Column make_column(vec4 before, vec4 z, vec4 after)
-{
-    Column c;
-    c.z = z;
-    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) {
-        c.slope[i] = local_slope(before[i], z[i], after[i]);
-        c.edge[i] = edge_stop(z[i], params.sharpness, params.reference_z);
-    }
-    return c;
-}
-
 /* For any radius, tap by tap. */
 vec4 blurred_slowly(ivec2 texel)
 {
     int radius = int(params.radius);
-    Column c = make_column(load_z(texel - ivec2(0, 1)), load_z(texel), load_z(texel + ivec2(0, 1)));
+    vec4 z = load_z(texel), slope = slopes_at(texel);
     vec4 sum = load_codes(texel), weights = vec4(1.0);
     for (int k = -radius; k <= radius; ++k) {
         ivec2 at = texel + ivec2(0, k);
-        vec4 w = tap_weights(k, max(radius, 1), c.z, c.slope, c.edge, load_z(at));
+        vec4 w = tap_weights(k, max(radius, 1), z, slope, load_z(at), slopes_at(at));
         w = k == 0 ? vec4(0.0) : flag(VKAO_FLAG_BLUR_NORMALS) ? w * normal_weights(texel, at) : w;
         /* Rows beyond the valid ones are not in the ring; they weigh nothing, but no number times nothing is. */
         sum += mix(vec4(0.0), w * load_codes(at), greaterThan(w, vec4(0.0)));
@@ -96,24 +100,27 @@ void put(ivec2 texel, vec4 z, vec4 fine)
 
 void blur_window(ivec2 texel)
 {
-    vec4 z[WINDOW], fine[WINDOW], normal[WINDOW * VKAO_BLUR_Y_WIDTH];
+    vec4 z[WINDOW], slope[WINDOW], fine[WINDOW], normal[WINDOW * VKAO_BLUR_Y_WIDTH];
     bool use_normals = flag(VKAO_FLAG_BLUR_NORMALS);
     [[unroll]] for (int j = 0; j < WINDOW; ++j) {
-        ivec2 at = texel + ivec2(0, j - RADIUS);
+        ivec2 at = texel + ivec2(0, j - RADIUS - MARGIN);
         z[j] = load_z(at);
-        fine[j] = load_codes(at);
+        if (j >= MARGIN && j < WINDOW - MARGIN)
+            fine[j] = load_codes(at);
         [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i)
             if (use_normals)
                 normal[VKAO_BLUR_Y_WIDTH * j + i] = window_normal(at + ivec2(i, 0));
     }
+    /* Those that nothing uses cost nothing. */
+    [[unroll]] for (int j = 1; j < WINDOW - 1; ++j)
+        slope[j] = slopes(z[j - 1], z[j], z[j + 1]);
     [[unroll]] for (int row = 0; row < VKAO_BLUR_Y_HEIGHT; ++row) {
-        int c = RADIUS + row;
-        Column column = make_column(z[c - 1], z[c], z[c + 1]);
+        int c = RADIUS + MARGIN + row;
         vec4 sum = fine[c], weights = vec4(1.0);
         [[unroll]] for (int k = -RADIUS; k <= RADIUS; ++k) {
             if (k == 0)
                 continue;
-            vec4 w = tap_weights(k, RADIUS, z[c], column.slope, column.edge, z[c + k]);
+            vec4 w = tap_weights(k, RADIUS, z[c], slope[c], z[c + k], slope[c + k]);
             [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i)
                 if (use_normals)
                     w[i] *= normal_weight(normal[VKAO_BLUR_Y_WIDTH * c + i], normal[VKAO_BLUR_Y_WIDTH * (c + k) + i],

@@ -108,12 +108,12 @@
  * the blur is a 16-bit word per texel, 256 times that code; that buffer is a ring of VKAO_RING_ROWS rows, the blur goes
  * down the image in strips. If AO is staged, a strip of the image's rows has a buffer too; its rows have no padding and
  * begin at multiples of VKAO_UPSAMPLE_WIDTH. */
-#define VKAO_BUFFER_PAD 16
+#define VKAO_BUFFER_PAD 24
 #define VKAO_CODE_SCALE 100.0
 #define VKAO_CODE_OFFSET 0.55
 #define VKAO_CODE_FINE 256.0
 #define VKAO_CODE_OPEN 39680 /* fine code of 1; numbers are relative to it, so that what is open stays exactly 1 */
-#define VKAO_RING_ROWS 160
+#define VKAO_RING_ROWS 176
 #define VKAO_STRIP_ROWS 128 /* a ring holds a strip and the largest radius on both sides of it */
 
 /* Texels per invocation in the shaders for buffers. */

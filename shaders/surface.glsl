@@ -20,6 +20,15 @@ float local_slope(float before, float z, float after)
     return abs(slope) < 0.1 * BACKGROUND_Z ? slope : 0.0;
 }
 
+/* How far a tap k texels away lies off the surface that goes on from the centre by its slope. At half resolution, where a
+ * blur spans twice as much and more lies between two texels, the centre must also lie on the tap's surface: what only
+ * meets at an edge is told apart without normals. */
+float off_surface(float z, float slope, float tap_z, float tap_slope, float k)
+{
+    float off = abs(tap_z - z - slope * k);
+    return flag(VKAO_FLAG_HALF_RESOLUTION) ? max(off, abs(tap_z - z - tap_slope * k)) : off;
+}
+
 /* 1 / the distance off the continued slope at which a tap counts nothing; never 0, so that background never counts. */
 float edge_stop(float z, float sharpness, float reference_z)
 {
