@@ -74,6 +74,22 @@ static void destroy(VkDevice device, const char *name, VkObjectType type, uint64
     }
 }
 
+/* Of the formats that views of the library's buffer have. */
+static VkDeviceSize texel_bytes(VkFormat format)
+{
+    switch (format) {
+    case VK_FORMAT_R8_UINT:
+        return 1;
+    case VK_FORMAT_R16_UINT:
+        return 2;
+    case VK_FORMAT_R32_UINT:
+    case VK_FORMAT_R32_SFLOAT:
+        return 4;
+    default:
+        return 16;
+    }
+}
+
 /* A create and destroy pair. The body sees fake, call and object, after success. */
 #define FAKE_CREATE(Name, TYPE, BODY)                                                              \
     static VKAPI_ATTR VkResult VKAPI_CALL fake_Create##Name(                                       \
@@ -135,6 +151,8 @@ FAKE_CREATE(BufferView, BUFFER_VIEW, {
     const struct fake_object *buffer =
         fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, fake_number(info->buffer));
     object->parent = fake_number(info->buffer);
+    if (info->range / texel_bytes(info->format) > fake->max_texels)
+        fake_misuse(fake, "vkCreateBufferView: more texels than maxTexelBufferElements");
     call->format = info->format;
     call->offset = info->offset;
     call->size = info->range;
@@ -197,8 +215,9 @@ static VKAPI_ATTR void VKAPI_CALL fake_UpdateDescriptorSets(
             const VkDescriptorBufferInfo *info = writes[i].pBufferInfo;
             const struct fake_object *buffer =
                 fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, fake_number(info->buffer));
-            if (buffer && (!info->range || info->offset + info->range > buffer->bytes))
-                fake_misuse(fake, "vkUpdateDescriptorSets: beyond the buffer");
+            if (buffer && (!info->range || info->offset + info->range > buffer->bytes ||
+                           info->range > fake->max_buffer))
+                fake_misuse(fake, "vkUpdateDescriptorSets: beyond the buffer, or the limit");
             continue;
         }
         if (writes[i].descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER) {
