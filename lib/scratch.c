@@ -143,7 +143,7 @@ static vkao_result create_image(const vkao_context *ctx, struct scratch_image *i
 static vkao_result create_buffer(const vkao_context *ctx, struct scratch_buffer *buffer,
                                  VkMemoryRequirements *all)
 {
-    /* The most texels of a part, those of view z or in low images the ring's, and the most bytes. */
+    /* The most texels of a part, of view z or in low images the ring, and the most bytes. */
     const VkDeviceSize z = buffer->parts[PART_VIEW_Z].bytes,
                        ring = buffer->parts[PART_HALFWAY].bytes,
                        staged = buffer->parts[PART_STAGED].bytes,
