@@ -255,8 +255,8 @@ static void variant_of_the_format_is_found(void **state)
 
 /* --- Order --- */
 
-/* Its rows, after waiting for shader writes alone. */
-static void record_read_back(const struct picture *p, const struct picture_gpu *g,
+/* A level of a layer, of the picture's extent, after waiting for shader writes alone. */
+static void record_read_back(const struct picture *p, VkImage image, uint32_t mip, uint32_t layer,
                              VkCommandBuffer cmd, VkBuffer to)
 {
     vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT,
@@ -267,9 +267,9 @@ static void record_read_back(const struct picture *p, const struct picture_gpu *
                              .dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT,
                          },
                          0, NULL, 0, NULL);
-    vkCmdCopyImageToBuffer(cmd, g->images[SLOT_AO].image, VK_IMAGE_LAYOUT_GENERAL, to, 1,
+    vkCmdCopyImageToBuffer(cmd, image, VK_IMAGE_LAYOUT_GENERAL, to, 1,
                            &(VkBufferImageCopy){
-                               .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                               .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, layer, 1},
                                .imageExtent = {p->width, p->height, 1},
                            });
     vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1,
@@ -302,7 +302,7 @@ static void waiting_for_shader_writes_waits_for_the_copy(void **state)
         check(cmd != NULL);
         picture_record(&p, &g, cmd);
         picture_record(&p, &g, cmd);
-        record_read_back(&p, &g, cmd, read.buffer);
+        record_read_back(&p, g.images[SLOT_AO].image, 0, 0, cmd, read.buffer);
         check(gpu_submit(&fixture.gpu, cmd, &fixture.error));
         const float *texels = read.mapped;
         for (size_t i = 0; i < picture_texels(&p); ++i)
@@ -311,6 +311,125 @@ static void waiting_for_shader_writes_waits_for_the_copy(void **state)
         gpu_buffer_destroy(&fixture.gpu, &read);
         picture_close(&g);
         free(once);
+        picture_free(&p);
+    }
+    give_back();
+}
+
+/* --- Levels and layers --- */
+
+enum { LEVEL = 1, LEVELS = 2, LAYER = 2, LAYERS = 3 };
+static const VkImageSubresourceRange all_of_it = {VK_IMAGE_ASPECT_COLOR_BIT, 0, LEVELS, 0, LAYERS};
+
+static void check_vk(VkResult result)
+{
+    assert_int_equal(result, VK_SUCCESS);
+}
+
+/* R32F of which LEVEL has the picture's extent, with a view of that level of LAYER. */
+static void create_layered(const struct picture *p, struct gpu_image *image)
+{
+    VkMemoryRequirements need;
+    const VkDevice device = fixture.gpu.device;
+    *image = (struct gpu_image){.format = VK_FORMAT_R32_SFLOAT};
+    check_vk(vkCreateImage(device,
+                           &(VkImageCreateInfo){
+                               .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                               .imageType = VK_IMAGE_TYPE_2D,
+                               .format = image->format,
+                               .extent = {p->width << LEVEL, p->height << LEVEL, 1},
+                               .mipLevels = LEVELS,
+                               .arrayLayers = LAYERS,
+                               .samples = VK_SAMPLE_COUNT_1_BIT,
+                               .tiling = VK_IMAGE_TILING_OPTIMAL,
+                               .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                                        VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                                        VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                           },
+                           NULL, &image->image));
+    vkGetImageMemoryRequirements(device, image->image, &need);
+    image->memory = fixture_allocate(&need, need.size);
+    check_vk(vkBindImageMemory(device, image->image, image->memory, 0));
+    check_vk(
+        vkCreateImageView(device,
+                          &(VkImageViewCreateInfo){
+                              .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                              .image = image->image,
+                              .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                              .format = image->format,
+                              .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, LEVEL, 1, LAYER, 1},
+                          },
+                          NULL, &image->view));
+}
+
+/* The canary into every level of every layer. */
+static void record_clear(VkImage image, float canary, VkCommandBuffer cmd)
+{
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0,
+                         0, NULL, 0, NULL, 1,
+                         &(VkImageMemoryBarrier){
+                             .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+                             .dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT,
+                             .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+                             .newLayout = VK_IMAGE_LAYOUT_GENERAL,
+                             .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                             .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                             .image = image,
+                             .subresourceRange = all_of_it,
+                         });
+    vkCmdClearColorImage(cmd, image, VK_IMAGE_LAYOUT_GENERAL,
+                         &(VkClearColorValue){.float32 = {canary}}, 1, &all_of_it);
+    gpu_full_barrier(cmd);
+}
+
+static void run_layered(struct picture *p, struct gpu_image *image,
+                        struct gpu_buffer read[LAYERS + 1])
+{
+    struct picture_gpu g;
+    picture_open(p, &g);
+    g.slots.ao.view = image->view;
+    g.slots.ao_image = image->image;
+    g.slots.ao_mip_level = LEVEL;
+    g.slots.ao_array_layer = LAYER;
+    check_vkao(vkao_frame_update(g.frame, &g.slots));
+    VkCommandBuffer cmd = gpu_begin(&fixture.gpu, &fixture.error);
+    check(cmd != NULL);
+    record_clear(image->image, 0.25f, cmd);
+    picture_record(p, &g, cmd);
+    for (uint32_t layer = 0; layer < LAYERS; ++layer)
+        record_read_back(p, image->image, LEVEL, layer, cmd, read[layer].buffer);
+    record_read_back(p, image->image, 0, LAYER, cmd, read[LAYERS].buffer);
+    check(gpu_submit(&fixture.gpu, cmd, &fixture.error));
+    picture_close(&g);
+}
+
+static void one_level_of_one_layer_is_written(void **state)
+{
+    (void)state;
+    use_context(NULL);
+    for (int half = 0; half < 2; ++half) {
+        struct picture p;
+        struct gpu_image image;
+        struct gpu_buffer read[LAYERS + 1];
+        make(&p, 45, 139, VK_FORMAT_R32_SFLOAT, half);
+        picture_run(&p);
+        create_layered(&p, &image);
+        for (int i = 0; i <= LAYERS; ++i)
+            check(gpu_buffer_create(&fixture.gpu, picture_texels(&p) * sizeof(float),
+                                    VK_BUFFER_USAGE_TRANSFER_DST_BIT, &read[i], &fixture.error));
+        run_layered(&p, &image, read);
+        for (int i = 0; i <= LAYERS; ++i) {
+            const float *texels = read[i].mapped;
+            for (size_t t = 0; t < picture_texels(&p); ++t) {
+                const double want = i == LAYER ? p.values[SLOT_AO][t] : 0.25;
+                if ((double)texels[t] != want)
+                    fail_msg("%s %d, texel %zu is %g, want %g", i < LAYERS ? "layer" : "level 0 of",
+                             i, t, (double)texels[t], want);
+            }
+            gpu_buffer_destroy(&fixture.gpu, &read[i]);
+        }
+        check_shaded(p.values[SLOT_AO], picture_texels(&p));
+        gpu_image_destroy(&fixture.gpu, &image);
         picture_free(&p);
     }
     give_back();
@@ -325,6 +444,7 @@ int main(void)
         gpu_test(composite_reads_the_copy),
         gpu_test(variant_of_the_format_is_found),
         gpu_test(waiting_for_shader_writes_waits_for_the_copy),
+        gpu_test(one_level_of_one_layer_is_written),
     };
     return fixture_run(tests);
 }
