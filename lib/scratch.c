@@ -147,9 +147,13 @@ static vkao_result create_image(const vkao_context *ctx, struct scratch_image *i
 static vkao_result create_buffer(const vkao_context *ctx, struct scratch_buffer *buffer,
                                  VkMemoryRequirements *all)
 {
-    /* A part's texels at most, and its bytes. */
-    const VkDeviceSize texels = buffer->parts[PART_VIEW_Z].bytes / 4;
-    if (texels > ctx->max_texels || texels * 4 > ctx->max_buffer)
+    /* The most texels of a part, of view z or in low images the ring, and the most bytes. */
+    const VkDeviceSize z = buffer->parts[PART_VIEW_Z].bytes,
+                       ring = buffer->parts[PART_HALFWAY].bytes,
+                       staged = buffer->parts[PART_STAGED].bytes,
+                       texels = (z > ring ? z : ring) / 4,
+                       bytes = texels * 4 > staged ? texels * 4 : staged;
+    if (texels > ctx->max_texels || bytes > ctx->max_buffer)
         return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
                            "frame.extent needs a buffer of %llu texels, the device's limits are %u "
                            "texels and %u bytes; images may be larger: context.scratch_layout",

@@ -50,7 +50,7 @@ uint sample_count()
 /* Any two unit vectors that make an orthonormal basis with n (Duff et al., JCGT 6(1), 2017). */
 void tangents(Real3 n, out Real3 t, out Real3 b)
 {
-    real s = choose(real(-1.0), real(1.0), above(n.z, real(0.0)));
+    real s = choose(real(1.0), real(-1.0), above(real(0.0), n.z));
     real a = -1.0 / (s + n.z);
     real c = n.x * n.y * a;
     t = Real3(1.0 + s * n.x * n.x * a, s * c, -s * n.x);

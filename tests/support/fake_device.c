@@ -1,13 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fake_internal.h"
 
-#include <inttypes.h>
 #include <string.h>
-
-static uint64_t number(const void *handle)
-{
-    return (uint64_t)(uintptr_t)handle;
-}
 
 /* Whether this call, which returns VkResult, is the one that shall fail. */
 static bool fails(struct fake_vulkan *fake, const char *name)
@@ -16,28 +10,6 @@ static bool fails(struct fake_vulkan *fake, const char *name)
         return false;
     fake->failed = name;
     return true;
-}
-
-static struct fake_object *find(struct fake_vulkan *fake, uint64_t handle)
-{
-    for (size_t i = 0; i < fake->object_count; ++i) {
-        if (fake->objects[i].handle == handle)
-            return &fake->objects[i];
-    }
-    return NULL;
-}
-
-static struct fake_object *use(struct fake_vulkan *fake, const char *call, VkObjectType type,
-                               uint64_t handle)
-{
-    struct fake_object *object = find(fake, handle);
-    if (!object || object->type != type)
-        fake_misuse(fake, "%s: 0x%" PRIx64 " is no handle of type %d", call, handle, (int)type);
-    else if (!object->alive)
-        fake_misuse(fake, "%s: 0x%" PRIx64 " was destroyed before", call, handle);
-    else
-        return object;
-    return NULL;
 }
 
 static bool same_callbacks(const VkAllocationCallbacks *a, const VkAllocationCallbacks *b)
@@ -85,7 +57,7 @@ static void destroy(VkDevice device, const char *name, VkObjectType type, uint64
     fake_note(fake, name)->handle = handle;
     if (!handle)
         return;
-    struct fake_object *object = use(fake, name, type, handle);
+    struct fake_object *object = fake_use(fake, name, type, handle);
     if (!object)
         return;
     if (object->of_caller)
@@ -99,6 +71,22 @@ static void destroy(VkDevice device, const char *name, VkObjectType type, uint64
         if (fake->objects[i].parent == handle &&
             fake->objects[i].type == VK_OBJECT_TYPE_DESCRIPTOR_SET)
             fake->objects[i].alive = false;
+    }
+}
+
+/* Of the formats that views of the library's buffer have. */
+static VkDeviceSize texel_bytes(VkFormat format)
+{
+    switch (format) {
+    case VK_FORMAT_R8_UINT:
+        return 1;
+    case VK_FORMAT_R16_UINT:
+        return 2;
+    case VK_FORMAT_R32_UINT:
+    case VK_FORMAT_R32_SFLOAT:
+        return 4;
+    default:
+        return 16;
     }
 }
 
@@ -126,7 +114,7 @@ static void destroy(VkDevice device, const char *name, VkObjectType type, uint64
     static VKAPI_ATTR void VKAPI_CALL fake_Destroy##Name(VkDevice device, Vk##Name handle,         \
                                                          const VkAllocationCallbacks *allocator)   \
     {                                                                                              \
-        destroy(device, "vkDestroy" #Name, VK_OBJECT_TYPE_##TYPE, number(handle), allocator);      \
+        destroy(device, "vkDestroy" #Name, VK_OBJECT_TYPE_##TYPE, fake_number(handle), allocator);      \
     }
 
 FAKE_CREATE(ShaderModule, SHADER_MODULE, {
@@ -137,7 +125,7 @@ FAKE_DESTROY(ShaderModule, SHADER_MODULE)
 FAKE_CREATE(DescriptorSetLayout, DESCRIPTOR_SET_LAYOUT, {})
 FAKE_DESTROY(DescriptorSetLayout, DESCRIPTOR_SET_LAYOUT)
 FAKE_CREATE(PipelineLayout, PIPELINE_LAYOUT, {
-    use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, number(info->pSetLayouts[0]));
+    fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, fake_number(info->pSetLayouts[0]));
 })
 FAKE_DESTROY(PipelineLayout, PIPELINE_LAYOUT)
 FAKE_CREATE(DescriptorPool, DESCRIPTOR_POOL, {})
@@ -146,8 +134,8 @@ FAKE_CREATE(Image, IMAGE, { call->image = object->image = *info; })
 FAKE_DESTROY(Image, IMAGE)
 FAKE_CREATE(ImageView, IMAGE_VIEW, {
     const struct fake_object *image =
-        use(fake, call->name, VK_OBJECT_TYPE_IMAGE, number(info->image));
-    object->parent = number(info->image);
+        fake_use(fake, call->name, VK_OBJECT_TYPE_IMAGE, fake_number(info->image));
+    object->parent = fake_number(info->image);
     if (image && !image->memory)
         fake_misuse(fake, "vkCreateImageView: the image has no memory");
     if (image && image->image.format != info->format)
@@ -161,8 +149,13 @@ FAKE_CREATE(Buffer, BUFFER, {
 FAKE_DESTROY(Buffer, BUFFER)
 FAKE_CREATE(BufferView, BUFFER_VIEW, {
     const struct fake_object *buffer =
-        use(fake, call->name, VK_OBJECT_TYPE_BUFFER, number(info->buffer));
-    object->parent = number(info->buffer);
+        fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, fake_number(info->buffer));
+    object->parent = fake_number(info->buffer);
+    if (info->range / texel_bytes(info->format) > fake->max_texels)
+        fake_misuse(fake, "vkCreateBufferView: more texels than maxTexelBufferElements");
+    call->format = info->format;
+    call->offset = info->offset;
+    call->size = info->range;
     if (buffer && !buffer->memory)
         fake_misuse(fake, "vkCreateBufferView: the buffer has no memory");
     if (buffer && (!info->range || info->offset + info->range > buffer->bytes))
@@ -183,8 +176,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_CreateComputePipelines(
     fake->calls[fake->call_count - 1].cache = cache;
     if (count != 1)
         fake_misuse(fake, "the fake builds one pipeline a call");
-    use(fake, "vkCreateComputePipelines", VK_OBJECT_TYPE_SHADER_MODULE, number(info->stage.module));
-    use(fake, "vkCreateComputePipelines", VK_OBJECT_TYPE_PIPELINE_LAYOUT, number(info->layout));
+    fake_use(fake, "vkCreateComputePipelines", VK_OBJECT_TYPE_SHADER_MODULE, fake_number(info->stage.module));
+    fake_use(fake, "vkCreateComputePipelines", VK_OBJECT_TYPE_PIPELINE_LAYOUT, fake_number(info->layout));
     *out = (VkPipeline)(uintptr_t)handle;
     return result;
 }
@@ -197,10 +190,10 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_AllocateDescriptorSets(
     *out = (VkDescriptorSet)(uintptr_t)0xdeadbeef;
     if (fails(fake, call->name))
         return fake->fail_result;
-    use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_POOL, number(info->descriptorPool));
-    use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, number(info->pSetLayouts[0]));
+    fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_POOL, fake_number(info->descriptorPool));
+    fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, fake_number(info->pSetLayouts[0]));
     struct fake_object *object = fake_add(fake, VK_OBJECT_TYPE_DESCRIPTOR_SET);
-    object->parent = number(info->descriptorPool);
+    object->parent = fake_number(info->descriptorPool);
     call->handle = object->handle;
     *out = (VkDescriptorSet)(uintptr_t)object->handle;
     return VK_SUCCESS;
@@ -216,25 +209,26 @@ static VKAPI_ATTR void VKAPI_CALL fake_UpdateDescriptorSets(
     if (copy_count || count > FAKE_WRITES)
         fake_misuse(fake, "vkUpdateDescriptorSets: %u writes, %u copies", count, copy_count);
     for (uint32_t i = 0; i < count && i < FAKE_WRITES; ++i) {
-        struct fake_object *set = use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET,
-                                      number(writes[i].dstSet));
+        struct fake_object *set = fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET,
+                                      fake_number(writes[i].dstSet));
         if (writes[i].descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER) {
             const VkDescriptorBufferInfo *info = writes[i].pBufferInfo;
             const struct fake_object *buffer =
-                use(fake, call->name, VK_OBJECT_TYPE_BUFFER, number(info->buffer));
-            if (buffer && (!info->range || info->offset + info->range > buffer->bytes))
-                fake_misuse(fake, "vkUpdateDescriptorSets: beyond the buffer");
+                fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, fake_number(info->buffer));
+            if (buffer && (!info->range || info->offset + info->range > buffer->bytes ||
+                           info->range > fake->max_buffer))
+                fake_misuse(fake, "vkUpdateDescriptorSets: beyond the buffer, or the limit");
             continue;
         }
         if (writes[i].descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER) {
-            use(fake, call->name, VK_OBJECT_TYPE_BUFFER_VIEW, number(writes[i].pTexelBufferView[0]));
+            fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER_VIEW, fake_number(writes[i].pTexelBufferView[0]));
             continue;
         }
-        uint64_t view = number(writes[i].pImageInfo->imageView);
-        use(fake, call->name, VK_OBJECT_TYPE_IMAGE_VIEW, view);
+        uint64_t view = fake_number(writes[i].pImageInfo->imageView);
+        fake_use(fake, call->name, VK_OBJECT_TYPE_IMAGE_VIEW, view);
         if (set && writes[i].dstBinding < FAKE_WRITES)
             set->views[writes[i].dstBinding] = view;
-        call->handle = number(writes[i].dstSet);
+        call->handle = fake_number(writes[i].dstSet);
         call->writes[call->write_count].binding = writes[i].dstBinding;
         call->writes[call->write_count].type = writes[i].descriptorType;
         call->writes[call->write_count].view = view;
@@ -246,9 +240,9 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetImageMemoryRequirements(VkDevice devic
                                                                   VkMemoryRequirements *out)
 {
     struct fake_vulkan *fake = fake_of(device);
-    fake_note(fake, "vkGetImageMemoryRequirements")->handle = number(image);
-    const struct fake_object *object = use(fake, "vkGetImageMemoryRequirements",
-                                           VK_OBJECT_TYPE_IMAGE, number(image));
+    fake_note(fake, "vkGetImageMemoryRequirements")->handle = fake_number(image);
+    const struct fake_object *object = fake_use(fake, "vkGetImageMemoryRequirements",
+                                           VK_OBJECT_TYPE_IMAGE, fake_number(image));
     VkDeviceSize texel = object && object->image.format == VK_FORMAT_R16_SFLOAT ? 2 : 4;
     *out = (VkMemoryRequirements){
         .size = object ? texel * object->image.extent.width * object->image.extent.height : 0,
@@ -261,9 +255,9 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetBufferMemoryRequirements(VkDevice devi
                                                                    VkMemoryRequirements *out)
 {
     struct fake_vulkan *fake = fake_of(device);
-    fake_note(fake, "vkGetBufferMemoryRequirements")->handle = number(buffer);
-    const struct fake_object *object = use(fake, "vkGetBufferMemoryRequirements",
-                                           VK_OBJECT_TYPE_BUFFER, number(buffer));
+    fake_note(fake, "vkGetBufferMemoryRequirements")->handle = fake_number(buffer);
+    const struct fake_object *object = fake_use(fake, "vkGetBufferMemoryRequirements",
+                                           VK_OBJECT_TYPE_BUFFER, fake_number(buffer));
     *out = (VkMemoryRequirements){
         .size = object ? object->bytes : 0,
         .alignment = fake->image_alignment,
@@ -279,16 +273,16 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_BindBufferMemory(VkDevice device, VkB
     struct fake_call *call = fake_note(fake, "vkBindBufferMemory");
     if (fails(fake, call->name))
         return fake->fail_result;
-    struct fake_object *object = use(fake, call->name, VK_OBJECT_TYPE_BUFFER, number(buffer));
-    use(fake, call->name, VK_OBJECT_TYPE_DEVICE_MEMORY, number(memory));
+    struct fake_object *object = fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, fake_number(buffer));
+    fake_use(fake, call->name, VK_OBJECT_TYPE_DEVICE_MEMORY, fake_number(memory));
     if (offset % fake->image_alignment)
         fake_misuse(fake, "vkBindBufferMemory: offset %llu", (unsigned long long)offset);
     if (object && object->memory)
         fake_misuse(fake, "vkBindBufferMemory: the buffer has memory");
     if (object)
-        object->memory = number(memory);
-    call->handle = number(buffer);
-    call->memory = number(memory);
+        object->memory = fake_number(memory);
+    call->handle = fake_number(buffer);
+    call->memory = fake_number(memory);
     call->offset = offset;
     return VK_SUCCESS;
 }
@@ -312,7 +306,7 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_AllocateMemory(VkDevice device,
 static VKAPI_ATTR void VKAPI_CALL fake_FreeMemory(VkDevice device, VkDeviceMemory memory,
                                                   const VkAllocationCallbacks *allocator)
 {
-    destroy(device, "vkFreeMemory", VK_OBJECT_TYPE_DEVICE_MEMORY, number(memory), allocator);
+    destroy(device, "vkFreeMemory", VK_OBJECT_TYPE_DEVICE_MEMORY, fake_number(memory), allocator);
 }
 
 static VKAPI_ATTR VkResult VKAPI_CALL fake_BindImageMemory(VkDevice device, VkImage image,
@@ -323,16 +317,16 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_BindImageMemory(VkDevice device, VkIm
     struct fake_call *call = fake_note(fake, "vkBindImageMemory");
     if (fails(fake, call->name))
         return fake->fail_result;
-    struct fake_object *object = use(fake, call->name, VK_OBJECT_TYPE_IMAGE, number(image));
-    use(fake, call->name, VK_OBJECT_TYPE_DEVICE_MEMORY, number(memory));
+    struct fake_object *object = fake_use(fake, call->name, VK_OBJECT_TYPE_IMAGE, fake_number(image));
+    fake_use(fake, call->name, VK_OBJECT_TYPE_DEVICE_MEMORY, fake_number(memory));
     if (offset % fake->image_alignment)
         fake_misuse(fake, "vkBindImageMemory: offset %llu", (unsigned long long)offset);
     if (object && object->memory)
         fake_misuse(fake, "vkBindImageMemory: the image has memory");
     if (object)
-        object->memory = number(memory);
-    call->handle = number(image);
-    call->memory = number(memory);
+        object->memory = fake_number(memory);
+    call->handle = fake_number(image);
+    call->memory = fake_number(memory);
     call->offset = offset;
     return VK_SUCCESS;
 }
@@ -343,96 +337,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_SetDebugUtilsObjectNameEXT(
     struct fake_vulkan *fake = fake_of(device);
     struct fake_call *call = fake_note(fake, "vkSetDebugUtilsObjectNameEXT");
     call->handle = info->objectHandle;
-    use(fake, call->name, info->objectType, info->objectHandle);
+    fake_use(fake, call->name, info->objectType, info->objectHandle);
     return fails(fake, call->name) ? fake->fail_result : VK_SUCCESS;
-}
-
-static VKAPI_ATTR void VKAPI_CALL fake_CmdPipelineBarrier(
-    VkCommandBuffer cmd, VkPipelineStageFlags src, VkPipelineStageFlags dst,
-    VkDependencyFlags flags, uint32_t memory_count, const VkMemoryBarrier *memory,
-    uint32_t buffer_count, const VkBufferMemoryBarrier *buffers, uint32_t image_count,
-    const VkImageMemoryBarrier *images)
-{
-    struct fake_vulkan *fake = fake_of(cmd);
-    struct fake_call *call = fake_note(fake, "vkCmdPipelineBarrier");
-    (void)flags;
-    (void)buffers;
-    call->src_stages = src;
-    call->dst_stages = dst;
-    call->memory_barrier_count = memory_count;
-    call->buffer_barrier_count = buffer_count;
-    call->image_barrier_count = image_count;
-    if (memory_count)
-        call->memory_barrier = memory[0];
-    if (image_count > FAKE_BARRIERS)
-        fake_misuse(fake, "vkCmdPipelineBarrier: %u image barriers", image_count);
-    for (uint32_t i = 0; i < image_count && i < FAKE_BARRIERS; ++i) {
-        use(fake, call->name, VK_OBJECT_TYPE_IMAGE, number(images[i].image));
-        call->image_barriers[i] = images[i];
-    }
-}
-
-static VKAPI_ATTR void VKAPI_CALL fake_CmdBindPipeline(VkCommandBuffer cmd,
-                                                       VkPipelineBindPoint point,
-                                                       VkPipeline pipeline)
-{
-    struct fake_vulkan *fake = fake_of(cmd);
-    struct fake_call *call = fake_note(fake, "vkCmdBindPipeline");
-    use(fake, call->name, VK_OBJECT_TYPE_PIPELINE, number(pipeline));
-    call->handle = fake->bound_pipeline = number(pipeline);
-    call->bind_point = point;
-}
-
-static VKAPI_ATTR void VKAPI_CALL fake_CmdBindDescriptorSets(
-    VkCommandBuffer cmd, VkPipelineBindPoint point, VkPipelineLayout layout, uint32_t first,
-    uint32_t count, const VkDescriptorSet *sets, uint32_t dynamic_count, const uint32_t *dynamic)
-{
-    struct fake_vulkan *fake = fake_of(cmd);
-    struct fake_call *call = fake_note(fake, "vkCmdBindDescriptorSets");
-    (void)dynamic;
-    use(fake, call->name, VK_OBJECT_TYPE_PIPELINE_LAYOUT, number(layout));
-    use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET, number(sets[0]));
-    if (dynamic_count)
-        fake_misuse(fake, "vkCmdBindDescriptorSets: no dynamic descriptors in the layout");
-    call->handle = fake->bound_set = number(sets[0]);
-    call->bind_point = point;
-    call->first_set = first;
-    call->set_count = count;
-}
-
-static VKAPI_ATTR void VKAPI_CALL fake_CmdPushConstants(VkCommandBuffer cmd,
-                                                        VkPipelineLayout layout,
-                                                        VkShaderStageFlags stages, uint32_t offset,
-                                                        uint32_t size, const void *values)
-{
-    struct fake_vulkan *fake = fake_of(cmd);
-    struct fake_call *call = fake_note(fake, "vkCmdPushConstants");
-    use(fake, call->name, VK_OBJECT_TYPE_PIPELINE_LAYOUT, number(layout));
-    call->push_stages = stages;
-    call->push_offset = offset;
-    call->push_bytes = size;
-    if (offset % 4 || size % 4 || !size || offset + size > FAKE_PUSH_BYTES)
-        fake_misuse(fake, "vkCmdPushConstants: %u bytes at %u", size, offset);
-    else
-        memcpy(call->push + offset, values, size);
-}
-
-static VKAPI_ATTR void VKAPI_CALL fake_CmdDispatch(VkCommandBuffer cmd, uint32_t x, uint32_t y,
-                                                   uint32_t z)
-{
-    struct fake_vulkan *fake = fake_of(cmd);
-    struct fake_call *call = fake_note(fake, "vkCmdDispatch");
-    call->groups[0] = x;
-    call->groups[1] = y;
-    call->groups[2] = z;
-    call->handle = fake->bound_pipeline;
-    use(fake, call->name, VK_OBJECT_TYPE_PIPELINE, fake->bound_pipeline);
-    const struct fake_object *set = use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET,
-                                        fake->bound_set);
-    for (size_t i = 0; set && i < FAKE_WRITES; ++i) {
-        if (set->views[i])
-            use(fake, call->name, VK_OBJECT_TYPE_IMAGE_VIEW, set->views[i]);
-    }
 }
 
 static VKAPI_ATTR void VKAPI_CALL fake_CmdBeginDebugUtilsLabelEXT(VkCommandBuffer cmd,
@@ -468,7 +374,4 @@ const struct fake_entry fake_device_functions[FAKE_DEVICE_FUNCTIONS] = {
     ENTRY(CreateBuffer),              ENTRY(DestroyBuffer),
     ENTRY(GetBufferMemoryRequirements), ENTRY(BindBufferMemory),
     ENTRY(CreateBufferView),          ENTRY(DestroyBufferView),
-    ENTRY(CmdPipelineBarrier),        ENTRY(CmdBindPipeline),
-    ENTRY(CmdBindDescriptorSets),     ENTRY(CmdPushConstants),
-    ENTRY(CmdDispatch),
 };

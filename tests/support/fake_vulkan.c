@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fake_internal.h"
 
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -47,6 +48,33 @@ struct fake_object *fake_add(struct fake_vulkan *fake, VkObjectType type)
     return object;
 }
 
+uint64_t fake_number(const void *handle)
+{
+    return (uint64_t)(uintptr_t)handle;
+}
+
+static struct fake_object *find(struct fake_vulkan *fake, uint64_t handle)
+{
+    for (size_t i = 0; i < fake->object_count; ++i) {
+        if (fake->objects[i].handle == handle)
+            return &fake->objects[i];
+    }
+    return NULL;
+}
+
+struct fake_object *fake_use(struct fake_vulkan *fake, const char *call, VkObjectType type,
+                             uint64_t handle)
+{
+    struct fake_object *object = find(fake, handle);
+    if (!object || object->type != type)
+        fake_misuse(fake, "%s: 0x%" PRIx64 " is no handle of type %d", call, handle, (int)type);
+    else if (!object->alive)
+        fake_misuse(fake, "%s: 0x%" PRIx64 " was destroyed before", call, handle);
+    else
+        return object;
+    return NULL;
+}
+
 static VKAPI_ATTR void VKAPI_CALL fake_GetPhysicalDeviceProperties(VkPhysicalDevice device,
                                                                    VkPhysicalDeviceProperties *out)
 {
@@ -81,6 +109,8 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetPhysicalDeviceFormatProperties(VkPhysi
     *out = (VkFormatProperties){.optimalTilingFeatures = all,
                                 .linearTilingFeatures = all,
                                 .bufferFeatures = fake->buffer_features};
+    if (format == fake->no_texel_buffer)
+        out->bufferFeatures = 0;
     for (size_t i = 0; i < fake->format_count; ++i) {
         if (fake->formats[i].format == format) {
             out->optimalTilingFeatures = fake->formats[i].optimal;
@@ -138,7 +168,10 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL fake_get_device_proc_addr(VkDevice devi
 {
     struct fake_vulkan *fake = fake_of(device);
     remember(fake, fake_device_functions, FAKE_DEVICE_FUNCTIONS, name);
-    return look_up(fake, fake_device_functions, FAKE_DEVICE_FUNCTIONS, name);
+    remember(fake, fake_commands, FAKE_COMMANDS, name);
+    PFN_vkVoidFunction found =
+        look_up(fake, fake_device_functions, FAKE_DEVICE_FUNCTIONS, name);
+    return found ? found : look_up(fake, fake_commands, FAKE_COMMANDS, name);
 }
 
 void fake_init(struct fake_vulkan *fake)
@@ -210,6 +243,14 @@ VkImageView fake_caller_view(struct fake_vulkan *fake)
     struct fake_object *object = fake_add(fake, VK_OBJECT_TYPE_IMAGE_VIEW);
     object->of_caller = true;
     return (VkImageView)(uintptr_t)object->handle;
+}
+
+VkImage fake_caller_image(struct fake_vulkan *fake, const VkImageCreateInfo *info)
+{
+    struct fake_object *object = fake_add(fake, VK_OBJECT_TYPE_IMAGE);
+    object->of_caller = true;
+    object->image = *info;
+    return (VkImage)(uintptr_t)object->handle;
 }
 
 VkDeviceMemory fake_caller_memory(struct fake_vulkan *fake)

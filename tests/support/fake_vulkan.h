@@ -14,7 +14,7 @@ enum {
     FAKE_OBJECTS = 4096,
     FAKE_CALLS = 2048,
     FAKE_BARRIERS = 8,
-    FAKE_WRITES = 22,
+    FAKE_WRITES = 27,
     FAKE_PUSH_BYTES = 128,
     FAKE_FORMATS = 8,
     FAKE_NAMES = 64
@@ -50,10 +50,15 @@ struct fake_call {
     } writes[FAKE_WRITES];
 
     uint64_t memory; /* vkBindImageMemory */
-    VkDeviceSize size, offset;
+    VkDeviceSize size, offset; /* also of a buffer view */
     uint32_t memory_type;
     VkImageCreateInfo image;
+    VkFormat format; /* of a buffer view */
     VkPipelineCache cache;
+
+    uint64_t source; /* vkCmdCopyBufferToImage: the buffer; handle: the image */
+    VkImageLayout layout;
+    VkBufferImageCopy copy; /* the only region */
 };
 
 struct fake_object {
@@ -86,6 +91,7 @@ struct fake_vulkan {
     } formats[FAKE_FORMATS]; /* exceptions; every other format can be sampled and stored to */
     size_t format_count;
     VkFormatFeatureFlags buffer_features; /* of every format */
+    VkFormat no_texel_buffer;             /* but of this one; UNDEFINED = none */
     uint32_t max_texels, max_buffer;      /* in a texel buffer; bytes of a storage buffer */
     bool debug_utils;
     const char *missing; /* proc-addr answers NULL for this name */
@@ -124,6 +130,8 @@ void fake_limit_format(struct fake_vulkan *fake, VkFormat format, VkFormatFeatur
                        VkFormatFeatureFlags linear);
 /* Objects of the caller: vkao may use them and must not destroy them. */
 VkImageView fake_caller_view(struct fake_vulkan *fake);
+/* With its format, extent, levels and layers; the rest of info may be zero. */
+VkImage fake_caller_image(struct fake_vulkan *fake, const VkImageCreateInfo *info);
 VkDeviceMemory fake_caller_memory(struct fake_vulkan *fake);
 
 /* Objects that the library has made and not destroyed. */

@@ -74,6 +74,7 @@ struct picture {
                                       others 4 */
     bool output_is_color;          /* composite in place */
     bool half_resolution;
+    bool staged; /* ao_image is given */
     VkDeviceMemory scratch_memory; /* null = the library's own */
     VkDeviceSize scratch_offset;
     vkao_view view;

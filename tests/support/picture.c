@@ -185,6 +185,8 @@ void picture_open(const struct picture *p, struct picture_gpu *g)
     }
     if (p->output_is_color)
         g->slots.output = g->slots.color;
+    if (p->staged)
+        g->slots.ao_image = g->images[SLOT_AO].image;
     picture_frame_info(p, g, &info);
     check_vkao(vkao_frame_create(fixture.context, &info, &g->frame));
 }

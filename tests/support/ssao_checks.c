@@ -10,13 +10,13 @@
 
 /* Single and double precision disagree about a few samples at the edge of a texel or of blocking. A
  * point or ray that flips is worth 2/n, a horizon as much as the step to the next sample, a sector
- * bound of VBAO, which is approximated by a polynomial in the shader, 1/62 of a slice. */
+ * bound of VBAO, which the shader has from a cubic that is off by up to .0053, 1/31 of a slice. */
 static const struct {
     double mean, p99;
 } tolerances[] = {
     [VKAO_SSAO_SPHERE] = {1e-4, 1e-3}, [VKAO_SSAO_HEMISPHERE] = {1e-4, 1e-3},
     [VKAO_SSAO_HBAO] = {1e-4, 1e-3},   [VKAO_SSAO_GTAO] = {1e-4, 1e-3},
-    [VKAO_SSAO_VBAO] = {1e-3, 1.5e-2}, [VKAO_SSAO_RAYMARCH] = {1e-4, 1e-3},
+    [VKAO_SSAO_VBAO] = {1e-3, 2.2e-2}, [VKAO_SSAO_RAYMARCH] = {1e-4, 1e-3},
 };
 
 void check_ssao(struct picture *p, ssao_reference *reference, const char *what)

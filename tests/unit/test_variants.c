@@ -95,7 +95,7 @@ static const struct {
     {"variant.struct_size", "8", offsetof(struct settings, variant.struct_size), 8, 4},
     {"variant.half_resolution", "2", offsetof(struct settings, variant.half_resolution), 2, 4},
     {"bent_normals", "3", offsetof(struct settings, variant.bent_normals), 3, 4},
-    {"reserved", "7", offsetof(struct settings, variant.reserved), 7, 4},
+    {"staged_ao", "7", offsetof(struct settings, variant.staged_ao), 7, 4},
     {"variant.view", "NULL", offsetof(struct settings, variant.view), 0, sizeof(void *)},
     {"ssao", "NULL", offsetof(struct settings, variant.ssao), 0, sizeof(void *)},
     {"variant.view.struct_size", "0", offsetof(struct settings, view.struct_size), 0, 4},
