@@ -13,6 +13,7 @@ struct blur {
     const double *stored;
     double ndc_width; /* scene units across the viewport, what sharpness is relative to without
                          perspective */
+    bool half_resolution;
 };
 
 static size_t texel_index(const struct blur *blur, int x, int y)
@@ -43,7 +44,8 @@ static double normal_weight(const struct blur *blur, size_t center, size_t tap)
     return pow(fmax(0.0, ref_dot(a, b)), (double)blur->params->normal_power);
 }
 
-/* exp(-2 k^2 / r^2) * max(0, 1 - sharpness |z_k - z - slope k| / z) * max(0, n.n_k)^normal_power */
+/* exp(-2 k^2 / r^2) * max(0, 1 - sharpness |z_k - z - slope k| / z) * max(0, n.n_k)^normal_power; at half
+ * resolution the larger of the distances by the centre's slope and by the tap's */
 static double blurred(const struct blur *blur, const double *ao, int x, int y, int dx, int dy)
 {
     double z = ref_scene_z(blur->scene, x, y), sum = 0.0, weights = 0.0;
@@ -59,7 +61,10 @@ static double blurred(const struct blur *blur, const double *ao, int x, int y, i
             continue;
         size_t tap = texel_index(blur, x + k * dx, y + k * dy);
         double w = radius ? exp(-2.0 * k * k / ((double)radius * radius)) : 1.0;
-        w *= fmax(0.0, 1.0 - scale * fabs(tap_z - z - s * k));
+        double off = fabs(tap_z - z - s * k);
+        if (blur->half_resolution)
+            off = fmax(off, fabs(tap_z - z - slope(blur, x + k * dx, y + k * dy, dx, dy) * k));
+        w *= fmax(0.0, 1.0 - scale * off);
         if (k != 0)
             w *= normal_weight(blur, texel_index(blur, x, y), tap);
         sum += w * ao[tap];
@@ -74,15 +79,16 @@ double ref_blur_finish(const vkao_blur_params *params, double visibility)
     return pow(v, (double)params->power);
 }
 
-void ref_blur_channel(const struct ref_scene *scene, const vkao_blur_params *params,
-                      vkao_normal_encoding encoding, const double *stored, const double *noisy,
-                      double *out)
+static void blur_channel(const struct ref_scene *scene, const vkao_blur_params *params,
+                         vkao_normal_encoding encoding, const double *stored, const double *noisy,
+                         bool half_resolution, double *out)
 {
     double left[3], right[3];
     const double *viewport = scene->view.viewport;
     ref_view_position(&scene->view, viewport[0] - 0.5, 0.0, 1.0, left);
     ref_view_position(&scene->view, viewport[0] + viewport[2] - 0.5, 0.0, 1.0, right);
-    struct blur blur = {scene, params, encoding, stored, fabs(right[0] - left[0])};
+    struct blur blur = {scene, params, encoding, stored, fabs(right[0] - left[0]),
+                        half_resolution};
     const VkRect2D *rect = &scene->view.rect, *valid = &scene->view.valid;
     double *halfway = malloc((size_t)scene->width * scene->height * sizeof *halfway);
     if (!halfway)
@@ -99,11 +105,18 @@ void ref_blur_channel(const struct ref_scene *scene, const vkao_blur_params *par
     free(halfway);
 }
 
+void ref_blur_channel_half(const struct ref_scene *scene, const vkao_blur_params *params,
+                           vkao_normal_encoding encoding, const double *stored,
+                           const double *noisy, double *out)
+{
+    blur_channel(scene, params, encoding, stored, noisy, true, out);
+}
+
 void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params,
               vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao)
 {
     const VkRect2D *rect = &scene->view.rect;
-    ref_blur_channel(scene, params, encoding, stored, noisy, ao);
+    blur_channel(scene, params, encoding, stored, noisy, false, ao);
     for (int y = rect->offset.y; y < rect->offset.y + (int)rect->extent.height; ++y) {
         for (int x = rect->offset.x; x < rect->offset.x + (int)rect->extent.width; ++x) {
             size_t i = (size_t)y * scene->width + (size_t)x;

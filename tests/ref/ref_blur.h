@@ -10,10 +10,10 @@
  * rect of ao. */
 void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params,
               vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao);
-/* One channel before intensity and power, as half resolution passes it on. */
-void ref_blur_channel(const struct ref_scene *scene, const vkao_blur_params *params,
-                      vkao_normal_encoding encoding, const double *stored, const double *noisy,
-                      double *out);
+/* One channel of a half-resolution scene, as it is passed on: before intensity and power. */
+void ref_blur_channel_half(const struct ref_scene *scene, const vkao_blur_params *params,
+                           vkao_normal_encoding encoding, const double *stored,
+                           const double *noisy, double *out);
 /* Intensity, then power. */
 double ref_blur_finish(const vkao_blur_params *params, double visibility);
 
