@@ -132,9 +132,10 @@ static vkao_result read_device(vkao_context *ctx, vkao_scratch_layout layout)
                                            properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU);
     ctx->buffers = wanted && has_buffer_formats(ctx);
     if (layout == VKAO_SCRATCH_BUFFERS && !ctx->buffers)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
-                           "context.scratch_layout is BUFFERS, but the device cannot store R8_UINT and "
-                           "R16_UINT texels in buffers");
+        return vkao_refuse(
+            &ctx->log, VKAO_ERROR_UNSUPPORTED,
+            "context.scratch_layout is BUFFERS, but the device cannot store R8_UINT and "
+            "R16_UINT texels in buffers");
     return VKAO_SUCCESS;
 }
 

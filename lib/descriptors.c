@@ -100,9 +100,8 @@ void descriptors_write(const vkao_frame *frame)
             .pImageInfo = &images[count],
         };
         if (view) {
-            buffers[count] =
-                (VkDescriptorBufferInfo){buffer->buffer, buffer->parts[view->part].offset,
-                                         buffer->parts[view->part].bytes};
+            buffers[count] = (VkDescriptorBufferInfo){
+                buffer->buffer, buffer->parts[view->part].offset, buffer->parts[view->part].bytes};
             writes[count].pImageInfo = NULL;
             writes[count].pBufferInfo = &buffers[count];
             writes[count].pTexelBufferView = &buffer->views[i - VKAO_BINDING_Z];

@@ -61,8 +61,7 @@ vkao_result vkao_import(const struct vkao_logger *log, const char *name, const v
                         size_t known);
 
 vkao_result ssao_params_check(const vkao_context *ctx, const struct vkao_logger *log, bool bent,
-                              const vkao_ssao_params *in,
-                              vkao_ssao_params *out);
+                              const vkao_ssao_params *in, vkao_ssao_params *out);
 vkao_result blur_params_check(const struct vkao_logger *log, const vkao_blur_params *in,
                               vkao_blur_params *out);
 vkao_result composite_params_check(const vkao_frame *frame, const vkao_composite_params *in,

@@ -158,18 +158,24 @@ static vkao_result create_buffer(const vkao_context *ctx, struct scratch_buffer 
                            "frame.extent needs a buffer of %llu texels, the device's limits are %u "
                            "texels and %u bytes; images may be larger: context.scratch_layout",
                            (unsigned long long)texels, ctx->max_texels, ctx->max_buffer);
-    VkResult result = ctx->vk.CreateBuffer(ctx->device,
-                                           &(VkBufferCreateInfo){
-                                               .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-                                               .size = buffer->bytes,
-                                               .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                                                        VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                                                        VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT |
-                                                        VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-                                                        VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT,
-                                               .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
-                                           },
-                                           ctx->allocator, &buffer->buffer);
+    /* Of an indirect dispatch, on every device. */
+    const VkDeviceSize tiles = buffer->parts[PART_TILES].bytes / 4;
+    if (tiles > UINT16_MAX)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
+                           "frame.extent needs %llu tiles in buffers, want at most %u; images may "
+                           "be larger: context.scratch_layout",
+                           (unsigned long long)tiles, UINT16_MAX);
+    VkResult result = ctx->vk.CreateBuffer(
+        ctx->device,
+        &(VkBufferCreateInfo){
+            .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
+            .size = buffer->bytes,
+            .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                     VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT,
+            .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+        },
+        ctx->allocator, &buffer->buffer);
     if (result != VK_SUCCESS) {
         buffer->buffer = VK_NULL_HANDLE;
         return vkao_vk_failed(&ctx->log, "vkCreateBuffer", result);
@@ -254,16 +260,15 @@ static vkao_result bind_buffer(const vkao_context *ctx, struct scratch_buffer *b
         const struct scratch_view *view = scratch_view(VKAO_BINDING_Z + i);
         if (!view->format || !buffer->parts[view->part].bytes)
             continue;
-        result = ctx->vk.CreateBufferView(
-            ctx->device,
-            &(VkBufferViewCreateInfo){
-                .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
-                .buffer = buffer->buffer,
-                .format = view->format,
-                .offset = buffer->parts[view->part].offset,
-                .range = buffer->parts[view->part].bytes,
-            },
-            ctx->allocator, &buffer->views[i]);
+        result = ctx->vk.CreateBufferView(ctx->device,
+                                          &(VkBufferViewCreateInfo){
+                                              .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                              .buffer = buffer->buffer,
+                                              .format = view->format,
+                                              .offset = buffer->parts[view->part].offset,
+                                              .range = buffer->parts[view->part].bytes,
+                                          },
+                                          ctx->allocator, &buffer->views[i]);
         if (result != VK_SUCCESS) {
             buffer->views[i] = VK_NULL_HANDLE;
             return vkao_vk_failed(&ctx->log, "vkCreateBufferView", result);

@@ -25,7 +25,15 @@ struct scratch_image {
     VkDeviceSize offset;
 };
 
-enum scratch_part { PART_VIEW_Z, PART_PACKED, PART_HALFWAY, PART_BLURRED, PART_STAGED, PART_TILES, PART_COUNT };
+enum scratch_part {
+    PART_VIEW_Z,
+    PART_PACKED,
+    PART_HALFWAY,
+    PART_BLURRED,
+    PART_STAGED,
+    PART_TILES,
+    PART_COUNT
+};
 
 /* Bindings from VKAO_BINDING_Z on. */
 enum { SCRATCH_VIEWS = VKAO_BINDING_COUNT - VKAO_BINDING_Z };
@@ -39,8 +47,8 @@ struct scratch_view {
 const struct scratch_view *scratch_view(uint32_t binding);
 
 struct scratch_buffer {
-    uint32_t stride;        /* texels in a row */
-    uint32_t staged_stride; /* the same of PART_STAGED */
+    uint32_t stride;           /* texels in a row */
+    uint32_t staged_stride;    /* the same of PART_STAGED */
     VkDeviceSize staged_texel; /* bytes */
     struct {
         VkDeviceSize offset, bytes; /* in the buffer; 0 bytes = not needed */

@@ -86,11 +86,8 @@ static const struct shader shaders[PIPELINE_COUNT] = {
     [PIPELINE_BLUR_X] = {SHADER(blur), VK_FALSE, true, ONE_TEXEL},
     [PIPELINE_BLUR_Y] = {SHADER(blur), VK_TRUE, true, ONE_TEXEL},
     [PIPELINE_UPSAMPLE] = {SHADER(upsample), VK_FALSE, true, ONE_TEXEL},
-    [PIPELINE_TILES] = {"tiles",
-                        {[BUILD_BUFFERS] = CODE(tiles_buf_comp)},
-                        VK_FALSE,
-                        true,
-                        ONE_TEXEL},
+    [PIPELINE_TILES] =
+        {"tiles", {[BUILD_BUFFERS] = CODE(tiles_buf_comp)}, VK_FALSE, true, ONE_TEXEL},
     [PIPELINE_PACKED_BLUR_X] = {"blur_x",
                                 {[BUILD_BUFFERS] = CODE(blur_x_buffers_buf_comp)},
                                 VK_FALSE,
@@ -109,7 +106,8 @@ static const struct shader shaders[PIPELINE_COUNT] = {
     [PIPELINE_COMPOSITE] = {SHADER(composite), VK_FALSE, false, ONE_TEXEL},
     [PIPELINE_DEBUG] = {SHADER(debug), VK_FALSE, false, ONE_TEXEL},
     [PIPELINE_SSAO + VKAO_SSAO_SPHERE] = {SHADER(ssao_sphere), VK_FALSE, false, ONE_TEXEL},
-    [PIPELINE_SSAO + VKAO_SSAO_HEMISPHERE] = {SHADER(ssao_hemisphere), VK_FALSE, false, SSAO_TEXELS},
+    [PIPELINE_SSAO +
+        VKAO_SSAO_HEMISPHERE] = {SHADER(ssao_hemisphere), VK_FALSE, false, SSAO_TEXELS},
     [PIPELINE_SSAO + VKAO_SSAO_HBAO] = {SHADER(ssao_hbao), VK_FALSE, false, SSAO_TEXELS},
     [PIPELINE_SSAO + VKAO_SSAO_GTAO] = {SHADER(ssao_gtao), VK_FALSE, true, SSAO_TEXELS},
     [PIPELINE_SSAO + VKAO_SSAO_VBAO] = {SHADER(ssao_vbao), VK_FALSE, true, SSAO_TEXELS},
@@ -255,4 +253,3 @@ uint32_t recording_flags(const struct view_constants *view, uint32_t way,
         flags |= facts[i].is ? facts[i].flag : 0u;
     return flags;
 }
-

@@ -88,7 +88,7 @@
 #define VKAO_FLAG_NORMAL_POWER_8 0x20000u
 #define VKAO_FLAG_STAGED_SHIFT 18       /* VKAO_STAGED_*, 3 bits */
 
-/* What the last shader writes: texels of the AO image, or words that will be copied into it, in one of these formats. */
+/* What the last shader writes: texels of the AO image, or words to be copied into it, in one of these formats. */
 #define VKAO_STAGED_NONE 0
 #define VKAO_STAGED_UNORM8 1
 #define VKAO_STAGED_UNORM16 2
@@ -101,7 +101,7 @@
 /* Shaders are compiled for scratch in images, and with VKAO_BUFFERS for scratch in buffers. A CPU takes several texels
  * from a buffer at once, where an image gives them one by one; on GPUs images have the better caches.
  *
- * Rows of such a buffer have VKAO_BUFFER_PAD texels of padding on each side, as the blur reads beyond the edge, and begin
+ * Rows of such a buffer have VKAO_BUFFER_PAD texels of padding on each side, as the blur reads beyond the edge; they begin
  * at multiples of VKAO_BLUR_X_WIDTH. View z is a float per texel and has VKAO_VIEW_Z_BORDER rows above and below.
  * Noisy AO is a byte per texel, coded as (ao + OFFSET) * SCALE: one slice per texel sees between -.55 and 2 of what a
  * whole hemisphere sees, 1 must be exact, and next to its noise the rounding is nothing. AO between the directions of
@@ -154,7 +154,7 @@
 #define VKAO_STEP_LINEAR 0.50          /* distance of step t is q (LINEAR + (1 - LINEAR) q), q = (t + jitter) / steps */
 #define VKAO_THICKNESS_BASE 0.12       /* thickness of what is seen */
 #define VKAO_THICKNESS_SLOPE 0.60      /* and what it gains per distance to the side */
-#define VKAO_VBAO_JOIN 1.4             /* rise over the tangent plane, per run, up to which two samples are one surface */
+#define VKAO_VBAO_JOIN 1.4             /* rise over the tangent plane, per run, up to which two samples join */
 #define VKAO_VBAO_GAP_FRONT 0.55        /* share of the gap by which the front of a separate surface moves in */
 #define VKAO_VBAO_GAP_BACK 0.7         /* share of the gap by which its back moves out */
 #define VKAO_VBAO_ROUND 0.9            /* added before a sector bound is cut to an integer */

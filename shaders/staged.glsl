@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Final AO of four neighbours in a row, from the shaders for buffers: into the AO image texel by texel, or as words that
- * will be copied there, which a CPU does many times faster. The includer's params are as finish.glsl wants them, with
- * rect and staged_stride. */
+ * Final AO of four neighbours in a row, from the shaders for buffers: into the AO image texel by texel, or as words
+ * that will be copied there, which is many times faster on a CPU. The includer's params are as finish.glsl wants them,
+ * with rect and staged_stride. */
 #ifndef VKAO_STAGED_GLSL_
 #define VKAO_STAGED_GLSL_
 

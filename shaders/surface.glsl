@@ -20,8 +20,8 @@ float local_slope(float before, float z, float after)
     return abs(slope) < 0.1 * BACKGROUND_Z ? slope : 0.0;
 }
 
-/* How far a tap k texels away lies off the surface that goes on from the centre by its slope. At half resolution, where a
- * blur spans twice as much and more lies between two texels, the centre must also lie on the tap's surface: what only
+/* How far a tap k texels away lies off the surface that goes on from the centre by its slope. At half resolution, where
+ * a blur spans twice as much and more lies between two texels, the centre must also lie on the tap's surface: what only
  * meets at an edge is told apart without normals. */
 float off_surface(float z, float slope, float tap_z, float tap_slope, float k)
 {

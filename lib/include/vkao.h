@@ -137,13 +137,14 @@ typedef struct vkao_variant {
     uint32_t struct_size;
     VkBool32 half_resolution; /* as in vkao_frame_info */
     VkBool32 bent_normals;    /* VK_TRUE: for frames with images.bent_normals */
-    VkFormat staged_ao;       /* images.ao.format of frames with images.ao_image; UNDEFINED = for frames without */
+    VkFormat staged_ao;       /* images.ao.format of frames with images.ao_image; UNDEFINED = of frames without */
     const vkao_view *view;
     const vkao_ssao_params *ssao;
     const vkao_blur_params *blur; /* NULL = no BLUR */
 } vkao_variant;
 
-/* Has to call job(data, i) once for each i < count, in any order and in any threads, and to return when all are done. */
+/* Has to call job(data, i) once for each i < count, in any order and in any threads, and to return when all are
+ * done. */
 typedef void (*vkao_parallel_fn)(void *user_data, uint32_t count, void (*job)(void *data, uint32_t i), void *data);
 
 /* Pipelines and layouts. Immutable once created; owns no device memory.
@@ -239,9 +240,9 @@ typedef struct vkao_images {
     vkao_image bent_normals;
     vkao_image albedo;   /* diffuse reflectance in rgb, for composite.multi_bounce; as color */
     vkao_image specular; /* indirect specular light in rgb, roughness in alpha, for composite.specular; as color */
-    /* Optional: the image behind ao.view, created with TRANSFER_DST too. Where scratch is in BUFFERS and the frame has no
-     * ao_noisy and no bent_normals, BLUR then copies rows into it instead of storing texel by texel, which takes a CPU
-     * a third of BLUR's time. Ignored elsewhere. Waiting for the stage's shader writes waits for the copy. */
+    /* Optional: the image behind ao.view, created with TRANSFER_DST too. Where scratch is in BUFFERS and the frame has
+     * no ao_noisy and no bent_normals, BLUR then copies rows into it instead of storing texel by texel, which takes a
+     * CPU a third of BLUR's time. Ignored elsewhere. Waiting for the stage's shader writes waits for the copy. */
     VkImage ao_image;
     uint32_t ao_mip_level, ao_array_layer; /* of ao.view in ao_image */
 } vkao_images;
@@ -275,7 +276,8 @@ typedef struct vkao_frame_info {
 } vkao_frame_info;
 
 /* Exact device memory for this info: the one allocation that vkao_frame_create would make. size 0 = none.
- * Views may still be null; only stages, extent, formats and used slots matter. Errors as vkao_frame_create. */
+ * Views may still be null; only stages, extent, formats, used slots and whether there is an ao_image matter. Errors as
+ * vkao_frame_create. */
 VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_scratch(const vkao_context *ctx, const vkao_frame_info *info,
                                                         VkMemoryRequirements *out);
 
@@ -284,7 +286,8 @@ VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_scratch(const vkao_context *ctx,
 VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_create(const vkao_context *ctx, const vkao_frame_info *info,
                                                        vkao_frame **out);
 
-/* Points the frame at other images with the same used slots, formats and extent (rotating or transient images).
+/* Points the frame at other images with the same used slots, formats and extent (rotating or transient images), and an
+ * ao_image if there was one.
  * No allocation. The frame must not be in use by a pending command buffer. On error the frame is unchanged. */
 VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_update(vkao_frame *frame, const vkao_images *images);
 
