@@ -101,13 +101,13 @@
 /* Shaders are compiled for scratch in images, and with VKAO_BUFFERS for scratch in buffers. A CPU takes several texels
  * from a buffer at once, where an image gives them one by one; on GPUs images have the better caches.
  *
- * Rows of such a buffer have VKAO_BUFFER_PAD texels of padding on each side, as the blur reads beyond the edge; they begin
- * at multiples of VKAO_BLUR_X_WIDTH. View z is a float per texel and has VKAO_VIEW_Z_BORDER rows above and below.
+ * Rows of such a buffer have VKAO_BUFFER_PAD texels of padding on each side, as the blur reads beyond the edge, and
+ * begin at multiples of VKAO_BLUR_X_WIDTH. View z is a float per texel and has VKAO_VIEW_Z_BORDER rows above and below.
  * Noisy AO is a byte per texel, coded as (ao + OFFSET) * SCALE: one slice per texel sees between -.55 and 2 of what a
  * whole hemisphere sees, 1 must be exact, and next to its noise the rounding is nothing. AO between the directions of
  * the blur is a 16-bit word per texel, 256 times that code; that buffer is a ring of VKAO_RING_ROWS rows, the blur goes
  * down the image in strips. If AO is staged, a strip of the image's rows has a buffer too; its rows have no padding and
- * begin at multiples of VKAO_UPSAMPLE_WIDTH. */
+ * begin at multiples of VKAO_UPSAMPLE_WIDTH. SSAO has a list of the tiles that are not all sky. */
 #define VKAO_BUFFER_PAD 24
 #define VKAO_CODE_SCALE 100.0
 #define VKAO_CODE_OFFSET 0.55
