@@ -143,7 +143,8 @@ typedef struct vkao_variant {
     const vkao_blur_params *blur; /* NULL = no BLUR */
 } vkao_variant;
 
-/* Has to call job(data, i) once for each i < count, in any order and in any threads, and to return when all are done. */
+/* Has to call job(data, i) once for each i < count, in any order and in any threads, and to return when all are done;
+ * count may be 0. */
 typedef void (*vkao_parallel_fn)(void *user_data, uint32_t count, void (*job)(void *data, uint32_t i), void *data);
 
 /* Pipelines and layouts. Immutable once created; owns no device memory.
@@ -239,9 +240,9 @@ typedef struct vkao_images {
     vkao_image bent_normals;
     vkao_image albedo;   /* diffuse reflectance in rgb, for composite.multi_bounce; as color */
     vkao_image specular; /* indirect specular light in rgb, roughness in alpha, for composite.specular; as color */
-    /* Optional: the image behind ao.view, created with TRANSFER_DST too. Where scratch is in BUFFERS and the frame has no
-     * ao_noisy and no bent_normals, BLUR then copies rows into it instead of storing texel by texel, which takes a CPU
-     * a third of BLUR's time. Ignored elsewhere. Waiting for the stage's shader writes waits for the copy. */
+    /* Optional: the image behind ao.view, created with TRANSFER_DST too. Where scratch is in BUFFERS and the frame has
+     * no ao_noisy and no bent_normals, BLUR then copies rows into it instead of storing texel by texel, which takes a
+     * CPU a third of BLUR's time. Ignored elsewhere. Waiting for the stage's shader writes waits for the copy. */
     VkImage ao_image;
     uint32_t ao_mip_level, ao_array_layer; /* of ao.view in ao_image */
 } vkao_images;
