@@ -288,8 +288,9 @@ vkao_result pipelines_check(const vkao_frame *frame, const struct view_constants
         const struct view_constants *grid;
     } stages[] = {
         {true, PIPELINE_PREPARE, &grid},
-        {ssao && frame->ctx->buffers, PIPELINE_TILES, &grid},
+        /* Before its tiles: the log names what callers know. */
         {ssao, ssao ? (enum pipeline)(PIPELINE_SSAO + (int)ssao->method) : PIPELINE_SSAO, &grid},
+        {ssao && frame->ctx->buffers, PIPELINE_TILES, &grid},
         {blur, packed ? PIPELINE_PACKED_BLUR_X : PIPELINE_BLUR_X, &grid},
         {blur, packed ? PIPELINE_PACKED_BLUR_Y : PIPELINE_BLUR_Y, &grid},
         {blur && frame->half_resolution, packed ? PIPELINE_PACKED_UPSAMPLE : PIPELINE_UPSAMPLE,
