@@ -6,7 +6,8 @@
 /* Whether this call, which returns VkResult, is the one that shall fail. */
 static bool fails(struct fake_vulkan *fake, const char *name)
 {
-    if (++fake->result_calls != fake->fail_at)
+    const unsigned call = ++fake->result_calls;
+    if (call != fake->fail_at && !(fake->fail_from && call > fake->fail_at))
         return false;
     fake->failed = name;
     return true;

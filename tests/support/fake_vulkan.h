@@ -107,6 +107,7 @@ struct fake_vulkan {
     bool debug_utils;
     const char *missing; /* proc-addr answers NULL for this name */
     unsigned fail_at;    /* 1 = the first call that returns VkResult; 0 = none */
+    bool fail_from;      /* and every one after it */
     VkResult fail_result;
     const VkAllocationCallbacks *expected_allocator; /* must be given to every create and destroy */
 
