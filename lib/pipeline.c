@@ -251,8 +251,10 @@ vkao_result pipelines_create(vkao_context *ctx, const vkao_context_info *info)
         vkao_result result = plan_variant(ctx, &ctx->log, &info->variants[i], &plan);
         if (result != VKAO_SUCCESS)
             return result;
-        for (size_t k = 0; k < plan.count; ++k)
-            add_entry(p, &plan.stages[k]);
+        for (size_t k = 0; k < plan.count; ++k) {
+            if (pipeline_stage(plan.stages[k].which) & ctx->stage_mask)
+                add_entry(p, &plan.stages[k]);
+        }
     }
     return create_entries(ctx, info);
 }
