@@ -290,7 +290,12 @@ static void check_tiles(struct world *w, bool run)
         which == PIPELINE_SSAO + VKAO_SSAO_SPHERE || which == PIPELINE_SSAO + VKAO_SSAO_RAYMARCH
             ? 64
             : 128;
-    const uint32_t x0 = rect.x0 / 4 * 4, height = VKAO_TILE_HEIGHT;
+    const uint32_t x0 = rect.x0 / 4 * 4, height = b.tile_height;
+    struct vkao_tiles_head head;
+    memcpy(&head, w->fake.calls[p.update].update, sizeof head);
+    assert_int_equal(head.group_rows, height);
+    assert_true(b.tiles[0] * b.tiles[1] <= 65535); /* maxComputeWorkGroupCount of every device */
+    assert_true(height == VKAO_TILE_HEIGHT || b.tiles[0] * b.tiles[1] > 65535 / 2 - b.tiles[0]);
     assert_int_equal(b.tile_width, width);
     assert_int_equal(b.strip_columns, VKAO_STRIP_TEXELS / width);
     assert_true(x0 + b.tiles[0] * width >= rect.x1 && x0 + (b.tiles[0] - 1) * width < rect.x1);
@@ -368,6 +373,27 @@ static void lists_hold_all_tiles_of_any_rect(void **state)
     }
 }
 
+/* Higher tiles, where those of the usual height are more than a dispatch may have. */
+static void large_frames_dispatch_no_more_than_devices_can(void **state)
+{
+    (void)state;
+    static const VkExtent2D extents[] = {{8192, 8192}, {16384, 8192}, {64, 65535},  {7680, 8738},
+                                         {7681, 8738}, {4097, 8065},  {65535, 1800}};
+    for (size_t i = 0; i < COUNT(extents); ++i) {
+        struct world w;
+        world_init(&w, true);
+        w.fake.max_dimension = UINT16_MAX;
+        w.fake.max_texels = UINT32_C(1) << 28;
+        w.fake.max_buffer = UINT32_C(1) << 30;
+        open(&w, extents[i], ALONE, false);
+        for (int method = 0; method < VKAO_METHOD_COUNT; ++method) {
+            w.ssao.method = (vkao_ssao_method)method;
+            check_tiles(&w, true);
+        }
+        world_close(&w);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -377,6 +403,7 @@ int main(void)
         cmocka_unit_test(ssao_waits_for_the_ssao_before),
         cmocka_unit_test(tiles_cover_every_rect_once),
         cmocka_unit_test(lists_hold_all_tiles_of_any_rect),
+        cmocka_unit_test(large_frames_dispatch_no_more_than_devices_can),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
