@@ -59,8 +59,8 @@ static void plan_general(vkao_context *ctx, bool variants_only)
             (i >= PIPELINE_SSAO && !(ctx->method_mask >> (i - PIPELINE_SSAO) & 1u)))
             continue;
         for (VkBool32 bent = 0; bent <= shader.bent; ++bent)
-            add_entry(&ctx->pipelines, &(struct pipeline_entry){which, bent, general,
-                                                                VK_NULL_HANDLE, VKAO_SUCCESS});
+            add_entry(&ctx->pipelines,
+                      &(struct pipeline_entry){which, bent, general, VK_NULL_HANDLE, VKAO_SUCCESS});
     }
 }
 
@@ -139,8 +139,7 @@ static vkao_result plan_variant(const vkao_context *ctx, const struct vkao_logge
     vkao_view caller_view;
     const VkExtent2D any = {ctx->max_dimension, ctx->max_dimension};
     vkao_result result = vkao_import(log, "variant", caller_variant, &info, sizeof info);
-    if (result == VKAO_SUCCESS &&
-        (info.half_resolution > 1 || info.bent_normals > 1))
+    if (result == VKAO_SUCCESS && (info.half_resolution > 1 || info.bent_normals > 1))
         result = vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                              "variant.half_resolution is %u, bent_normals %u, want 0 or 1",
                              info.half_resolution, info.bent_normals);
@@ -239,9 +238,9 @@ vkao_result pipelines_create(vkao_context *ctx, const vkao_context_info *info)
 {
     struct pipelines *p = &ctx->pipelines;
     struct variant_plan plan;
-    p->entries = vkao_calloc(ctx->allocator, (PIPELINE_COUNT * 2 + info->variant_count *
-                                                                       VARIANT_STAGES) *
-                                                 sizeof p->entries[0]);
+    p->entries =
+        vkao_calloc(ctx->allocator, (PIPELINE_COUNT * 2 + info->variant_count * VARIANT_STAGES) *
+                                        sizeof p->entries[0]);
     if (!p->entries)
         return vkao_refuse(&ctx->log, VKAO_ERROR_OUT_OF_HOST_MEMORY,
                            "no host memory for pipelines");

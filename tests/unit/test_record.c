@@ -253,7 +253,8 @@ static void only_prepare_changes_layouts(void **state)
     world_close(&w);
 }
 
-/* Groups cover the rect and a border, and not one more; the rect that shaders test is the rect itself. */
+/* Groups cover the rect and a border, and not one more; the rect that shaders test is the rect
+ * itself. */
 static void check_cover(const struct world *w, size_t index, struct vkao_rect want, uint32_t border,
                         size_t rect_offset)
 {

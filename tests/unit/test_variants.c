@@ -210,7 +210,8 @@ static void failing_nth_call_leaks_nothing(void **state)
             assert_int_equal(w.log.errors, done ? 0 : 1);
             world_close(&w);
         }
-        /* Two layouts, a module for each of 7 pipelines, or 8 in buffers; on the host two blocks. */
+        /* Two layouts, a module for each of 7 pipelines, or 8 in buffers; on the host two blocks
+         * too. */
         assert_int_equal(n, 1 + 2 + (i & 1 ? 16 : 14) + (i & 2 ? 2 : 0));
     }
 }
