@@ -250,8 +250,10 @@ vkao_result pipelines_create(vkao_context *ctx, const vkao_context_info *info)
         vkao_result result = plan_variant(ctx, &ctx->log, &info->variants[i], &plan);
         if (result != VKAO_SUCCESS)
             return result;
-        for (size_t k = 0; k < plan.count; ++k)
-            add_entry(p, &plan.stages[k]);
+        for (size_t k = 0; k < plan.count; ++k) {
+            if (pipeline_stage(plan.stages[k].which) & ctx->stage_mask)
+                add_entry(p, &plan.stages[k]);
+        }
     }
     return create_entries(ctx, info);
 }
@@ -287,8 +289,9 @@ vkao_result pipelines_check(const vkao_frame *frame, const struct view_constants
         const struct view_constants *grid;
     } stages[] = {
         {true, PIPELINE_PREPARE, &grid},
-        {ssao && frame->ctx->buffers, PIPELINE_TILES, &grid},
+        /* Before its tiles: the log names what callers know. */
         {ssao, ssao ? (enum pipeline)(PIPELINE_SSAO + (int)ssao->method) : PIPELINE_SSAO, &grid},
+        {ssao && frame->ctx->buffers, PIPELINE_TILES, &grid},
         {blur, packed ? PIPELINE_PACKED_BLUR_X : PIPELINE_BLUR_X, &grid},
         {blur, packed ? PIPELINE_PACKED_BLUR_Y : PIPELINE_BLUR_Y, &grid},
         {blur && frame->half_resolution, packed ? PIPELINE_PACKED_UPSAMPLE : PIPELINE_UPSAMPLE,

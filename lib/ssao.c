@@ -4,6 +4,7 @@
 #include <string.h>
 
 static_assert(sizeof(struct vkao_ssao_block) == 128, "as shaders/ssao.glsl lays it out");
+static_assert(sizeof(struct vkao_tiles_block) == 36, "as shaders/tiles.comp lays it out");
 static_assert(sizeof(struct vkao_ssao_block) <= VKAO_PUSH_BYTES, "push constants of every device");
 static_assert(VKAO_GLSL_NORMALS_FROM_DEPTH == (int)VKAO_NORMALS_FROM_DEPTH &&
                   VKAO_GLSL_NORMALS_XYZ_SNORM == (int)VKAO_NORMALS_XYZ_SNORM &&
@@ -20,14 +21,19 @@ static void record_tiles(const vkao_frame *frame, VkCommandBuffer cmd, uint32_t 
                   "strips are of whole tiles");
     const struct vk_table *vk = &frame->ctx->vk;
     const struct scratch_buffer *buffer = &frame->scratch.buffer;
-    const uint32_t height = VKAO_TILE_HEIGHT, x0 = rect.x0 - rect.x0 % 4;
+    const uint32_t x0 = rect.x0 - rect.x0 % 4, rows = rect.y1 - rect.y0,
+                   columns = (rect.x1 - x0 + tile_width - 1) / tile_width;
+    uint32_t height = VKAO_TILE_HEIGHT;
+    /* maxComputeWorkGroupCount of an indirect dispatch's y, which is the count of tiles */
+    while (columns * ((rows + height - 1) / height) > VKAO_MOST_TILES)
+        height *= 2;
     struct vkao_tiles_block block = {
-        .tiles = {(rect.x1 - x0 + tile_width - 1) / tile_width,
-                  (rect.y1 - rect.y0 + height - 1) / height},
+        .tiles = {columns, (rows + height - 1) / height},
         .flags = flags,
         .stride = buffer->stride,
         .tile_width = tile_width,
         .strip_columns = VKAO_STRIP_TEXELS / tile_width,
+        .tile_height = height,
     };
     rect_pack(rect, block.rect);
     const uint32_t strips = (block.tiles[0] + block.strip_columns - 1) / block.strip_columns;

@@ -118,7 +118,8 @@
 
 /* Texels per invocation in the shaders for buffers. */
 #define VKAO_PREPARE_WIDTH 4
-#define VKAO_TILE_HEIGHT 8    /* rows of a tile of SSAO; a group is one of its rows */
+#define VKAO_TILE_HEIGHT 8    /* least rows of a tile of SSAO; a group is one of its rows */
+#define VKAO_MOST_TILES 65535 /* what every device dispatches; in larger frames tiles are higher */
 #define VKAO_STRIP_TEXELS 640 /* width of a strip of tiles, a multiple of every group's */
 #define VKAO_SSAO_TEXELS 2    /* of the methods that are VKAO_SIDE_BY_SIDE */
 #define VKAO_BLUR_X_WIDTH 8
@@ -201,11 +202,12 @@ struct vkao_tiles_block {
     VKAO_UINT(stride);        /* texels in a row of buffers */
     VKAO_UINT(tile_width);
     VKAO_UINT(strip_columns); /* of tiles */
+    VKAO_UINT(tile_height);
 };
 
 /* What an indirect dispatch reads; then come the tiles, texels packed as those of rects. */
 struct vkao_tiles_head {
-    VKAO_UINT(group_rows); /* VKAO_TILE_HEIGHT */
+    VKAO_UINT(group_rows); /* of a tile */
     VKAO_UINT(count);
     VKAO_UINT(one);
     VKAO_UINT(reserved);

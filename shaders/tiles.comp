@@ -46,7 +46,7 @@ void main()
     uvec2 tile = uvec2(strip * params.strip_columns + left % columns, left / columns);
     ivec2 rect_low = ivec2(params.rect.x & 0xffffu, params.rect.x >> 16);
     ivec2 rect_high = ivec2(params.rect.y & 0xffffu, params.rect.y >> 16);
-    ivec2 size = ivec2(params.tile_width, VKAO_TILE_HEIGHT);
+    ivec2 size = ivec2(params.tile_width, params.tile_height);
     ivec2 low = ivec2(round_down(rect_low.x, 4), rect_low.y) + ivec2(tile) * size;
     ivec2 high = min(low + size, rect_high);
     bool sky = true;

@@ -143,8 +143,8 @@ typedef struct vkao_variant {
     const vkao_blur_params *blur; /* NULL = no BLUR */
 } vkao_variant;
 
-/* Has to call job(data, i) once for each i < count, in any order and in any threads, and to return when all are
- * done. */
+/* Has to call job(data, i) once for each i < count, in any order and in any threads, and to return when all are done;
+ * count may be 0. */
 typedef void (*vkao_parallel_fn)(void *user_data, uint32_t count, void (*job)(void *data, uint32_t i), void *data);
 
 /* Pipelines and layouts. Immutable once created; owns no device memory.

@@ -73,14 +73,9 @@ static VKAPI_ATTR void VKAPI_CALL fake_CmdPushConstants(VkCommandBuffer cmd,
         memcpy(call->push + offset, values, size);
 }
 
-static VKAPI_ATTR void VKAPI_CALL fake_CmdDispatch(VkCommandBuffer cmd, uint32_t x, uint32_t y,
-                                                   uint32_t z)
+/* What every dispatch runs, and with what. */
+static void use_bound(struct fake_vulkan *fake, struct fake_call *call)
 {
-    struct fake_vulkan *fake = fake_of(cmd);
-    struct fake_call *call = fake_note(fake, "vkCmdDispatch");
-    call->groups[0] = x;
-    call->groups[1] = y;
-    call->groups[2] = z;
     call->handle = fake->bound_pipeline;
     fake_use(fake, call->name, VK_OBJECT_TYPE_PIPELINE, fake->bound_pipeline);
     const struct fake_object *set =
@@ -89,6 +84,54 @@ static VKAPI_ATTR void VKAPI_CALL fake_CmdDispatch(VkCommandBuffer cmd, uint32_t
         if (set->views[i])
             fake_use(fake, call->name, VK_OBJECT_TYPE_IMAGE_VIEW, set->views[i]);
     }
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_CmdDispatch(VkCommandBuffer cmd, uint32_t x, uint32_t y,
+                                                   uint32_t z)
+{
+    struct fake_vulkan *fake = fake_of(cmd);
+    struct fake_call *call = fake_note(fake, "vkCmdDispatch");
+    call->groups[0] = x;
+    call->groups[1] = y;
+    call->groups[2] = z;
+    use_bound(fake, call);
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_CmdDispatchIndirect(VkCommandBuffer cmd, VkBuffer buffer,
+                                                           VkDeviceSize offset)
+{
+    struct fake_vulkan *fake = fake_of(cmd);
+    struct fake_call *call = fake_note(fake, "vkCmdDispatchIndirect");
+    const struct fake_object *from =
+        fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, fake_number(buffer));
+    call->source = fake_number(buffer);
+    call->offset = offset;
+    if (from && !(from->usage & VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT))
+        fake_misuse(fake, "vkCmdDispatchIndirect: the buffer is not for it");
+    if (from && (offset % 4 || offset + sizeof(VkDispatchIndirectCommand) > from->bytes))
+        fake_misuse(fake, "vkCmdDispatchIndirect: offset %llu", (unsigned long long)offset);
+    use_bound(fake, call);
+}
+
+static VKAPI_ATTR void VKAPI_CALL fake_CmdUpdateBuffer(VkCommandBuffer cmd, VkBuffer buffer,
+                                                       VkDeviceSize offset, VkDeviceSize size,
+                                                       const void *data)
+{
+    struct fake_vulkan *fake = fake_of(cmd);
+    struct fake_call *call = fake_note(fake, "vkCmdUpdateBuffer");
+    const struct fake_object *to =
+        fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, fake_number(buffer));
+    call->source = fake_number(buffer);
+    call->offset = offset;
+    call->size = size;
+    if (to && !(to->usage & VK_BUFFER_USAGE_TRANSFER_DST_BIT))
+        fake_misuse(fake, "vkCmdUpdateBuffer: the buffer is no destination");
+    if (offset % 4 || size % 4 || !size || size > FAKE_UPDATE_BYTES ||
+        (to && offset + size > to->bytes))
+        fake_misuse(fake, "vkCmdUpdateBuffer: %llu bytes at %llu", (unsigned long long)size,
+                    (unsigned long long)offset);
+    else
+        memcpy(call->update, data, size);
 }
 
 /* Bytes of a texel of the formats that AO has. */
@@ -157,6 +200,7 @@ static VKAPI_ATTR void VKAPI_CALL fake_CmdCopyBufferToImage(VkCommandBuffer cmd,
         "vk" #name, (PFN_vkVoidFunction)fake_##name                                                \
     }
 const struct fake_entry fake_commands[FAKE_COMMANDS] = {
-    ENTRY(CmdPipelineBarrier), ENTRY(CmdBindPipeline), ENTRY(CmdBindDescriptorSets),
-    ENTRY(CmdPushConstants),   ENTRY(CmdDispatch),     ENTRY(CmdCopyBufferToImage),
+    ENTRY(CmdPipelineBarrier), ENTRY(CmdBindPipeline),      ENTRY(CmdBindDescriptorSets),
+    ENTRY(CmdPushConstants),   ENTRY(CmdDispatch),          ENTRY(CmdDispatchIndirect),
+    ENTRY(CmdUpdateBuffer),    ENTRY(CmdCopyBufferToImage),
 };

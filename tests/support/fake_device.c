@@ -6,7 +6,8 @@
 /* Whether this call, which returns VkResult, is the one that shall fail. */
 static bool fails(struct fake_vulkan *fake, const char *name)
 {
-    if (++fake->result_calls != fake->fail_at)
+    const unsigned call = ++fake->result_calls;
+    if (call != fake->fail_at && !(fake->fail_from && call > fake->fail_at))
         return false;
     fake->failed = name;
     return true;
@@ -98,6 +99,7 @@ static VkDeviceSize texel_bytes(VkFormat format)
     {                                                                                              \
         struct fake_object *object;                                                                \
         uint64_t handle;                                                                           \
+        pthread_mutex_lock(&fake_of(device)->lock);                                                \
         VkResult result =                                                                          \
             create(device, "vkCreate" #Name, VK_OBJECT_TYPE_##TYPE, allocator, &handle, &object);  \
         *out = (Vk##Name)(uintptr_t)handle;                                                        \
@@ -108,24 +110,29 @@ static VkDeviceSize texel_bytes(VkFormat format)
             (void)info;                                                                            \
             BODY                                                                                   \
         }                                                                                          \
+        pthread_mutex_unlock(&fake_of(device)->lock);                                              \
         return result;                                                                             \
     }
 #define FAKE_DESTROY(Name, TYPE)                                                                   \
     static VKAPI_ATTR void VKAPI_CALL fake_Destroy##Name(VkDevice device, Vk##Name handle,         \
                                                          const VkAllocationCallbacks *allocator)   \
     {                                                                                              \
-        destroy(device, "vkDestroy" #Name, VK_OBJECT_TYPE_##TYPE, fake_number(handle), allocator);      \
+        pthread_mutex_lock(&fake_of(device)->lock);                                                \
+        destroy(device, "vkDestroy" #Name, VK_OBJECT_TYPE_##TYPE, fake_number(handle), allocator); \
+        pthread_mutex_unlock(&fake_of(device)->lock);                                              \
     }
 
 FAKE_CREATE(ShaderModule, SHADER_MODULE, {
     if (!info->codeSize || info->codeSize % 4 || info->pCode[0] != 0x07230203u)
         fake_misuse(fake, "vkCreateShaderModule: no SPIR-V");
+    object->code = info->pCode;
 })
 FAKE_DESTROY(ShaderModule, SHADER_MODULE)
 FAKE_CREATE(DescriptorSetLayout, DESCRIPTOR_SET_LAYOUT, {})
 FAKE_DESTROY(DescriptorSetLayout, DESCRIPTOR_SET_LAYOUT)
 FAKE_CREATE(PipelineLayout, PIPELINE_LAYOUT, {
-    fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, fake_number(info->pSetLayouts[0]));
+    fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT,
+             fake_number(info->pSetLayouts[0]));
 })
 FAKE_DESTROY(PipelineLayout, PIPELINE_LAYOUT)
 FAKE_CREATE(DescriptorPool, DESCRIPTOR_POOL, {})
@@ -164,6 +171,19 @@ FAKE_CREATE(BufferView, BUFFER_VIEW, {
 FAKE_DESTROY(BufferView, BUFFER_VIEW)
 FAKE_DESTROY(Pipeline, PIPELINE)
 
+/* What a pipeline is made of. */
+static void keep_constants(struct fake_vulkan *fake, struct fake_object *object,
+                           const VkSpecializationInfo *info)
+{
+    for (uint32_t i = 0; info && i < info->mapEntryCount; ++i) {
+        const VkSpecializationMapEntry *e = &info->pMapEntries[i];
+        if (e->constantID >= FAKE_CONSTANTS || e->size != 4 || e->offset + e->size > info->dataSize)
+            fake_misuse(fake, "vkCreateComputePipelines: constant %u", e->constantID);
+        else
+            memcpy(&object->constants[e->constantID], (const char *)info->pData + e->offset, 4);
+    }
+}
+
 static VKAPI_ATTR VkResult VKAPI_CALL fake_CreateComputePipelines(
     VkDevice device, VkPipelineCache cache, uint32_t count, const VkComputePipelineCreateInfo *info,
     const VkAllocationCallbacks *allocator, VkPipeline *out)
@@ -171,14 +191,23 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_CreateComputePipelines(
     struct fake_vulkan *fake = fake_of(device);
     struct fake_object *object;
     uint64_t handle;
+    pthread_mutex_lock(&fake->lock);
     VkResult result = create(device, "vkCreateComputePipelines", VK_OBJECT_TYPE_PIPELINE, allocator,
                              &handle, &object);
     fake->calls[fake->call_count - 1].cache = cache;
     if (count != 1)
         fake_misuse(fake, "the fake builds one pipeline a call");
-    fake_use(fake, "vkCreateComputePipelines", VK_OBJECT_TYPE_SHADER_MODULE, fake_number(info->stage.module));
-    fake_use(fake, "vkCreateComputePipelines", VK_OBJECT_TYPE_PIPELINE_LAYOUT, fake_number(info->layout));
+    const struct fake_object *module =
+        fake_use(fake, "vkCreateComputePipelines", VK_OBJECT_TYPE_SHADER_MODULE,
+                 fake_number(info->stage.module));
+    fake_use(fake, "vkCreateComputePipelines", VK_OBJECT_TYPE_PIPELINE_LAYOUT,
+             fake_number(info->layout));
+    if (object && module) {
+        object->code = module->code;
+        keep_constants(fake, object, info->stage.pSpecializationInfo);
+    }
     *out = (VkPipeline)(uintptr_t)handle;
+    pthread_mutex_unlock(&fake->lock);
     return result;
 }
 
@@ -191,7 +220,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_AllocateDescriptorSets(
     if (fails(fake, call->name))
         return fake->fail_result;
     fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_POOL, fake_number(info->descriptorPool));
-    fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT, fake_number(info->pSetLayouts[0]));
+    fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT,
+             fake_number(info->pSetLayouts[0]));
     struct fake_object *object = fake_add(fake, VK_OBJECT_TYPE_DESCRIPTOR_SET);
     object->parent = fake_number(info->descriptorPool);
     call->handle = object->handle;
@@ -199,9 +229,10 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_AllocateDescriptorSets(
     return VK_SUCCESS;
 }
 
-static VKAPI_ATTR void VKAPI_CALL fake_UpdateDescriptorSets(
-    VkDevice device, uint32_t count, const VkWriteDescriptorSet *writes, uint32_t copy_count,
-    const VkCopyDescriptorSet *copies)
+static VKAPI_ATTR void VKAPI_CALL fake_UpdateDescriptorSets(VkDevice device, uint32_t count,
+                                                            const VkWriteDescriptorSet *writes,
+                                                            uint32_t copy_count,
+                                                            const VkCopyDescriptorSet *copies)
 {
     struct fake_vulkan *fake = fake_of(device);
     struct fake_call *call = fake_note(fake, "vkUpdateDescriptorSets");
@@ -210,7 +241,7 @@ static VKAPI_ATTR void VKAPI_CALL fake_UpdateDescriptorSets(
         fake_misuse(fake, "vkUpdateDescriptorSets: %u writes, %u copies", count, copy_count);
     for (uint32_t i = 0; i < count && i < FAKE_WRITES; ++i) {
         struct fake_object *set = fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET,
-                                      fake_number(writes[i].dstSet));
+                                           fake_number(writes[i].dstSet));
         if (writes[i].descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER) {
             const VkDescriptorBufferInfo *info = writes[i].pBufferInfo;
             const struct fake_object *buffer =
@@ -221,7 +252,8 @@ static VKAPI_ATTR void VKAPI_CALL fake_UpdateDescriptorSets(
             continue;
         }
         if (writes[i].descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER) {
-            fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER_VIEW, fake_number(writes[i].pTexelBufferView[0]));
+            fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER_VIEW,
+                     fake_number(writes[i].pTexelBufferView[0]));
             continue;
         }
         uint64_t view = fake_number(writes[i].pImageInfo->imageView);
@@ -241,8 +273,8 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetImageMemoryRequirements(VkDevice devic
 {
     struct fake_vulkan *fake = fake_of(device);
     fake_note(fake, "vkGetImageMemoryRequirements")->handle = fake_number(image);
-    const struct fake_object *object = fake_use(fake, "vkGetImageMemoryRequirements",
-                                           VK_OBJECT_TYPE_IMAGE, fake_number(image));
+    const struct fake_object *object =
+        fake_use(fake, "vkGetImageMemoryRequirements", VK_OBJECT_TYPE_IMAGE, fake_number(image));
     VkDeviceSize texel = object && object->image.format == VK_FORMAT_R16_SFLOAT ? 2 : 4;
     *out = (VkMemoryRequirements){
         .size = object ? texel * object->image.extent.width * object->image.extent.height : 0,
@@ -256,8 +288,8 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetBufferMemoryRequirements(VkDevice devi
 {
     struct fake_vulkan *fake = fake_of(device);
     fake_note(fake, "vkGetBufferMemoryRequirements")->handle = fake_number(buffer);
-    const struct fake_object *object = fake_use(fake, "vkGetBufferMemoryRequirements",
-                                           VK_OBJECT_TYPE_BUFFER, fake_number(buffer));
+    const struct fake_object *object =
+        fake_use(fake, "vkGetBufferMemoryRequirements", VK_OBJECT_TYPE_BUFFER, fake_number(buffer));
     *out = (VkMemoryRequirements){
         .size = object ? object->bytes : 0,
         .alignment = fake->image_alignment,
@@ -273,7 +305,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_BindBufferMemory(VkDevice device, VkB
     struct fake_call *call = fake_note(fake, "vkBindBufferMemory");
     if (fails(fake, call->name))
         return fake->fail_result;
-    struct fake_object *object = fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, fake_number(buffer));
+    struct fake_object *object =
+        fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, fake_number(buffer));
     fake_use(fake, call->name, VK_OBJECT_TYPE_DEVICE_MEMORY, fake_number(memory));
     if (offset % fake->image_alignment)
         fake_misuse(fake, "vkBindBufferMemory: offset %llu", (unsigned long long)offset);
@@ -317,7 +350,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_BindImageMemory(VkDevice device, VkIm
     struct fake_call *call = fake_note(fake, "vkBindImageMemory");
     if (fails(fake, call->name))
         return fake->fail_result;
-    struct fake_object *object = fake_use(fake, call->name, VK_OBJECT_TYPE_IMAGE, fake_number(image));
+    struct fake_object *object =
+        fake_use(fake, call->name, VK_OBJECT_TYPE_IMAGE, fake_number(image));
     fake_use(fake, call->name, VK_OBJECT_TYPE_DEVICE_MEMORY, fake_number(memory));
     if (offset % fake->image_alignment)
         fake_misuse(fake, "vkBindImageMemory: offset %llu", (unsigned long long)offset);
@@ -331,14 +365,17 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_BindImageMemory(VkDevice device, VkIm
     return VK_SUCCESS;
 }
 
-static VKAPI_ATTR VkResult VKAPI_CALL fake_SetDebugUtilsObjectNameEXT(
-    VkDevice device, const VkDebugUtilsObjectNameInfoEXT *info)
+static VKAPI_ATTR VkResult VKAPI_CALL
+fake_SetDebugUtilsObjectNameEXT(VkDevice device, const VkDebugUtilsObjectNameInfoEXT *info)
 {
     struct fake_vulkan *fake = fake_of(device);
+    pthread_mutex_lock(&fake->lock);
     struct fake_call *call = fake_note(fake, "vkSetDebugUtilsObjectNameEXT");
     call->handle = info->objectHandle;
     fake_use(fake, call->name, info->objectType, info->objectHandle);
-    return fails(fake, call->name) ? fake->fail_result : VK_SUCCESS;
+    const VkResult result = fails(fake, call->name) ? fake->fail_result : VK_SUCCESS;
+    pthread_mutex_unlock(&fake->lock);
+    return result;
 }
 
 static VKAPI_ATTR void VKAPI_CALL fake_CmdBeginDebugUtilsLabelEXT(VkCommandBuffer cmd,
@@ -354,24 +391,40 @@ static VKAPI_ATTR void VKAPI_CALL fake_CmdEndDebugUtilsLabelEXT(VkCommandBuffer 
     fake_note(fake_of(cmd), "vkCmdEndDebugUtilsLabelEXT");
 }
 
-#define ENTRY(name) {"vk" #name, (PFN_vkVoidFunction)fake_##name}
+#define ENTRY(name)                                                                                \
+    {                                                                                              \
+        "vk" #name, (PFN_vkVoidFunction)fake_##name                                                \
+    }
 const struct fake_entry fake_debug_functions[FAKE_DEBUG_FUNCTIONS] = {
     ENTRY(SetDebugUtilsObjectNameEXT),
     ENTRY(CmdBeginDebugUtilsLabelEXT),
     ENTRY(CmdEndDebugUtilsLabelEXT),
 };
 const struct fake_entry fake_device_functions[FAKE_DEVICE_FUNCTIONS] = {
-    ENTRY(CreateShaderModule),        ENTRY(DestroyShaderModule),
-    ENTRY(CreateDescriptorSetLayout), ENTRY(DestroyDescriptorSetLayout),
-    ENTRY(CreatePipelineLayout),      ENTRY(DestroyPipelineLayout),
-    ENTRY(CreateComputePipelines),    ENTRY(DestroyPipeline),
-    ENTRY(CreateDescriptorPool),      ENTRY(DestroyDescriptorPool),
-    ENTRY(AllocateDescriptorSets),    ENTRY(UpdateDescriptorSets),
-    ENTRY(CreateImage),               ENTRY(DestroyImage),
-    ENTRY(GetImageMemoryRequirements), ENTRY(AllocateMemory),
-    ENTRY(FreeMemory),                ENTRY(BindImageMemory),
-    ENTRY(CreateImageView),           ENTRY(DestroyImageView),
-    ENTRY(CreateBuffer),              ENTRY(DestroyBuffer),
-    ENTRY(GetBufferMemoryRequirements), ENTRY(BindBufferMemory),
-    ENTRY(CreateBufferView),          ENTRY(DestroyBufferView),
+    ENTRY(CreateShaderModule),
+    ENTRY(DestroyShaderModule),
+    ENTRY(CreateDescriptorSetLayout),
+    ENTRY(DestroyDescriptorSetLayout),
+    ENTRY(CreatePipelineLayout),
+    ENTRY(DestroyPipelineLayout),
+    ENTRY(CreateComputePipelines),
+    ENTRY(DestroyPipeline),
+    ENTRY(CreateDescriptorPool),
+    ENTRY(DestroyDescriptorPool),
+    ENTRY(AllocateDescriptorSets),
+    ENTRY(UpdateDescriptorSets),
+    ENTRY(CreateImage),
+    ENTRY(DestroyImage),
+    ENTRY(GetImageMemoryRequirements),
+    ENTRY(AllocateMemory),
+    ENTRY(FreeMemory),
+    ENTRY(BindImageMemory),
+    ENTRY(CreateImageView),
+    ENTRY(DestroyImageView),
+    ENTRY(CreateBuffer),
+    ENTRY(DestroyBuffer),
+    ENTRY(GetBufferMemoryRequirements),
+    ENTRY(BindBufferMemory),
+    ENTRY(CreateBufferView),
+    ENTRY(DestroyBufferView),
 };

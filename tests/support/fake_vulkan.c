@@ -103,8 +103,8 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetPhysicalDeviceFormatProperties(VkPhysi
                                                                          VkFormatProperties *out)
 {
     const struct fake_vulkan *fake = fake_of(device);
-    const VkFormatFeatureFlags all = VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT |
-                                     VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
+    const VkFormatFeatureFlags all =
+        VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
     fake_note(fake_of(device), "vkGetPhysicalDeviceFormatProperties");
     *out = (VkFormatProperties){.optimalTilingFeatures = all,
                                 .linearTilingFeatures = all,
@@ -119,7 +119,10 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetPhysicalDeviceFormatProperties(VkPhysi
     }
 }
 
-#define ENTRY(name) {"vk" #name, (PFN_vkVoidFunction)fake_##name}
+#define ENTRY(name)                                                                                \
+    {                                                                                              \
+        "vk" #name, (PFN_vkVoidFunction)fake_##name                                                \
+    }
 static const struct fake_entry instance_functions[] = {
     ENTRY(GetPhysicalDeviceProperties),
     ENTRY(GetPhysicalDeviceMemoryProperties),
@@ -169,8 +172,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL fake_get_device_proc_addr(VkDevice devi
     struct fake_vulkan *fake = fake_of(device);
     remember(fake, fake_device_functions, FAKE_DEVICE_FUNCTIONS, name);
     remember(fake, fake_commands, FAKE_COMMANDS, name);
-    PFN_vkVoidFunction found =
-        look_up(fake, fake_device_functions, FAKE_DEVICE_FUNCTIONS, name);
+    PFN_vkVoidFunction found = look_up(fake, fake_device_functions, FAKE_DEVICE_FUNCTIONS, name);
     return found ? found : look_up(fake, fake_commands, FAKE_COMMANDS, name);
 }
 
@@ -179,15 +181,18 @@ void fake_init(struct fake_vulkan *fake)
     *fake = (struct fake_vulkan){
         .api_version = VK_API_VERSION_1_1,
         .max_dimension = 4096,
-        .memory = {
-            .memoryTypeCount = 3,
-            .memoryTypes = {
-                {VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT, 0},
-                {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 1},
-                {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT, 1},
+        .memory =
+            {
+                .memoryTypeCount = 3,
+                .memoryTypes =
+                    {
+                        {VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT, 0},
+                        {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 1},
+                        {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT | VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT,
+                         1},
+                    },
+                .memoryHeapCount = 2,
             },
-            .memoryHeapCount = 2,
-        },
         .buffer_features = VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT,
         .max_texels = UINT32_C(1) << 27,
         .max_buffer = UINT32_C(1) << 27,
@@ -196,6 +201,7 @@ void fake_init(struct fake_vulkan *fake)
         .fail_result = VK_ERROR_DEVICE_LOST,
     };
     fake->instance = fake->physical_device = fake->device = fake->command_buffer = fake;
+    pthread_mutex_init(&fake->lock, NULL);
     fake->calls = malloc(FAKE_CALLS * sizeof *fake->calls);
     fake->objects = malloc(FAKE_OBJECTS * sizeof *fake->objects);
     if (!fake->calls || !fake->objects)
@@ -206,6 +212,7 @@ void fake_release(struct fake_vulkan *fake)
 {
     free(fake->calls);
     free(fake->objects);
+    pthread_mutex_destroy(&fake->lock);
     fake->calls = NULL;
     fake->objects = NULL;
 }

@@ -2,10 +2,12 @@
  *
  * A Vulkan driver that computes nothing: it stands behind the two proc-addr functions that vkao
  * takes, writes down every call, keeps count of every object and fails on demand. Each fake is its
- * own world; its handles lead back to it, so there is no global state. */
+ * own world; its handles lead back to it, so there is no global state. What compiles a pipeline may
+ * be called by several threads at once, all else by one at a time. */
 #ifndef FAKE_VULKAN_H_
 #define FAKE_VULKAN_H_
 
+#include <pthread.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <vulkan/vulkan_core.h>
@@ -14,8 +16,10 @@ enum {
     FAKE_OBJECTS = 4096,
     FAKE_CALLS = 2048,
     FAKE_BARRIERS = 8,
-    FAKE_WRITES = 27,
+    FAKE_WRITES = 29,
     FAKE_PUSH_BYTES = 128,
+    FAKE_UPDATE_BYTES = 64,
+    FAKE_CONSTANTS = 8,
     FAKE_FORMATS = 8,
     FAKE_NAMES = 64
 };
@@ -49,14 +53,18 @@ struct fake_call {
         VkImageLayout layout;
     } writes[FAKE_WRITES];
 
-    uint64_t memory; /* vkBindImageMemory */
-    VkDeviceSize size, offset; /* also of a buffer view */
+    uint64_t memory;           /* vkBindImageMemory */
+    VkDeviceSize size, offset; /* also of a buffer view, an update and an indirect dispatch */
     uint32_t memory_type;
     VkImageCreateInfo image;
     VkFormat format; /* of a buffer view */
     VkPipelineCache cache;
 
-    uint64_t source; /* vkCmdCopyBufferToImage: the buffer; handle: the image */
+    unsigned char update[FAKE_UPDATE_BYTES]; /* vkCmdUpdateBuffer */
+
+    /* vkCmdCopyBufferToImage, vkCmdUpdateBuffer, vkCmdDispatchIndirect: the buffer; handle: the
+     * image, nothing, the pipeline */
+    uint64_t source;
     VkImageLayout layout;
     VkBufferImageCopy copy; /* the only region */
 };
@@ -66,16 +74,19 @@ struct fake_object {
     uint64_t handle;
     bool alive, of_caller;
     const VkAllocationCallbacks *allocator;
-    void *host; /* what the driver holds through the callbacks */
-    uint64_t parent; /* image or buffer of a view, pool of a set */
+    void *host;         /* what the driver holds through the callbacks */
+    uint64_t parent;    /* image or buffer of a view, pool of a set */
     VkDeviceSize bytes; /* of a buffer */
     VkBufferUsageFlags usage;
     VkImageCreateInfo image;
-    uint64_t memory; /* bound to an image */
-    uint64_t views[FAKE_WRITES]; /* descriptors of a set, by binding */
+    uint64_t memory;                    /* bound to an image */
+    uint64_t views[FAKE_WRITES];        /* descriptors of a set, by binding */
+    const uint32_t *code;               /* SPIR-V of a module, and of a pipeline */
+    uint32_t constants[FAKE_CONSTANTS]; /* of a pipeline, by their ids */
 };
 
 struct fake_vulkan {
+    pthread_mutex_t lock; /* of what happened, while pipelines are compiled */
     /* What dispatchable handles point at. */
     struct fake_vulkan *instance, *physical_device, *device, *command_buffer;
 
@@ -96,12 +107,13 @@ struct fake_vulkan {
     bool debug_utils;
     const char *missing; /* proc-addr answers NULL for this name */
     unsigned fail_at;    /* 1 = the first call that returns VkResult; 0 = none */
+    bool fail_from;      /* and every one after it */
     VkResult fail_result;
     const VkAllocationCallbacks *expected_allocator; /* must be given to every create and destroy */
 
     /* What happened. */
     unsigned result_calls;
-    const char *failed; /* name of the call that was made to fail */
+    const char *failed;            /* name of the call that was made to fail */
     const char *asked[FAKE_NAMES]; /* required function names, each once */
     size_t asked_count;
     struct fake_call *calls;

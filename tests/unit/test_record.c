@@ -2,7 +2,7 @@
  *
  * What recording leaves in the command buffer: barriers, dispatches, push constants, and nothing
  * else. */
-#include "internal.h"
+#include "pipelines.h"
 #include "world.h"
 
 #include <string.h>
@@ -31,20 +31,17 @@ static const struct use {
 static struct use use_of(const struct world *w, uint64_t pipeline)
 {
     const bool bent = w->frame_info.images->bent_normals.format;
-    for (size_t i = 0; i < PIPELINE_COUNT * 2; ++i) {
-        if ((uint64_t)w->ctx->pipelines.general[i / 2][i % 2] != pipeline)
-            continue;
-        struct use use = uses[i / 2 < PIPELINE_SSAO ? i / 2 : PIPELINE_SSAO];
-        if (i / 2 == PIPELINE_BLUR_Y && w->frame_info.half_resolution)
-            use.writes = BIT(NOISY_WRITE);
-        if (i % 2 && (use.writes & BIT(AO_WRITE)))
-            use.writes |= BIT(BENT_WRITE);
-        const bool has_both = w->ctx->pipelines.general[i / 2][1];
-        assert_int_equal(i % 2, has_both && bent && (w->frame_info.stages & VKAO_STAGE_BLUR));
-        return use;
-    }
-    fail_msg("dispatch without a pipeline of the context");
-    return uses[0];
+    const struct pipeline_entry *entry = entry_of(w->ctx, pipeline);
+    if (!entry || !entry_is_general(entry))
+        fail_msg("dispatch without a general pipeline of the context");
+    struct use use = uses[entry->which < PIPELINE_SSAO ? entry->which : PIPELINE_SSAO];
+    if (entry->which == PIPELINE_BLUR_Y && w->frame_info.half_resolution)
+        use.writes = BIT(NOISY_WRITE);
+    if (entry->bent && (use.writes & BIT(AO_WRITE)))
+        use.writes |= BIT(BENT_WRITE);
+    const bool has_both = general_entry(w->ctx, entry->which, true);
+    assert_int_equal(entry->bent, has_both && bent && (w->frame_info.stages & VKAO_STAGE_BLUR));
+    return use;
 }
 
 struct views {
@@ -256,7 +253,8 @@ static void only_prepare_changes_layouts(void **state)
     world_close(&w);
 }
 
-/* Groups cover the rect and a border, and not one more; the rect that shaders test is the rect itself. */
+/* Groups cover the rect and a border, and not one more; the rect that shaders test is the rect
+ * itself. */
 static void check_cover(const struct world *w, size_t index, struct vkao_rect want, uint32_t border,
                         size_t rect_offset)
 {
