@@ -158,13 +158,6 @@ static vkao_result create_buffer(const vkao_context *ctx, struct scratch_buffer 
                            "frame.extent needs a buffer of %llu texels, the device's limits are %u "
                            "texels and %u bytes; images may be larger: context.scratch_layout",
                            (unsigned long long)texels, ctx->max_texels, ctx->max_buffer);
-    /* Of an indirect dispatch, on every device. */
-    const VkDeviceSize tiles = buffer->parts[PART_TILES].bytes / 4;
-    if (tiles > UINT16_MAX)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
-                           "frame.extent needs %llu tiles in buffers, want at most %u; images may "
-                           "be larger: context.scratch_layout",
-                           (unsigned long long)tiles, UINT16_MAX);
     VkResult result = ctx->vk.CreateBuffer(
         ctx->device,
         &(VkBufferCreateInfo){
