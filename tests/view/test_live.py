@@ -106,6 +106,13 @@ def scene_follows_the_size_of_the_window(scratch):
 
 
 @case
+def first_frame_of_another_size_fits_the_window(scratch):
+    with live(scratch, size=(40, 30)) as viewer:
+        shown = viewer.finish('windowsize', viewer.window, 240, 150)
+    same_picture(shown, shoot(scratch, '--scene', 'room', *STILL), 'resized', 0)
+
+
+@case
 def clock_runs_until_space_stops_it(scratch):
     with Viewer(scratch, '--scene', 'cubes', '--no-panel', size=(120, 80)) as viewer:
         viewer.wait_title('^cubes - ')

@@ -9,6 +9,7 @@ import functools
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -187,9 +188,12 @@ class Viewer:
         self.display.xdotool('windowsize', '--sync', self.window, width, height)
         time.sleep(0.3)
 
-    def finish(self):
-        """Quits; the picture that was shown last."""
-        self.display.xdotool('key', 'q')
+    def finish(self, *before):
+        """Quits; the picture that was shown last. What xdotool is to do before happens in the same
+        moment, as the viewer sees it."""
+        self.process.send_signal(signal.SIGSTOP)
+        self.display.xdotool(*before, 'key', 'q')
+        self.process.send_signal(signal.SIGCONT)
         try:
             self.out, self.err = self.process.communicate(timeout=TIMEOUT)
         except subprocess.TimeoutExpired:

@@ -315,9 +315,10 @@ bool viewer_draw(struct viewer *viewer, const char *capture, struct tool_error *
     collect(v, frame);
     widgets_begin_frame();
     viewer_panel(v);
+    const bool there = viewer_has_image(v) && prepare(v, frame);
+    /* A live scene has the window's size from here on. */
     if (v->placing.fit)
         viewer_fit(v);
-    const bool there = viewer_has_image(v) && prepare(v, frame);
     const VkExtent2D extent = v->swapchain.extent;
     if (capture && !create_capture(v, &buffer, err)) {
         widgets_end_frame(VK_NULL_HANDLE);
