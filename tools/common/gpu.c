@@ -395,7 +395,8 @@ vkao_context_info gpu_context_info(const struct gpu *gpu, uint32_t method_mask)
         .enabled_features = &gpu->features,
         .log = print_log,
         .debug_labels = gpu->messenger != VK_NULL_HANDLE,
-        .parallel = parallel_run,
+        /* Messages of validation are counted in one thread. */
+        .parallel = gpu->messenger ? NULL : parallel_run,
     };
 }
 
