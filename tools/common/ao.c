@@ -21,6 +21,7 @@ struct ao_session {
     uint32_t method_mask; /* 0 = ctx is made for the job at hand */
     vkao_context *ctx;
     vkao_stage_flags stages; /* that ctx has for the job at hand */
+    vkao_scratch_layout layout;
     vkao_frame *frame;
     struct gpu_image
         images[IMAGE_COUNT]; /* of the last job; kept while the next one has the same shape */
@@ -145,6 +146,16 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
     return true;
 }
 
+/* Buffers of CPUs have limits that images have not: columns and rows, with more than their padding. */
+static vkao_scratch_layout job_layout(const struct ao_session *session, const struct ao_job *job)
+{
+    const uint32_t shift = job->half_resolution ? 1 : 0;
+    const uint64_t columns = (job->width >> shift) + 64, rows = (job->height >> shift) + 8;
+    return columns * rows * 4 > session->gpu->properties.limits.maxStorageBufferRange
+               ? VKAO_SCRATCH_IMAGES
+               : VKAO_SCRATCH_AUTO;
+}
+
 /* Pipelines for this job alone, if those of the last one do not fit: compiled once, loops unrolled. */
 static bool fit_context(struct ao_session *session, const struct ao_job *job,
                         struct tool_error *err)
@@ -159,8 +170,10 @@ static bool fit_context(struct ao_session *session, const struct ao_job *job,
         .blur = &job->blur,
     };
     const vkao_stage_flags stages = job_stages(job);
-    if (session->method_mask || (session->ctx && !(stages & ~session->stages) &&
-                                 vkao_context_has_variant(session->ctx, &variant)))
+    const vkao_scratch_layout layout = job_layout(session, job);
+    if (session->method_mask ||
+        (session->ctx && !(stages & ~session->stages) && layout == session->layout &&
+         vkao_context_has_variant(session->ctx, &variant)))
         return true;
     drop_frame(session);
     vkao_context_destroy(session->ctx);
@@ -169,10 +182,7 @@ static bool fit_context(struct ao_session *session, const struct ao_job *job,
     info.variant_count = 1;
     info.variants_only = VK_TRUE;
     info.stage_mask = session->stages = stages;
-    /* Buffers of CPUs have limits that images have not. */
-    const uint64_t bytes = ((uint64_t)job->width + 36) * ((uint64_t)job->height + 2) * 4;
-    if (bytes > session->gpu->properties.limits.maxStorageBufferRange)
-        info.scratch_layout = VKAO_SCRATCH_IMAGES;
+    info.scratch_layout = session->layout = layout;
     session->ctx = gpu_context_create(&info, err);
     return session->ctx != NULL;
 }
