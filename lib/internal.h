@@ -91,18 +91,20 @@ struct view_constants frame_grid(const vkao_frame *frame, const struct view_cons
 void copy_normal_rows(const struct view_constants *view, float x[4], float y[4], float z[4]);
 bool frame_has_bent_normals(const vkao_frame *frame);
 
-/* What every stage records: bind, push, one invocation per texel of the rect, or for SSAO in buffers per texel of the
- * tiles that record_ssao listed. */
+/* What every stage records: bind, push, one invocation per texel of the rect, or for SSAO in
+ * buffers per texel of the tiles that record_ssao listed. */
 void record_dispatch(const vkao_frame *frame, VkCommandBuffer cmd, enum pipeline which,
                      struct pipeline_key key, const void *block, size_t block_bytes,
                      struct vkao_rect rect);
-/* What a command does and waits for. STAGES_INDIRECT: shaders, and the reading of their dispatch's size. */
+/* What a command does and waits for. STAGES_INDIRECT: shaders, and the reading of their
+ * dispatch's size. */
 enum stages { STAGES_COMPUTE, STAGES_TRANSFER, STAGES_INDIRECT };
 void record_stages(const vkao_frame *frame, VkCommandBuffer cmd, enum stages before,
                    enum stages after);
 /* Earlier vkao work on this queue -> the next dispatch. */
 void record_barrier(const vkao_frame *frame, VkCommandBuffer cmd);
-/* Staged AO of a strip -> its image. Later vkao work, and whoever waits for it, sees the copy as one of its writes. */
+/* Staged AO of a strip -> its image. Later vkao work, and whoever waits for it, sees the copy as
+ * one of its writes. */
 void record_copy(const vkao_frame *frame, VkCommandBuffer cmd, struct vkao_rect strip);
 void record_label_begin(const vkao_frame *frame, VkCommandBuffer cmd, const char *name);
 void record_label_end(const vkao_frame *frame, VkCommandBuffer cmd);

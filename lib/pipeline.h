@@ -73,8 +73,8 @@ struct pipeline_key pipeline_key(enum pipeline which, uint32_t flags, const vkao
 uint32_t recording_way(bool packed, uint32_t staged);
 /* The frame's. */
 uint32_t frame_flags(const vkao_frame *frame);
-/* Flags of shaders/params.h, of a view on the grid that the stages run on; way: frame_flags(). ssao and blur may be
- * NULL. */
+/* Flags of shaders/params.h, of a view on the grid that the stages run on; way: frame_flags().
+ * ssao and blur may be NULL. */
 uint32_t recording_flags(const struct view_constants *grid, uint32_t way,
                          const vkao_ssao_params *ssao, const vkao_blur_params *blur);
 /* Texels of one invocation. */

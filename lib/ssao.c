@@ -36,8 +36,7 @@ static void record_tiles(const vkao_frame *frame, VkCommandBuffer cmd, uint32_t 
         .tile_height = height,
     };
     rect_pack(rect, block.rect);
-    const uint32_t strips = (block.tiles[0] + block.strip_columns - 1) / block.strip_columns;
-    const struct vkao_rect tiles = {0, 0, strips * block.strip_columns * block.tiles[1], 1};
+    const struct vkao_rect tiles = {0, 0, block.tiles[0] * block.tiles[1], 1};
     const struct vkao_tiles_head none = {.group_rows = height, .one = 1};
     record_stages(frame, cmd, STAGES_COMPUTE, STAGES_TRANSFER);
     vk->CmdUpdateBuffer(cmd, buffer->buffer, buffer->parts[PART_TILES].offset, sizeof none, &none);

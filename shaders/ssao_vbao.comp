@@ -5,9 +5,9 @@
  * light passes behind thin things. With c = cos theta, the slice's density cos(theta - n) |sin theta| dtheta becomes
  * (cos n * c + sin n * sqrt(1 - c^2)) dc, whose integral is
  *     G(c) = cos n * c^2 / 2 + sin n * g(c),   g(c) = (c sqrt(1 - c^2) + asin c) / 2.
- * Each side has its own mask of 31 sectors of equal mass between the tangent plane, c = -sin n, and V, c = 1: sector
- * bounds cost one inversesqrt and a polynomial, no angle. Samples come near to far and only sectors that they hide
- * first count, with the falloff at the hiding point: the definition of the ray-traced truths.
+ * Each side has its own mask of 31 sectors of equal mass between the tangent plane, c = -sin n, and V, c = 1: a sector
+ * bound costs a square root and a polynomial, two of them a division, and no angle. Samples come near to far and only
+ * sectors that they hide first count, with the falloff at the hiding point: the definition of the ray-traced truths.
  *
  * The depth image is sampled in few places; what lies between two samples of a side is guessed:
  *  - a sample is joined to the one before if the surface between them rises less than VKAO_VBAO_JOIN

@@ -181,23 +181,6 @@ static void buffers_agree_with_images(void **state)
     vkao_context_destroy(buffers);
 }
 
-/* Inside the rect as the whole, outside untouched. */
-static void check_part(const char *name, const struct picture *part, const struct picture *whole,
-                       double canary)
-{
-    const VkRect2D rect = part->view.rect;
-    for (size_t i = 0; i < picture_texels(part); ++i) {
-        const uint32_t x = (uint32_t)(i % part->width), y = (uint32_t)(i / part->width);
-        const bool inside = x - (uint32_t)rect.offset.x < rect.extent.width &&
-                            y - (uint32_t)rect.offset.y < rect.extent.height;
-        const double want = inside ? whole->values[SLOT_AO][i] : canary;
-        if (!(part->values[SLOT_AO][i] == want))
-            fail_msg("%s, %ux%u at (%d,%d): texel (%u,%u) is %.9g, want %.9g", name,
-                     rect.extent.width, rect.extent.height, rect.offset.x, rect.offset.y, x, y,
-                     part->values[SLOT_AO][i], want);
-    }
-}
-
 static void rects_equal_the_whole_in(vkao_scratch_layout layout)
 {
     static const VkRect2D rects[] = {
@@ -217,7 +200,7 @@ static void rects_equal_the_whole_in(vkao_scratch_layout layout)
             make_tall(&part, &talls[i]);
             part.view.rect = rects[r];
             run_with(context, &part);
-            check_part(talls[i].name, &part, &whole, canary);
+            picture_check_part(&part, &whole, canary, talls[i].name);
             picture_free(&part);
         }
         picture_free(&whole);

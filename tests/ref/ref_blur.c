@@ -44,8 +44,8 @@ static double normal_weight(const struct blur *blur, size_t center, size_t tap)
     return pow(fmax(0.0, ref_dot(a, b)), (double)blur->params->normal_power);
 }
 
-/* exp(-2 k^2 / r^2) * max(0, 1 - sharpness |z_k - z - slope k| / z) * max(0, n.n_k)^normal_power; at half
- * resolution the larger of the distances by the centre's slope and by the tap's */
+/* exp(-2 k^2 / r^2) * max(0, 1 - sharpness |z_k - z - slope k| / z) * max(0, n.n_k)^normal_power;
+ * at half resolution the larger of the distances by the centre's slope and by the tap's */
 static double blurred(const struct blur *blur, const double *ao, int x, int y, int dx, int dy)
 {
     double z = ref_scene_z(blur->scene, x, y), sum = 0.0, weights = 0.0;

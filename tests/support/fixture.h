@@ -95,6 +95,9 @@ void picture_init(struct picture *p, uint32_t width, uint32_t height, vkao_stage
 void picture_free(struct picture *p);
 uint32_t picture_channels(enum picture_slot slot);
 size_t picture_texels(const struct picture *p);
+/* AO inside the part's rect is the whole's, bit for bit, and untouched outside. what: for the message. */
+void picture_check_part(const struct picture *part, const struct picture *whole, double untouched,
+                        const char *what);
 vkao_image *picture_slot_image(vkao_images *images, enum picture_slot slot);
 /* Uses the slot, with these values rounded to the format, or with canaries if NULL. */
 void picture_set(struct picture *p, enum picture_slot slot, VkFormat format, const double *values);

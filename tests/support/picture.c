@@ -237,3 +237,19 @@ void picture_reference_scene(const struct picture *p, struct ref_scene *scene)
     ref_scene_init(scene, &p->view, p->width, p->height, p->formats[SLOT_DEPTH],
                    p->values[SLOT_DEPTH], stored ? p->values[SLOT_NORMALS] : NULL);
 }
+
+void picture_check_part(const struct picture *part, const struct picture *whole, double untouched,
+                        const char *what)
+{
+    const VkRect2D rect = part->view.rect;
+    for (size_t i = 0; i < picture_texels(part); ++i) {
+        const uint32_t x = (uint32_t)(i % part->width), y = (uint32_t)(i / part->width);
+        const bool inside = x - (uint32_t)rect.offset.x < rect.extent.width &&
+                            y - (uint32_t)rect.offset.y < rect.extent.height;
+        const double want = inside ? whole->values[SLOT_AO][i] : untouched;
+        if (!(part->values[SLOT_AO][i] == want))
+            fail_msg("%s %ux%u at (%d,%d): texel (%u,%u) is %.9g, want %.9g", what,
+                     rect.extent.width, rect.extent.height, rect.offset.x, rect.offset.y, x, y,
+                     part->values[SLOT_AO][i], want);
+    }
+}

@@ -146,7 +146,8 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
     return true;
 }
 
-/* Buffers of CPUs have limits that images have not: columns and rows, with more than their padding. */
+/* Buffers of CPUs have limits that images have not: columns and rows, with more than their
+ * padding. */
 static vkao_scratch_layout job_layout(const struct ao_session *session, const struct ao_job *job)
 {
     const uint32_t shift = job->half_resolution ? 1 : 0;
