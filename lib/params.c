@@ -101,7 +101,7 @@ vkao_result ssao_params_check(const vkao_context *ctx, const struct vkao_logger 
                              (int)out->method);
     /* Zero is from before the field existed. */
     out->slice_count = out->slice_count ? out->slice_count : 1;
-    out->step_count = out->step_count ? out->step_count : 10;
+    out->step_count = out->step_count ? out->step_count : 8;
     out->thickness = out->thickness > 0.0f ? out->thickness : 1.0f;
     return result;
 }

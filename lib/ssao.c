@@ -51,7 +51,9 @@ void record_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const struct view
 {
     const struct view_constants grid = frame_grid(frame, view);
     const struct vkao_rect rect = rect_grow(grid.rect, border, border, grid.valid);
-    const float thickness = params->thickness;
+    const float thickness =
+        params->thickness *
+        (params->falloff == VKAO_FALLOFF_THRESHOLD ? (float)VKAO_THICKNESS_THRESHOLD : 1.0f);
     struct vkao_ssao_block block = {
         .normal_x[3] = params->radius,
         .normal_y[3] = params->bias * params->radius,

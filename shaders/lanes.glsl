@@ -13,6 +13,7 @@
 #define whole ivec2
 #define ints ivec4
 #define bools bvec4
+#define boolean bvec2
 const int TEXELS = VKAO_SSAO_TEXELS;
 const real BESIDE = vec2(0.0, 1.0); /* x of the texels, from the first one's */
 
@@ -62,6 +63,7 @@ bvec2 above(real a, real b)
 #define whole int
 #define ints ivec2
 #define bools bvec2
+#define boolean bool
 const int TEXELS = 1;
 const real BESIDE = 0.0;
 

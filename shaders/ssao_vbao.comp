@@ -13,6 +13,7 @@
  *  - a sample is joined to the one before if the surface between them rises less than VKAO_VBAO_JOIN
  *    over the tangent plane, as any plane does; then all between is hidden;
  *  - if not, its front edge moves in by VKAO_VBAO_GAP_FRONT of the gap, as an edge lies somewhere in it;
+ *  - what it hides counts by the distance from there, joined or not: the nearest that it stands for hides first;
  *  - its back edge moves out by VKAO_VBAO_GAP_BACK of the gap, as the surface goes on to somewhere before the next sample;
  *  - what is seen is as thick as VKAO_THICKNESS_BASE of the radius plus VKAO_THICKNESS_SLOPE of its lateral distance. */
 #version 450
@@ -83,7 +84,8 @@ void hide(inout March march, Slice s, Masks m, reals tangent, Offset offset, rea
     bools seen = greaterThan(z, reals(0.0));
     reals gap = x - march.last_x, height = y + x * tangent;
     bools joined = lessThan(abs(height - march.last_height), VKAO_VBAO_JOIN * abs(gap));
-    reals front_x = mix(x, x - VKAO_VBAO_GAP_FRONT * gap, greaterThan(height, reals(0.0)));
+    reals inner_x = x - VKAO_VBAO_GAP_FRONT * gap;
+    reals front_x = mix(x, inner_x, greaterThan(height, reals(0.0)));
     front_x = mix(front_x, x, joined);
     reals thick_y = y - (params.thickness_base + params.thickness_slope * x);
     reals back_x = x + VKAO_VBAO_GAP_BACK * gap;
@@ -99,7 +101,7 @@ void hide(inout March march, Slice s, Masks m, reals tangent, Offset offset, rea
     ints fresh = bits & ~march.mask;
     march.mask |= bits;
     reals near_y = lesser(max(thick_y, reals(0.0)), y);
-    reals w = falloff_weight(x * x + near_y * near_y) * reals(bitCount(fresh));
+    reals w = falloff_weight(inner_x * inner_x + near_y * near_y) * reals(bitCount(fresh));
     march.hidden += w;
     if (BENT_NORMALS) {
         reals middle = clamp(0.5 * (front + max(back, m.low)), reals(-1.0), reals(1.0));

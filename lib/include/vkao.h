@@ -341,8 +341,9 @@ struct vkao_view {
      * hand, reversed or infinite depth are all read off the matrix. Finite, no shear, no rotation. */
     float projection[16];
     /* Rotation of stored normals into view space, m[column * 3 + row]. Identity if they are view-space.
-     * Normals need not be unit length; those that face away from the eye are turned round, those that are
-     * shorter than 0.5 or not finite are replaced by the one reconstructed from depth. */
+     * Normals need not be unit length. One that faces away from the eye is turned round if it is the back of its
+     * surface that is seen. If not, as where interpolation over a mesh has carried it past the outline, or if it is
+     * shorter than 0.5 or not finite, the one that the neighbours' depths give takes its place. */
     float normal_to_view[9];
     uint32_t reserved; /* zero */
     /* Of images.bent_normals. 0 = as normal_encoding, or XYZ_SNORM if that is FROM_DEPTH. */
@@ -394,9 +395,9 @@ struct vkao_ssao_params {
     float blocking_scale; /* (0,inf) 1 / scene units; the constant 50 of SPHERE_LITERAL. Default 50 */
     uint32_t reserved;    /* zero */
     uint32_t slice_count; /* [1,64] HBAO, GTAO, VBAO: directions, each marched to both sides; 0 = 1. Default 1 */
-    uint32_t step_count;  /* [1,256] samples on each side of a slice, or on each ray of RAYMARCH; 0 = 10. Default 10 */
+    uint32_t step_count;  /* [1,256] samples on each side of a slice, or on each ray of RAYMARCH; 0 = 8. Default 8 */
     /* [0,8] VBAO, RAYMARCH: how thick the scene is behind what is seen, relative to the measured default, which grows
-     * from .12 radius by .60 of the distance to the side. 0 = 1. Default 1 */
+     * from .19 radius by .42 of the distance to the side, and with THRESHOLD 1.1 times that. 0 = 1. Default 1 */
     float thickness;
     uint32_t reserved_too; /* zero */
 };
@@ -412,7 +413,7 @@ static inline vkao_ssao_params vkao_ssao_params_default(void)
     p.bias = 0.005f;
     p.blocking_scale = 50.0f;
     p.slice_count = 1;
-    p.step_count = 10;
+    p.step_count = 8;
     p.thickness = 1.0f;
     return p;
 }

@@ -190,6 +190,35 @@ static void facets_under_smooth_normals_hardly_show(void **state)
     }
 }
 
+/* Near the outline of a coarse mesh, interpolated normals point away from the eye: here by 15 degrees
+ * on a wall that is seen at 20 degrees, whose true normal stands at 70. */
+static void normals_past_the_outline_do_not_darken(void **state)
+{
+    (void)state;
+    const struct scene nothing = {{{SHAPE_NONE, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}}}};
+    const double slope = tan(70.0 * pi / 180.0), shading = 105.0 * pi / 180.0;
+    struct lens lens = lens_orthographic(1.6, 1.2);
+    for (int method = 0; method < METHODS; ++method) {
+        struct picture p;
+        double worst = 1.0;
+        make(&p, method, VKAO_STAGE_SSAO, 80, 60, &nothing, &lens);
+        for (size_t t = 0; t < picture_texels(&p); ++t) {
+            double x = ((double)(t % p.width) + 0.5) / p.width * 3.2 - 1.6;
+            p.values[SLOT_DEPTH][t] = 10.0 + x * slope;
+            double *n = &p.values[SLOT_NORMALS][t * 4];
+            n[0] = sin(shading);
+            n[1] = 0.0;
+            n[2] = cos(shading); /* right-handed: towards the eye */
+        }
+        picture_run(&p);
+        for (size_t t = 0; t < picture_texels(&p); ++t)
+            worst = fmin(worst, p.values[SLOT_AO][t]);
+        print_message("    %-10s darkest %.4f\n", names[method], worst);
+        assert_true(worst >= 0.998);
+        picture_free(&p);
+    }
+}
+
 /* The sky is open, and a wall before it has an open edge. */
 static void the_sky_is_open_and_hides_nothing(void **state)
 {
@@ -381,6 +410,7 @@ int main(void)
         gpu_test(thin_rods_do_not_darken_what_is_behind),
         gpu_test(far_walls_are_open),
         gpu_test(facets_under_smooth_normals_hardly_show),
+        gpu_test(normals_past_the_outline_do_not_darken),
         gpu_test(the_sky_is_open_and_hides_nothing),
         gpu_test(subpixel_motion_does_not_flicker),
         gpu_test(no_pattern_of_the_noise_is_left),

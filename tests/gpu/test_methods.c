@@ -105,7 +105,7 @@ static void bad_normals_are_replaced_by_those_from_depth(void **state)
     (void)state;
     for (int m = 0; m < METHODS; ++m) {
         const vkao_ssao_params params = params_of(&methods[m]);
-        check_bad_normals_are_replaced(&params);
+        check_bad_normals_are_replaced(&params, methods[m].reference);
     }
 }
 

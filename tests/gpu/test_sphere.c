@@ -78,7 +78,7 @@ static void bad_normals_are_replaced_by_those_from_depth(void **state)
 {
     (void)state;
     vkao_ssao_params params = sphere(VKAO_SPHERE_RESCALED);
-    check_bad_normals_are_replaced(&params);
+    check_bad_normals_are_replaced(&params, ref_sphere);
 }
 
 static void limits_give_numbers(void **state)

@@ -92,6 +92,13 @@ bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, dou
     return true;
 }
 
+double ref_thickness(const vkao_ssao_params *params, double lateral)
+{
+    double scale = params->falloff == VKAO_FALLOFF_THRESHOLD ? VKAO_THICKNESS_THRESHOLD : 1.0;
+    return scale * (double)params->thickness *
+           (VKAO_THICKNESS_BASE * (double)params->radius + VKAO_THICKNESS_SLOPE * lateral);
+}
+
 double ref_falloff(const vkao_ssao_params *params, double distance)
 {
     double x = distance / (double)params->radius;

@@ -39,6 +39,9 @@ bool ref_slice_sample(const struct ref_slice *slice, double side, uint32_t step,
 /* 1 - (d/R)^2 within R, or 1 within R. */
 double ref_falloff(const vkao_ssao_params *params, double distance);
 
+/* Of what is seen at that distance to the side, in scene units. */
+double ref_thickness(const vkao_ssao_params *params, double lateral);
+
 /* Integrals from a to b over theta, by Simpson's rule: of the measure without L, and of the measure
  * times (sin theta, cos theta). */
 double ref_slice_integral(double n, double a, double b);

@@ -2,6 +2,7 @@
 #include "ref_normal.h"
 
 #include <math.h>
+#include <string.h>
 
 double ref_dot(const double a[3], const double b[3])
 {
@@ -32,7 +33,7 @@ bool ref_normal_decode(vkao_normal_encoding encoding, const double stored[4], do
     if (encoding == VKAO_NORMALS_OCT_SNORM || encoding == VKAO_NORMALS_OCT_UNORM)
         octahedral_decode(v[0], v[1], v);
     double length = sqrt(ref_dot(v, v));
-    if (!(length >= 0.5) || !isfinite(length))
+    if (!(length >= 0.5) || !(length * length < 3.0e38)) /* what a float holds */
         return false;
     for (int i = 0; i < 3; ++i)
         out[i] = v[i] / length;
@@ -75,14 +76,25 @@ static double misprediction(const struct ref_scene *scene, int x, int y, int axi
     return fabs((isnan(second) ? first : 2.0 * first - second) - center);
 }
 
-static void tangent(const struct ref_scene *scene, int x, int y, int axis, double out[3])
+/* The same by view z of the first neighbour alone. */
+static double difference(const struct ref_scene *scene, int x, int y, int axis, int step)
 {
-    double before = misprediction(scene, x, y, axis, -1),
-           after = misprediction(scene, x, y, axis, 1);
+    double first = ref_scene_z(scene, axis == 0 ? x + step : x, axis == 1 ? y + step : y);
+    double center = ref_scene_z(scene, x, y);
+    return isnan(first) ? center : fabs(first - center);
+}
+
+typedef double measure(const struct ref_scene *scene, int x, int y, int axis, int step);
+
+static void tangent(const struct ref_scene *scene, int x, int y, int axis, measure *miss,
+                    double out[3])
+{
+    double before = miss(scene, x, y, axis, -1), after = miss(scene, x, y, axis, 1);
     int step = before < after ? -1 : 1;
     double z = ref_scene_z(scene, x, y), neighbour_z = z, p[3], q[3];
-    if (isfinite(before) || isfinite(after))
-        neighbour_z = ref_scene_z(scene, axis == 0 ? x + step : x, axis == 1 ? y + step : y);
+    double chosen_z = ref_scene_z(scene, axis == 0 ? x + step : x, axis == 1 ? y + step : y);
+    if (!isnan(chosen_z))
+        neighbour_z = chosen_z;
     ref_view_position(&scene->view, x, y, z, p);
     ref_view_position(&scene->view, axis == 0 ? x + step : x, axis == 1 ? y + step : y, neighbour_z,
                       q);
@@ -90,13 +102,15 @@ static void tangent(const struct ref_scene *scene, int x, int y, int axis, doubl
         out[i] = step * (q[i] - p[i]);
 }
 
-static void from_depth(const struct ref_scene *scene, int x, int y, double out[3])
+static void from_depth(const struct ref_scene *scene, int x, int y, measure *miss, double out[3])
 {
-    double a[3], b[3];
-    tangent(scene, x, y, 0, a);
-    tangent(scene, x, y, 1, b);
+    double a[3], b[3], p[3], eye[3];
+    tangent(scene, x, y, 0, miss, a);
+    tangent(scene, x, y, 1, miss, b);
     double n[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-    double length = sqrt(ref_dot(n, n));
+    ref_view_position(&scene->view, x, y, ref_scene_z(scene, x, y), p);
+    ref_view_eye(&scene->view, p, eye);
+    double length = sqrt(ref_dot(n, n)) * (ref_dot(n, eye) < 0.0 ? -1.0 : 1.0);
     for (int i = 0; i < 3; ++i)
         out[i] = n[i] / length;
 }
@@ -104,24 +118,27 @@ static void from_depth(const struct ref_scene *scene, int x, int y, double out[3
 void ref_scene_normal(const struct ref_scene *scene, const vkao_view *view, int x, int y,
                       const double *stored, double out[3])
 {
-    double n[3], p[3], eye[3], z = ref_scene_z(scene, x, y);
+    double n[3], p[3], eye[3], facet[3], z = ref_scene_z(scene, x, y);
     for (int i = 0; i < 3; ++i)
         out[i] = NAN;
     if (isnan(z))
         return;
-    if (stored && ref_normal_decode(view->normal_encoding, stored, n)) {
-        for (int row = 0; row < 3; ++row) {
-            out[row] = 0.0;
-            for (int column = 0; column < 3; ++column)
-                out[row] += (double)view->normal_to_view[column * 3 + row] * n[column];
-        }
-        out[2] *= scene->view.forward;
-    } else {
-        from_depth(scene, x, y, out);
+    bool none = !stored || view->normal_encoding == VKAO_NORMALS_FROM_DEPTH;
+    from_depth(scene, x, y, none ? misprediction : difference, facet);
+    memcpy(out, facet, sizeof facet);
+    if (none || !ref_normal_decode(view->normal_encoding, stored, n))
+        return;
+    for (int row = 0; row < 3; ++row) {
+        out[row] = 0.0;
+        for (int column = 0; column < 3; ++column)
+            out[row] += (double)view->normal_to_view[column * 3 + row] * n[column];
     }
+    out[2] *= scene->view.forward;
     ref_view_position(&scene->view, x, y, z, p);
     ref_view_eye(&scene->view, p, eye);
-    double side = ref_dot(out, eye) < 0.0 ? -1.0 : 1.0;
+    if (ref_dot(out, eye) >= 0.0)
+        return;
+    bool back = ref_dot(out, facet) < 0.0; /* of the surface, which is seen from there */
     for (int i = 0; i < 3; ++i)
-        out[i] *= side;
+        out[i] = back ? -out[i] : facet[i];
 }

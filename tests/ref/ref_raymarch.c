@@ -29,8 +29,7 @@ static bool hit(const struct ref_scene *scene, const vkao_ssao_params *params,
         under[i] = surface[i] - point[i];
     }
     double along = ref_dot(v, eye), lateral = sqrt(fmax(0.0, ref_dot(v, v) - along * along));
-    double thickness = (double)params->thickness * (VKAO_THICKNESS_BASE * radius +
-                                                    VKAO_THICKNESS_SLOPE * fmin(lateral, radius));
+    double thickness = ref_thickness(params, fmin(lateral, radius));
     /* What stands behind the point, as the eye sees it, may be higher over the tangent plane and
      * hides nothing. */
     double behind = ref_dot(eye, under);

@@ -85,13 +85,12 @@ static void march(struct side *s)
         double front = fabs(atan2(front_out, p.up));
         if (joined)
             front = fmin(front, before_angle);
-        double thickness = (double)params->thickness * (VKAO_THICKNESS_BASE * radius +
-                                                        VKAO_THICKNESS_SLOPE * fmin(p.out, radius));
+        double thickness = ref_thickness(params, p.out);
         double back = fabs(atan2(p.out + VKAO_VBAO_GAP_BACK * dx, p.up - thickness));
         /* The slab's point nearest to P is on P's own height if the slab spans that. */
         double near_up = p.up < 0.0 ? p.up : fmax(0.0, p.up - thickness);
         hide(s, lowered(front, (double)params->bias), back,
-             ref_falloff(params, hypot(p.out, near_up)));
+             ref_falloff(params, hypot(p.out - VKAO_VBAO_GAP_FRONT * dx, near_up)));
         before[0] = p.out;
         before[1] = p.up;
         before_angle = fabs(atan2(p.out, p.up));

@@ -18,7 +18,7 @@ void check_world_space_normals(const vkao_ssao_params *params, ssao_reference *r
 /* Orthographic and perspective, either hand, y up, off-centre. */
 void check_every_projection(const vkao_ssao_params *params, ssao_reference *reference);
 /* Zero, short, infinite and NaN normals are replaced by those from depth, bit for bit. */
-void check_bad_normals_are_replaced(const vkao_ssao_params *params);
+void check_bad_normals_are_replaced(const vkao_ssao_params *params, ssao_reference *reference);
 /* The same scene in a smaller image, a row, a column and one texel, with reaches far beyond the
  * screen: numbers. */
 void check_no_nan_at_the_limits(const vkao_ssao_params *params);

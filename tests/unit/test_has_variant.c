@@ -44,7 +44,7 @@ static const struct {
     ROW(GTAO, ssao.slice_count, U(3), U(4), COUNTS),
     ROW(HBAO, ssao.slice_count, U(3), U(4), COUNTS),
     ROW(VBAO, ssao.step_count, U(6), U(7), COUNTS),
-    ROW(VBAO, ssao.step_count, U(0), U(10), FREE), /* the same */
+    ROW(VBAO, ssao.step_count, U(0), U(8), FREE), /* the same */
     ROW(VBAO, ssao.step_count, U(22), U(200), FREE),
     ROW(SPHERE, ssao.slice_count, U(3), U(4), FREE),
     ROW(HEMISPHERE, ssao.step_count, U(6), U(7), FREE),

@@ -236,7 +236,7 @@ static void name_zeros(struct setting *s)
     if (!s->ssao.slice_count)
         s->ssao.slice_count = 1;
     if (!s->ssao.step_count)
-        s->ssao.step_count = 10;
+        s->ssao.step_count = 8;
     if (!(s->ssao.thickness > 0.0f))
         s->ssao.thickness = 1.0f;
 }
