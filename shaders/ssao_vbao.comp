@@ -15,6 +15,7 @@
  *  - if not, its front edge moves in by VKAO_VBAO_GAP_FRONT of the gap, as an edge lies somewhere in it;
  *  - what it hides counts by the distance from there, joined or not: the nearest that it stands for hides first;
  *  - its back edge moves out by VKAO_VBAO_GAP_BACK of the gap, as the surface goes on to somewhere before the next sample;
+ *  - sky, whose view z is 0, lies where the line of sight begins, so that hardly anything joins it;
  *  - what is seen is as thick as VKAO_THICKNESS_BASE of the radius plus VKAO_THICKNESS_SLOPE of its lateral distance. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -109,9 +110,9 @@ void hide(inout March march, Slice s, Masks m, reals tangent, Offset offset, rea
         march.out_moment += w * SIDES * sqrt(max(reals(0.0), 1.0 - middle * middle));
         march.eye_moment += w * middle;
     }
-    march.last_x = mix(march.last_x, x, seen);
-    march.last_height = mix(march.last_height, height, seen);
-    march.last_front = mix(march.last_front, front, seen);
+    march.last_x = x;
+    march.last_height = height;
+    march.last_front = mix(reals(-2.0), front, seen);
 }
 
 /* What a slice loses of its mass, weighted, and of its moment along O and along V. */

@@ -78,9 +78,8 @@ bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, dou
     double q[3];
     step_texel(s, side, step, reach, at);
     double z = ref_scene_z(s->scene, at[0], at[1]);
-    if (isnan(z))
-        return false;
-    ref_view_position(&s->scene->view, at[0], at[1], z, q);
+    bool known = !isnan(z);
+    ref_view_position(&s->scene->view, at[0], at[1], known ? z : 0.0, q);
     for (int i = 0; i < 3; ++i)
         sample->v[i] = q[i] - s->p[i];
     /* Into the slice along the tangent plane: the height over that plane, n.v, stays what it is. */
@@ -89,7 +88,7 @@ bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, dou
     /* The depth may be off by a step of its format. */
     sample->up = ref_dot(sample->v, s->to_eye) + off * ref_dot(s->n, s->across) / facing - s->guard;
     sample->distance = hypot(sample->out, sample->up);
-    return true;
+    return known;
 }
 
 double ref_thickness(const vkao_ssao_params *params, double lateral)

@@ -73,9 +73,13 @@ static void march(struct side *s)
     double before[2] = {0.0, 0.0}, before_angle = INFINITY;
     struct ref_sample p;
     for (uint32_t t = 0; t < params->step_count; ++t) {
-        if (!ref_slice_sample(s->slice, s->sign, t, reach * radius, &p))
+        bool known = ref_slice_sample(s->slice, s->sign, t, reach * radius, &p);
+        double dx = p.out - before[0], dy = p.up - before[1], joined_angle = before_angle;
+        before[0] = p.out;
+        before[1] = p.up;
+        before_angle = known ? fabs(atan2(p.out, p.up)) : INFINITY;
+        if (!known)
             continue;
-        double dx = p.out - before[0], dy = p.up - before[1];
         /* The tangent plane falls by this for every unit outwards. */
         double fall = sin(s->n) / fmax(cos(s->n), 0.02);
         bool joined = fabs(dy + dx * fall) < VKAO_VBAO_JOIN * fabs(dx);
@@ -84,16 +88,13 @@ static void march(struct side *s)
             !joined && above ? fmax(p.out - VKAO_VBAO_GAP_FRONT * dx, 1.0e-4 * radius) : p.out;
         double front = fabs(atan2(front_out, p.up));
         if (joined)
-            front = fmin(front, before_angle);
+            front = fmin(front, joined_angle);
         double thickness = ref_thickness(params, p.out);
         double back = fabs(atan2(p.out + VKAO_VBAO_GAP_BACK * dx, p.up - thickness));
         /* The slab's point nearest to P is on P's own height if the slab spans that. */
         double near_up = p.up < 0.0 ? p.up : fmax(0.0, p.up - thickness);
         hide(s, lowered(front, (double)params->bias), back,
              ref_falloff(params, hypot(p.out - VKAO_VBAO_GAP_FRONT * dx, near_up)));
-        before[0] = p.out;
-        before[1] = p.up;
-        before_angle = fabs(atan2(p.out, p.up));
     }
 }
 
