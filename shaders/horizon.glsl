@@ -64,11 +64,24 @@ struct Offset {
     Rounded x, y;
 };
 
-/* Of step t, at least 1 + t/2 texels. Steps crowd near the point. */
-Offset step_offset(Slice s, uint t, real jitter, float reach)
+/* Distance of step t along the slice, a polynomial of t. Steps crowd near the point. */
+struct Steps {
+    real k0, k1, k2;
+};
+
+/* q (LINEAR + (1 - LINEAR) q) of the reach, q = (t + jitter) / steps */
+Steps make_steps(Slice s, real jitter, float reach)
 {
-    real q = (float(t) + jitter) * (1.0 / float(step_count()));
-    real far = (s.scale * reach) * (q * (VKAO_STEP_LINEAR + (1.0 - VKAO_STEP_LINEAR) * q));
+    float n = 1.0 / float(step_count()), square = reach * (1.0 - VKAO_STEP_LINEAR) * n * n;
+    float line = reach * VKAO_STEP_LINEAR * n;
+    return Steps(s.scale * (jitter * (line + square * jitter)), s.scale * (line + 2.0 * square * jitter),
+                 s.scale * square);
+}
+
+/* At least 1 + t/2 texels. */
+Offset step_offset(Slice s, Steps steps, uint t)
+{
+    real far = steps.k0 + float(t) * (steps.k1 + float(t) * steps.k2);
     real least = s.per_texel * (1.0 + 0.5 * float(t));
     far = choose(least, far, above(far, least));
     return Offset(rounded(s.step.x * far), rounded(s.step.y * far));

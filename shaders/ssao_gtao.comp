@@ -18,15 +18,15 @@
 /* Cosines of the horizons. */
 reals horizon_cosines(Slice s, ivec2 texel, real jitter)
 {
-    float radius = params.normal_x.w;
+    Steps steps = make_steps(s, jitter, params.normal_x.w);
     reals low = -SIDES * both(s.sin_n); /* cos(n +- pi/2): the tangent plane */
     reals horizon = low, open = low + params.bias_cosine;
-    Offset next = step_offset(s, 0u, jitter, radius);
+    Offset next = step_offset(s, steps, 0u);
     reals next_z = load_sides(texel, next);
     [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
         Offset offset = next;
         reals z = next_z, x, y;
-        next = step_offset(s, t + 1u, jitter, radius);
+        next = step_offset(s, steps, t + 1u);
         if (STEPS == 0u || t + 1u < STEPS)
             next_z = load_sides(texel, next);
         slice_points(s, offset, z, x, y);

@@ -18,11 +18,11 @@
 /* Of both sides together. */
 real occlusion(Slice s, ivec2 texel, real jitter)
 {
-    float radius = params.normal_x.w;
+    Steps steps = make_steps(s, jitter, params.normal_x.w);
     reals sine = reals(params.bias_cosine), occluded = reals(0.0);
     reals along = SIDES * both(s.normal_length * s.sin_n), facing = both(s.normal_length * s.cos_n);
     [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
-        Offset offset = step_offset(s, t, jitter, radius);
+        Offset offset = step_offset(s, steps, t);
         reals z = load_sides(texel, offset), x, y;
         slice_points(s, offset, z, x, y);
         reals d2 = x * x + y * y;

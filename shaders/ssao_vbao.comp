@@ -132,12 +132,13 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter)
     reals tangent = SIDES * both(s.sin_n / max(s.cos_n, real(0.02)));
     Masks m = make_masks(s);
     const reals none = reals(0.0);
-    Offset first = step_offset(s, 0u, jitter, reach);
+    Steps steps = make_steps(s, jitter, reach);
+    Offset first = step_offset(s, steps, 0u);
     March march = March(ints(0), none, none, reals(-2.0), none, none, none, first, load_sides(texel, first));
     [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
         Offset offset = march.next;
         reals z = march.next_z;
-        march.next = step_offset(s, t + 1u, jitter, reach);
+        march.next = step_offset(s, steps, t + 1u);
         if (STEPS == 0u || t + 1u < STEPS)
             march.next_z = load_sides(texel, march.next);
         hide(march, s, m, tangent, offset, z);
