@@ -16,6 +16,7 @@ struct Slice {
     real per_texel;      /* 1 / its length */
     real scale;          /* scene units -> the same at the shaded point */
     Real2 to_x, to_y;    /* texels off the shaded point -> x and y in radii, per unit of view z in perspective */
+    real center_z;       /* view z of the shaded point */
     real eye, origin;    /* y is origin - eye * view z, and what to_y adds */
     Real3 outward;       /* O: unit, in the slice, at right angles to V */
     real normal_length;  /* L */
@@ -38,6 +39,7 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
     Real2 d = half_turn(turn);
     s.step = Real2(d.x * params.inverse_unproject.x, d.y * params.inverse_unproject.y);
     s.per_texel = inversesqrt(s.step.x * s.step.x + s.step.y * s.step.y);
+    s.center_z = position.z;
     s.scale = orthographic() ? real(1.0) : 1.0 / position.z;
     real along = d.x * to_eye.x + d.y * to_eye.y, inverse_o = inversesqrt(1.0 - along * along);
     s.outward = times(Real3(d.x - along * to_eye.x, d.y - along * to_eye.y, -along * to_eye.z), inverse_o);

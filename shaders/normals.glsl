@@ -8,17 +8,12 @@
 #include "lanes.glsl"
 #include "view.glsl"
 
-/* Positions of the texels at texel + offset and beside it, of any view z. */
-Real3 view_positions(ivec2 texel, Real2 offset, real z)
-{
-    real x = (float(texel.x) + BESIDE + offset.x) * params.unproject.x + params.unproject.z;
-    real y = (float(texel.y) + offset.y) * params.unproject.y + params.unproject.w;
-    return orthographic() ? Real3(x, y, z) : Real3(x * z, y * z, z);
-}
-
+/* Of any view z. */
 Real3 view_positions(ivec2 texel, real z)
 {
-    return view_positions(texel, Real2(real(0.0), real(0.0)), z);
+    real x = (float(texel.x) + BESIDE) * params.unproject.x + params.unproject.z;
+    real y = real(float(texel.y)) * params.unproject.y + params.unproject.w;
+    return orthographic() ? Real3(x, y, z) : Real3(x * z, y * z, z);
 }
 
 real load_view_zs(ivec2 texel)

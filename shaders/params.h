@@ -155,7 +155,7 @@
 #define VKAO_STEP_LINEAR 0.50          /* distance of step t is q (LINEAR + (1 - LINEAR) q), q = (t + jitter) / steps */
 #define VKAO_THICKNESS_BASE 0.19       /* thickness of what is seen */
 #define VKAO_THICKNESS_SLOPE 0.42      /* and what it gains per distance to the side */
-#define VKAO_THICKNESS_THRESHOLD 1.1   /* times more with the threshold: what is far away counts alike, and hides more */
+#define VKAO_THICKNESS_THRESHOLD 1.1   /* times that with the threshold: what is far away counts alike, and hides more */
 #define VKAO_VBAO_JOIN 1.0             /* rise over the tangent plane, per run, up to which two samples join */
 #define VKAO_VBAO_GAP_FRONT 0.55       /* share of the gap by which the front of a separate surface moves in */
 #define VKAO_VBAO_GAP_BACK 0.7         /* share of the gap by which its back moves out */

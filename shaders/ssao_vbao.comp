@@ -12,10 +12,11 @@
  * The depth image is sampled in few places; what lies between two samples of a side is guessed:
  *  - a sample is joined to the one before if the surface between them rises less than VKAO_VBAO_JOIN
  *    over the tangent plane, as any plane does; then all between is hidden;
- *  - if not, its front edge moves in by VKAO_VBAO_GAP_FRONT of the gap, as an edge lies somewhere in it;
- *  - what it hides counts by the distance from there, joined or not: the nearest that it stands for hides first;
+ *  - if not, and if it rises over that plane, its front edge moves in by VKAO_VBAO_GAP_FRONT of the gap, as an edge lies
+ *    somewhere in it;
+ *  - what it hides counts by the distance to there, joined or not: the nearest that it stands for hides first;
  *  - its back edge moves out by VKAO_VBAO_GAP_BACK of the gap, as the surface goes on to somewhere before the next sample;
- *  - sky, whose view z is 0, lies where the line of sight begins, so that hardly anything joins it;
+ *  - sky hides nothing; what follows it is looked at as after a sample of the tangent plane;
  *  - what is seen is as thick as VKAO_THICKNESS_BASE of the radius plus VKAO_THICKNESS_SLOPE of its lateral distance. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -80,10 +81,10 @@ struct March {
 /* Takes what a sample of both sides hides first. */
 void hide(inout March march, Slice s, Masks m, reals tangent, Offset offset, reals z)
 {
-    reals x, y;
-    slice_points(s, offset, z, x, y);
     bools seen = greaterThan(z, reals(0.0));
-    reals gap = x - march.last_x, height = y + x * tangent;
+    reals x, y;
+    slice_points(s, offset, mix(both(s.center_z), z, seen), x, y);
+    reals gap = x - march.last_x, height = mix(reals(0.0), y + x * tangent, seen);
     bools joined = lessThan(abs(height - march.last_height), VKAO_VBAO_JOIN * abs(gap));
     reals inner_x = x - VKAO_VBAO_GAP_FRONT * gap;
     reals front_x = mix(x, inner_x, greaterThan(height, reals(0.0)));

@@ -79,7 +79,7 @@ bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, dou
     step_texel(s, side, step, reach, at);
     double z = ref_scene_z(s->scene, at[0], at[1]);
     bool known = !isnan(z);
-    ref_view_position(&s->scene->view, at[0], at[1], known ? z : 0.0, q);
+    ref_view_position(&s->scene->view, at[0], at[1], known ? z : s->p[2], q);
     for (int i = 0; i < 3; ++i)
         sample->v[i] = q[i] - s->p[i];
     /* Into the slice along the tangent plane: the height over that plane, n.v, stays what it is. */

@@ -32,7 +32,8 @@ struct ref_sample {
     double out, up;  /* in the slice, out on that side */
     double distance; /* of that point: hypot(out, up) */
 };
-/* reach in scene units. False where nothing is known; that lies where the line of sight begins. */
+/* reach in scene units. False where nothing is known: it is then as deep as
+ * the shaded point. */
 bool ref_slice_sample(const struct ref_slice *slice, double side, uint32_t step, double reach,
                       struct ref_sample *sample);
 

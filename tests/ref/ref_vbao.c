@@ -75,13 +75,13 @@ static void march(struct side *s)
     for (uint32_t t = 0; t < params->step_count; ++t) {
         bool known = ref_slice_sample(s->slice, s->sign, t, reach * radius, &p);
         double dx = p.out - before[0], dy = p.up - before[1], joined_angle = before_angle;
+        /* The tangent plane falls by this for every unit outwards. */
+        double fall = sin(s->n) / fmax(cos(s->n), 0.02);
         before[0] = p.out;
-        before[1] = p.up;
+        before[1] = known ? p.up : -p.out * fall;
         before_angle = known ? fabs(atan2(p.out, p.up)) : INFINITY;
         if (!known)
             continue;
-        /* The tangent plane falls by this for every unit outwards. */
-        double fall = sin(s->n) / fmax(cos(s->n), 0.02);
         bool joined = fabs(dy + dx * fall) < VKAO_VBAO_JOIN * fabs(dx);
         bool above = p.up + p.out * fall > 0.0;
         double front_out =

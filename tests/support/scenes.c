@@ -93,6 +93,18 @@ struct scene scene_open_sky(void)
     }};
 }
 
+struct scene scene_posts(void)
+{
+    return (struct scene){{
+        {SHAPE_BOX, {0.0, 0.9, 4.0}, {1.5, 0.1, 1.5}},
+        {SHAPE_BOX, {0.35, 0.0, 3.5}, {0.25, 0.8, 0.25}},
+        {SHAPE_BOX, {-0.35, 0.1, 3.8}, {0.25, 0.7, 0.25}},
+        {SHAPE_BOX, {1.1, -0.1, 3.7}, {0.25, 0.9, 0.25}},
+        {SHAPE_BOX, {-1.1, 0.2, 3.3}, {0.25, 0.6, 0.25}},
+        {SHAPE_BOX, {0.0, -0.4, 3.7}, {1.5, 0.1, 0.15}},
+    }};
+}
+
 static double dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

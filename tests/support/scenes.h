@@ -40,6 +40,9 @@ struct scene scene_fence(void);
 /* A sphere and a box before nothing. */
 struct scene scene_open_sky(void);
 
+/* Posts and a rail on a board, before nothing and with nothing between them. */
+struct scene scene_posts(void);
+
 /* Ray cast into width * height texels, rows from the top; the lens spans the viewport. z is view z,
  * INFINITY for background; normals are 4 a texel in the lens' view space (z by its hand), facing
  * the eye. */

@@ -102,6 +102,7 @@ void check_every_projection(const vkao_ssao_params *params, ssao_reference *refe
         const char *name;
         bool orthographic, reversed, y_up;
         double forward, shift, lift;
+        bool depth_only, sky;
     } rows[] = {
         {"perspective, left-handed, y up", false, false, true, 1.0, 0.0, 0.0},
         {"perspective, right-handed, off-centre", false, false, false, -1.0, 0.3, 0.0},
@@ -109,10 +110,14 @@ void check_every_projection(const vkao_ssao_params *params, ssao_reference *refe
         {"orthographic, left-handed, reversed, off-centre", true, true, true, 1.0, 0.5, 0.0},
         /* The floor turns its back on the origin, but not on the camera. */
         {"orthographic, lifted", true, false, false, 1.0, 0.0, -2.5},
+        {"perspective, y up, depth only", false, false, true, 1.0, 0.0, 0.0, true},
+        {"orthographic, y up, depth only", true, false, true, -1.0, 0.0, 0.0, true},
+        {"perspective, sky", false, false, false, -1.0, 0.0, 0.0, false, true},
+        {"orthographic, sky", true, false, false, -1.0, 0.0, 0.0, false, true},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
         struct picture p;
-        struct scene scene = scene_corner();
+        struct scene scene = rows[i].sky ? scene_posts() : scene_corner();
         struct lens lens =
             rows[i].orthographic ? lens_orthographic(1.6, 1.2) : lens_perspective(0.6, 0.45);
         lens.x0 += rows[i].shift;
@@ -130,8 +135,13 @@ void check_every_projection(const vkao_ssao_params *params, ssao_reference *refe
         }
         picture_make(&p, VKAO_STAGE_SSAO, &scene);
         p.ssao = *params;
+        if (rows[i].sky)
+            p.ssao.radius = 1.0f; /* from post to post */
+        if (rows[i].depth_only)
+            p.view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
         picture_render_scene(&p, &scene, &lens, VK_FORMAT_R32_SFLOAT,
-                             VK_FORMAT_R32G32B32A32_SFLOAT);
+                             rows[i].depth_only ? VK_FORMAT_UNDEFINED
+                                                : VK_FORMAT_R32G32B32A32_SFLOAT);
         check_ssao(&p, reference, rows[i].name);
         picture_free(&p);
     }
@@ -149,14 +159,20 @@ void check_bad_normals_are_replaced(const vkao_ssao_params *params, ssao_referen
         {0.2, -0.1, -0.97},
         {-0.1, -0.35, -0.93}};
     const struct scene scene = scene_corner();
-    for (size_t row = 0; row < sizeof bad / sizeof bad[0]; ++row) {
+    const struct lens orthographic = lens_orthographic(1.6, 1.2);
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0] * 2; ++i) {
+        const size_t row = i / 2;
         struct picture p;
-        char what[40];
+        char what[60];
         picture_make(&p, VKAO_STAGE_SSAO, &scene);
         p.ssao = *params;
-        for (size_t i = 0; i < picture_texels(&p) * 4; ++i)
-            p.values[SLOT_NORMALS][i] = i % 4 < 3 ? bad[row][i % 4] : 0.0;
-        snprintf(what, sizeof what, "bad normals %zu", row);
+        if (i % 2)
+            picture_render_scene(&p, &scene, &orthographic, VK_FORMAT_R32_SFLOAT,
+                                 VK_FORMAT_R32G32B32A32_SFLOAT);
+        for (size_t t = 0; t < picture_texels(&p) * 4; ++t)
+            p.values[SLOT_NORMALS][t] = t % 4 < 3 ? bad[row][t % 4] : 0.0;
+        snprintf(what, sizeof what, "bad normals %zu, %s", row,
+                 i % 2 ? "orthographic" : "perspective");
         check_ssao(&p, reference, what);
         picture_free(&p);
     }

@@ -15,9 +15,11 @@ void check_ssao(struct picture *p, ssao_reference *reference, const char *what);
 void check_every_normal_encoding(const vkao_ssao_params *params, ssao_reference *reference);
 /* Normals of a turned world and the rotation back. */
 void check_world_space_normals(const vkao_ssao_params *params, ssao_reference *reference);
-/* Orthographic and perspective, either hand, y up, off-centre. */
+/* Orthographic and perspective, either hand, y up, off-centre, with normals and from depth; beside
+ * the sky. */
 void check_every_projection(const vkao_ssao_params *params, ssao_reference *reference);
-/* Zero, short, infinite and NaN normals are replaced by those from depth, bit for bit. */
+/* Zero, short, infinite and NaN normals are replaced by those from depth, and those that face away
+ * are turned round or replaced, in perspective and orthographic views. */
 void check_bad_normals_are_replaced(const vkao_ssao_params *params, ssao_reference *reference);
 /* The same scene in a smaller image, a row, a column and one texel, with reaches far beyond the
  * screen: numbers. */

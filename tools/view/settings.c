@@ -233,12 +233,13 @@ static void add_value(struct text *text, const struct param *param, const struct
 /* vkao.h: zero means the default. The command line knows no zero. */
 static void name_zeros(struct setting *s)
 {
+    const vkao_ssao_params standard = vkao_ssao_params_default();
     if (!s->ssao.slice_count)
-        s->ssao.slice_count = 1;
+        s->ssao.slice_count = standard.slice_count;
     if (!s->ssao.step_count)
-        s->ssao.step_count = 8;
+        s->ssao.step_count = standard.step_count;
     if (!(s->ssao.thickness > 0.0f))
-        s->ssao.thickness = 1.0f;
+        s->ssao.thickness = standard.thickness;
 }
 
 void setting_add_options(const struct setting *setting, enum view_kind view, struct text *out,

@@ -22,8 +22,8 @@ void main()
 {
     vec3 n = normalize(world_normal);
     // At the rim of what is round, interpolated normals turn away from the eye before the triangles
-    // do, and vkao would turn them round. Bent back they suit the depth, as far as anything does
-    // there; a little further than the rim, because 10 bits round.
+    // do, and vkao would take those of the triangles instead. Bent back they stay smooth; a little
+    // further than the rim, because 10 bits round.
     vec3 v = normalize(to_eye);
     n = normalize(n - v * min(dot(n, v) - 0.02, 0.0));
     vec3 ambient = mix(ground, sky, 0.5 + 0.5 * n.y);
