@@ -100,9 +100,10 @@ vkao_result ssao_params_check(const vkao_context *ctx, const struct vkao_logger 
                              "ssao.method is %d, which has no bent normals for images.bent_normals",
                              (int)out->method);
     /* Zero is from before the field existed. */
-    out->slice_count = out->slice_count ? out->slice_count : 1;
-    out->step_count = out->step_count ? out->step_count : 8;
-    out->thickness = out->thickness > 0.0f ? out->thickness : 1.0f;
+    const vkao_ssao_params standard = vkao_ssao_params_default();
+    out->slice_count = out->slice_count ? out->slice_count : standard.slice_count;
+    out->step_count = out->step_count ? out->step_count : standard.step_count;
+    out->thickness = out->thickness > 0.0f ? out->thickness : standard.thickness;
     return result;
 }
 

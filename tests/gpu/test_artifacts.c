@@ -151,6 +151,27 @@ static void far_walls_are_open(void **state)
     }
 }
 
+/* Stores a normal that leans towards +x, by so much from the direction to the eye of an orthographic
+ * right-handed view. */
+static void lean(struct picture *p, size_t texel, double angle)
+{
+    double *n = &p->values[SLOT_NORMALS][texel * 4];
+    n[0] = sin(angle);
+    n[1] = 0.0;
+    n[2] = cos(angle);
+}
+
+static double darkest_of(struct picture *p)
+{
+    double darkest = 1.0;
+    picture_run(p);
+    for (size_t t = 0; t < picture_texels(p); ++t) {
+        assert_false(isnan(p->values[SLOT_AO][t]));
+        darkest = fmin(darkest, p->values[SLOT_AO][t]);
+    }
+    return darkest;
+}
+
 /* A cylinder made of facets of 12 degrees. It is convex and open; smooth normals over flat facets
  * tilt the tangent plane by up to 6 degrees, and half of a facet seems to rise over it. */
 static void facets_under_smooth_normals_hardly_show(void **state)
@@ -163,7 +184,6 @@ static void facets_under_smooth_normals_hardly_show(void **state)
     for (int i = 0; i < METHODS * 2; ++i) {
         struct picture p;
         const bool smooth = i / METHODS;
-        double worst = 1.0;
         make(&p, i % METHODS, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, 80, 60, &nothing, &lens);
         p.blur.radius = 4;
         p.blur.normal_power = 8.0f;
@@ -175,14 +195,9 @@ static void facets_under_smooth_normals_hardly_show(void **state)
                    chord = radius * cos(facet / 2.0);
             double along = smooth ? asin(x / radius) : middle;
             p.values[SLOT_DEPTH][t] = 5.0 - (chord - x * sin(middle)) / cos(middle);
-            double *n = &p.values[SLOT_NORMALS][t * 4];
-            n[0] = sin(along);
-            n[1] = 0.0;
-            n[2] = cos(along); /* right-handed: towards the eye */
+            lean(&p, t, along);
         }
-        picture_run(&p);
-        for (size_t t = 0; t < picture_texels(&p); ++t)
-            worst = fmin(worst, p.values[SLOT_AO][t]);
+        const double worst = darkest_of(&p);
         print_message("    %-10s %s normals: darkest %.4f\n", names[i % METHODS],
                       smooth ? "smooth" : "flat", worst);
         assert_true(worst >= (smooth ? darkest[i % METHODS] : 0.99));
@@ -200,19 +215,13 @@ static void normals_past_the_outline_do_not_darken(void **state)
     struct lens lens = lens_orthographic(1.6, 1.2);
     for (int method = 0; method < METHODS; ++method) {
         struct picture p;
-        double worst = 1.0;
         make(&p, method, VKAO_STAGE_SSAO, 80, 60, &nothing, &lens);
         for (size_t t = 0; t < picture_texels(&p); ++t) {
             double x = ((double)(t % p.width) + 0.5) / p.width * 3.2 - 1.6;
             p.values[SLOT_DEPTH][t] = 10.0 + x * slope;
-            double *n = &p.values[SLOT_NORMALS][t * 4];
-            n[0] = sin(shading);
-            n[1] = 0.0;
-            n[2] = cos(shading); /* right-handed: towards the eye */
+            lean(&p, t, shading);
         }
-        picture_run(&p);
-        for (size_t t = 0; t < picture_texels(&p); ++t)
-            worst = fmin(worst, p.values[SLOT_AO][t]);
+        const double worst = darkest_of(&p);
         print_message("    %-10s darkest %.4f\n", names[method], worst);
         assert_true(worst >= 0.998);
         picture_free(&p);

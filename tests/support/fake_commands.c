@@ -97,14 +97,20 @@ static VKAPI_ATTR void VKAPI_CALL fake_CmdDispatch(VkCommandBuffer cmd, uint32_t
     use_bound(fake, call);
 }
 
+/* A command's one buffer. NULL, and a misuse, if there is no such buffer. */
+static const struct fake_object *use_buffer(struct fake_vulkan *fake, struct fake_call *call,
+                                            VkBuffer buffer)
+{
+    call->source = fake_number(buffer);
+    return fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, call->source);
+}
+
 static VKAPI_ATTR void VKAPI_CALL fake_CmdDispatchIndirect(VkCommandBuffer cmd, VkBuffer buffer,
                                                            VkDeviceSize offset)
 {
     struct fake_vulkan *fake = fake_of(cmd);
     struct fake_call *call = fake_note(fake, "vkCmdDispatchIndirect");
-    const struct fake_object *from =
-        fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, fake_number(buffer));
-    call->source = fake_number(buffer);
+    const struct fake_object *from = use_buffer(fake, call, buffer);
     call->offset = offset;
     if (from && !(from->usage & VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT))
         fake_misuse(fake, "vkCmdDispatchIndirect: the buffer is not for it");
@@ -119,9 +125,7 @@ static VKAPI_ATTR void VKAPI_CALL fake_CmdUpdateBuffer(VkCommandBuffer cmd, VkBu
 {
     struct fake_vulkan *fake = fake_of(cmd);
     struct fake_call *call = fake_note(fake, "vkCmdUpdateBuffer");
-    const struct fake_object *to =
-        fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, fake_number(buffer));
-    call->source = fake_number(buffer);
+    const struct fake_object *to = use_buffer(fake, call, buffer);
     call->offset = offset;
     call->size = size;
     if (to && !(to->usage & VK_BUFFER_USAGE_TRANSFER_DST_BIT))
@@ -181,12 +185,10 @@ static VKAPI_ATTR void VKAPI_CALL fake_CmdCopyBufferToImage(VkCommandBuffer cmd,
 {
     struct fake_vulkan *fake = fake_of(cmd);
     struct fake_call *call = fake_note(fake, "vkCmdCopyBufferToImage");
-    const struct fake_object *from =
-        fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, fake_number(buffer));
+    const struct fake_object *from = use_buffer(fake, call, buffer);
     const struct fake_object *to =
         fake_use(fake, call->name, VK_OBJECT_TYPE_IMAGE, fake_number(image));
     call->handle = fake_number(image);
-    call->source = fake_number(buffer);
     call->layout = layout;
     call->copy = regions[0];
     if (count != 1)
