@@ -17,7 +17,7 @@ static const struct preset presets[] = {
     [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f, 1.0f},
     [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f, 1.0f},
     [VKAO_QUALITY_HIGH] = {VK_FALSE, 1, 14, 3, 8.0f, 0.9f},
-    [VKAO_QUALITY_BEST] = {VK_FALSE, 2, 24, 2, 8.0f, 0.88f},
+    [VKAO_QUALITY_BEST] = {VK_FALSE, 4, 24, 1, 8.0f, 0.88f},
 };
 
 vkao_result vkao_preset(vkao_quality quality, vkao_frame_info *frame, vkao_ssao_params *ssao,

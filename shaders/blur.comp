@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * One direction of the separable cross-bilateral blur (Petschnigg et al. 2004; Eisemann and Durand 2004). The weight
- * of tap k is a Gaussian, times max(0, 1 - sharpness * |z_k - z - slope k| / z), slope being the smaller of the two
+ * of tap k is blur_weight, times max(0, 1 - sharpness * |z_k - z - slope k| / z), slope being the smaller of the two
  * neighbour differences, times max(0, n.n_k)^normal_power. Continuing the slope keeps tilted walls in one piece where
  * a plain depth difference would cut them up. AO is not clamped on the way: one slice per texel often sees more than
  * its share, and a clamp would turn that noise into bias. */
@@ -49,8 +49,6 @@ vec4 blurred(ivec2 texel, float z)
     float edge = edge_stop(z, params.sharpness, params.reference_z);
     bool use_normals = flag(VKAO_FLAG_BLUR_NORMALS);
     vec3 normal = use_normals ? decode_normal(texel << grid_shift()) : vec3(0.0);
-    /* The outermost tap keeps exp(-2) of the centre's weight. */
-    float fall = -2.0 / float(max(1u, params.radius * params.radius));
     vec4 sum = load_noisy(texel);
     float weights = 1.0;
     for (int k = -int(params.radius); k <= int(params.radius); ++k) {
@@ -58,7 +56,7 @@ vec4 blurred(ivec2 texel, float z)
         float tap_z = k == 0 ? 0.0 : load_view_z(at);
         if (tap_z > 0.0) {
             float off = off_surface(z, slope, tap_z, local_slope(at, tap_z), float(k));
-            float w = exp(fall * float(k * k)) * max(0.0, 1.0 - edge * off);
+            float w = blur_weight(k, int(params.radius)) * max(0.0, 1.0 - edge * off);
             if (use_normals)
                 w *= normal_weight(normal, at);
             sum += w * load_noisy(at);

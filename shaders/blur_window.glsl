@@ -12,12 +12,6 @@ layout(constant_id = VKAO_CONSTANT_RADIUS) const int RADIUS = 0;
 /* Texels beyond the radius whose depths tell slopes: see off_surface. */
 const int MARGIN = int((FLAGS / VKAO_FLAG_HALF_RESOLUTION) & 1u);
 
-/* The outermost tap keeps exp(-2) of the centre's weight. */
-float gaussian(int k, int radius)
-{
-    return exp(-2.0 / float(radius * radius) * float(k * k));
-}
-
 /* A normal, and in w 1 if there is none. */
 vec4 window_normal(ivec2 texel)
 {

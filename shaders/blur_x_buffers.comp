@@ -44,7 +44,7 @@ float blurred_slowly(ivec2 texel)
     for (int k = -radius; k <= radius; ++k) {
         ivec2 at = texel + ivec2(k, 0);
         float off = off_surface(z, slope, surface_z(load_view_z(at)), slope_at(at), float(k));
-        float w = gaussian(k, max(radius, 1)) * max(0.0, 1.0 - edge * off);
+        float w = blur_weight(k, radius) * max(0.0, 1.0 - edge * off);
         w = k == 0 ? 0.0 : use_normals ? w * normal_weight(normal, window_normal(at), params.normal_power) : w;
         sum += w * fetch_code(at);
         weights += w;
@@ -79,7 +79,7 @@ void blur_window(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
             if (k == 0)
                 continue;
             float off = off_surface(z[c], slope[c], z[c + k], slope[c + k], float(k));
-            float w = gaussian(k, RADIUS) * max(0.0, 1.0 - edge * off);
+            float w = blur_weight(k, RADIUS) * max(0.0, 1.0 - edge * off);
             if (use_normals)
                 w *= normal_weight(normal[c], normal[c + k], params.normal_power);
             sum += w * code[c + k];

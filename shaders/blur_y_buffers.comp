@@ -55,7 +55,7 @@ vec4 tap_weights(int k, int radius, vec4 z, vec4 slope, vec4 tap_z, vec4 tap_slo
     [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) {
         float edge = edge_stop(z[i], params.sharpness, params.reference_z);
         float off = off_surface(z[i], slope[i], tap_z[i], tap_slope[i], float(k));
-        w[i] = gaussian(k, radius) * max(0.0, 1.0 - edge * off);
+        w[i] = blur_weight(k, radius) * max(0.0, 1.0 - edge * off);
     }
     return w;
 }
@@ -76,7 +76,7 @@ vec4 blurred_slowly(ivec2 texel)
     vec4 sum = load_codes(texel), weights = vec4(1.0);
     for (int k = -radius; k <= radius; ++k) {
         ivec2 at = texel + ivec2(0, k);
-        vec4 w = tap_weights(k, max(radius, 1), z, slope, load_z(at), slopes_at(at));
+        vec4 w = tap_weights(k, radius, z, slope, load_z(at), slopes_at(at));
         w = k == 0 ? vec4(0.0) : flag(VKAO_FLAG_BLUR_NORMALS) ? w * normal_weights(texel, at) : w;
         /* Rows beyond the valid ones are not in the ring; they weigh nothing, but no number times nothing is. */
         sum += mix(vec4(0.0), w * load_codes(at), greaterThan(w, vec4(0.0)));

@@ -14,18 +14,26 @@ float unit_float(uint bits)
     return float(int(bits >> 8)) * (1.0 / 16777216.0);
 }
 
-/* Interleaved gradient noise (Jimenez 2014), 0.06711056 and 0.00583715 in 32-bit fixed point; the frame moves the
- * pattern by 5.588238 texels along both axes. */
-float interleaved_gradient_noise(uvec2 texel, uint index)
+/* The turn of a texel's directions, x, and what its samples are moved by, y, both in [0,1). Their first digits in base
+ * 4 are w x + y and w^2 x + y in the field of 4 elements, {0, 1, w, w^2}: Latin squares, tiles of 4 by 4 texels, every
+ * row and every column of which has each digit, so that the few texels of something thin turn far as well. What follows
+ * climbs by 1/g from row to row in turns, g being the plastic number, and is the other's digit in moves, which count
+ * down. Blurs take the mean of a tile (see blur_weight): nothing of the pattern is left where a surface goes on.
+ *
+ * With 4 slices a block of 2 by 2 texels has 16 directions, and a smaller blur will do; an eighth of a share off the
+ * axes they still hit the middle of most texels in a row, and do not follow an edge along it.
+ *
+ * Frames step along the R2 sequence (Roberts 2018): 1/g and 1/g^2 in fixed point. */
+vec2 tile_noise(uvec2 texel, uint slices, uint index)
 {
-    uint phase = texel.x * 288237660u + texel.y * 25070368u + index * 1750839832u;
-    return fract(52.9829189 * unit_float(phase));
-}
-
-/* The R2 sequence (Roberts 2018) laid out as a plane: 1/g and 1/g^2 of the plastic number g in fixed point. */
-float r2_noise(uvec2 texel, uint index)
-{
-    return unit_float(texel.x * 3242174889u + texel.y * 2447445414u + index * 2654435769u);
+    uvec2 at = texel & (slices < 4u ? 3u : 1u);
+    uint first = (at.x << 1 & 2u) ^ (at.x >> 1) * 3u ^ at.y, second = first ^ at.x;
+    uint turn = first << 30 | 1u << 27, jitter = 0xe0000000u - (second << 30);
+    if (slices < 4u) {
+        turn = (first << 30) + (texel.y * 3242174889u >> 2);
+        jitter = 0xf8000000u - (second << 30 | first << 28);
+    }
+    return vec2(unit_float(turn + index * 3242174889u), unit_float(jitter + index * 2447445414u));
 }
 
 /* cos and sin of pi u, u in [0,1): off by less than 7e-6. The exact ones cost a driver in software ten times that. */

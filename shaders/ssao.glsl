@@ -88,20 +88,20 @@ bool stands_in_front(vec3 occluder, vec3 position, vec3 normal, float point_heig
     return dot(normal, occluder - position) > point_height;
 }
 
-real interleaved_gradient_noise(ivec2 texel)
-{
-    float u[TEXELS];
-    [[unroll]] for (int i = 0; i < TEXELS; ++i)
-        u[i] = interleaved_gradient_noise(uvec2(texel + ivec2(i, 0)), params.noise_index);
-    return join(u);
-}
+struct Noise {
+    real turn, jitter;
+};
 
-real r2_noise(ivec2 texel)
+/* slices: of each texel, 1 in methods that have none. */
+Noise texel_noise(ivec2 texel, uint slices)
 {
-    float u[TEXELS];
-    [[unroll]] for (int i = 0; i < TEXELS; ++i)
-        u[i] = r2_noise(uvec2(texel + ivec2(i, 0)), params.noise_index);
-    return join(u);
+    float turn[TEXELS], jitter[TEXELS];
+    [[unroll]] for (int i = 0; i < TEXELS; ++i) {
+        vec2 noise = tile_noise(uvec2(texel + ivec2(i, 0)), slices, params.noise_index);
+        turn[i] = noise.x;
+        jitter[i] = noise.y;
+    }
+    return Noise(join(turn), join(jitter));
 }
 
 Visibility visibility(ivec2 texel, Real3 position, Real3 normal);

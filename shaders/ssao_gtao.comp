@@ -58,11 +58,12 @@ real bent_to_eye(real h0, real h1, real n)
 Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
 {
     Real3 to_eye = eye_direction(texel), bent = Real3(real(0.0), real(0.0), real(0.0));
-    real turn = interleaved_gradient_noise(texel), jitter = r2_noise(texel), lost = real(0.0);
+    Noise noise = texel_noise(texel, slice_count());
+    real lost = real(0.0);
     float share = 1.0 / float(slice_count());
     [[unroll]] for (uint k = 0u; k < slice_count(); ++k) {
-        Slice s = make_slice((float(k) + turn) * share, position, normal, to_eye);
-        reals cosines = horizon_cosines(s, texel, jitter);
+        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, to_eye);
+        reals cosines = horizon_cosines(s, texel, noise.jitter);
         real n = acos(s.cos_n);
         n = choose(-n, n, above(s.sin_n, real(0.0)));
         reals h = acos(cosines);

@@ -38,9 +38,10 @@ real occlusion(Slice s, ivec2 texel, real jitter)
 Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
 {
     Real3 to_eye = eye_direction(texel);
-    real turn = interleaved_gradient_noise(texel), jitter = r2_noise(texel), occluded = real(0.0);
+    Noise noise = texel_noise(texel, slice_count());
+    real occluded = real(0.0);
     float share = 1.0 / float(slice_count());
     [[unroll]] for (uint k = 0u; k < slice_count(); ++k)
-        occluded += occlusion(make_slice((float(k) + turn) * share, position, normal, to_eye), texel, jitter);
+        occluded += occlusion(make_slice((float(k) + noise.turn) * share, position, normal, to_eye), texel, noise.jitter);
     return Visibility(Real3(real(0.0), real(0.0), real(0.0)), 1.0 - 0.5 * share * occluded);
 }

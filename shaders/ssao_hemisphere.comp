@@ -49,8 +49,8 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
     Real3 t, b;
     tangents(normal, t, b);
     /* The kernel is turned with its frame: the directions in it are constants then. */
-    Real2 turn = full_turn(interleaved_gradient_noise(texel));
-    real shift = r2_noise(texel);
+    Noise noise = texel_noise(texel, 1u);
+    Real2 turn = full_turn(noise.turn);
     Real3 across = to_texels(weighted(t, turn.x, b, turn.y)), along = to_texels(weighted(b, turn.x, t, -turn.y));
     Real3 up = to_texels(normal);
     real center_x = float(texel.x) + BESIDE, center_y = real(float(texel.y));
@@ -68,7 +68,7 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
         float r2 = (float(k) + 0.5) / float(sample_count()), r = sqrt(r2), height = sqrt(1.0 - r2);
         float angle = float(k) * GOLDEN_ANGLE;
         float a = r * cos(angle), c = r * sin(angle);
-        real len = point_length(fract(golden_sequence(k) + shift), radius);
+        real len = point_length(fract(golden_sequence(k) + noise.jitter), radius);
         real x = center_x + len * (a * across.x + c * along.x + height * up.x);
         real y = center_y + len * (a * across.y + c * along.y + height * up.y);
         real z = position.z + len * (a * across.z + c * along.z + height * up.z);

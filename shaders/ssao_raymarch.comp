@@ -43,7 +43,8 @@ float first_hit(vec3 position, vec3 normal, vec3 direction, float jitter)
 
 Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
 {
-    float turn = TWO_PI * interleaved_gradient_noise(texel), shift = r2_noise(texel);
+    Noise noise = texel_noise(texel, 1u);
+    float turn = TWO_PI * noise.turn, shift = noise.jitter;
     Real3 t, b;
     tangents(normal, t, b);
     vec3 p = lane3(position, 0), n = lane3(normal, 0);

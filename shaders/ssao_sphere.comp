@@ -35,7 +35,7 @@ vec3 table_point(uint k)
 float literal_blocking(ivec2 texel, vec3 position)
 {
     float radius = params.normal_x.w, scale = params.normal_z.w;
-    float turn = TWO_PI * interleaved_gradient_noise(texel);
+    float turn = TWO_PI * texel_noise(texel, 1u).turn;
     vec2 rotation = vec2(cos(turn), sin(turn));
     float factor = 0.0;
     for (uint k = 0u; k < sample_count(); ++k) {
@@ -64,8 +64,8 @@ float hidden(vec3 position, vec3 normal, vec3 offset)
 
 float rescaled_blocking(ivec2 texel, vec3 position, vec3 normal)
 {
-    float turn = TWO_PI * interleaved_gradient_noise(texel);
-    float shift = r2_noise(texel);
+    Noise noise = texel_noise(texel, 1u);
+    float turn = TWO_PI * noise.turn, shift = noise.jitter;
     uint pairs = (sample_count() + 1u) / 2u;
     float blocked = 0.0;
     for (uint k = 0u; k < pairs; ++k) {

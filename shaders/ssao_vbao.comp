@@ -130,7 +130,7 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter)
 {
     float reach = params.normal_x.w;
     reach *= flag(VKAO_FLAG_THRESHOLD) ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH;
-    reals tangent = SIDES * both(s.sin_n / max(s.cos_n, real(0.02)));
+    reals tangent = SIDES * both(s.sin_n / max(s.cos_n, real(STEEPEST)));
     Masks m = make_masks(s);
     const reals none = reals(0.0);
     Steps steps = make_steps(s, jitter, reach);
@@ -161,10 +161,10 @@ void add_slice(inout Visibility v, uint k, ivec2 texel, Real3 position, Real3 no
 Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
 {
     Real3 to_eye = eye_direction(texel);
-    real turn = interleaved_gradient_noise(texel), jitter = r2_noise(texel);
+    Noise noise = texel_noise(texel, slice_count());
     /* The mean direction of an open hemisphere is 2/3 of its normal. */
     Visibility v = Visibility(times(normal, real(2.0 / 3.0)), real(1.0));
     [[unroll]] for (uint k = 0u; k < slice_count(); ++k)
-        add_slice(v, k, texel, position, normal, to_eye, turn, jitter);
+        add_slice(v, k, texel, position, normal, to_eye, noise.turn, noise.jitter);
     return v;
 }

@@ -35,6 +35,13 @@ float edge_stop(float z, float sharpness, float reference_z)
     return max(sharpness / (reference_z > 0.0 ? reference_z : z), 1.0e-20);
 }
 
+/* What tap k counts on a flat surface. Falling to 0 over 4 texels, or over 2 of a small blur, it makes the blur the mean
+ * of tiles as long as that (see tile_noise), whatever the radius: 1 2 1, 1 2 2 2 1, 1 2 3 4 3 2 1, 1 2 3 4 4 4 3 2 1. */
+float blur_weight(int k, int radius)
+{
+    return min(1.0, float(radius + 1 - abs(k)) * (radius < 3 ? 0.5 : 0.25));
+}
+
 /* w is 1 where there is no normal: then the others decide. */
 float normal_weight(vec4 normal, vec4 other, float power)
 {

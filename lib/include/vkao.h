@@ -418,15 +418,16 @@ static inline vkao_ssao_params vkao_ssao_params_default(void)
     return p;
 }
 
-/* Separable cross-bilateral blur, two dispatches: a Gaussian whose taps count less the further they lie off the
- * surface that the local depth slope continues, and the more their normal turns away. It also ends the chain:
- * intensity and power belong here because they are right only after the noise is gone. radius 0 applies
- * intensity and power alone. */
+/* Separable cross-bilateral blur, two dispatches: a mean whose taps count less the further they lie off the surface
+ * that the local depth slope continues, and the more their normal turns away. The noise of SSAO repeats after 4 texels,
+ * that of 4 or more slices after 2: a radius of 2, or 1 with so many slices, leaves none of it where a surface goes on.
+ * It also ends the chain: intensity and power belong here because they are right only after the noise is gone.
+ * radius 0 applies intensity and power alone. */
 struct vkao_blur_params {
     uint32_t struct_size;
-    uint32_t radius; /* [0,16] texels on each side. Default 3 */
+    uint32_t radius; /* [0,16] texels on each side; the outermost 3 count less and less. Default 3 */
     /* [0,10000] edge stopping: a tap whose view z is off the continued slope by more than 1 / sharpness of its own
-     * distance counts nothing. 0 = plain Gaussian. Default 200 */
+     * distance counts nothing. 0 = depth is ignored. Default 200 */
     float sharpness;
     /* [0,128] edge stopping by normals: weight max(0, n.n')^normal_power; 0 = ignore them, as without a normals
      * image. 8 is a good value, and on CPUs doubles the time of the blur. Default 0 */

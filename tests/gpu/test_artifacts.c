@@ -166,7 +166,7 @@ static double darkest_of(struct picture *p)
     double darkest = 1.0;
     picture_run(p);
     for (size_t t = 0; t < picture_texels(p); ++t) {
-        assert_false(isnan(p->values[SLOT_AO][t]));
+        assert_true(!isnan(p->values[SLOT_AO][t]));
         darkest = fmin(darkest, p->values[SLOT_AO][t]);
     }
     return darkest;
@@ -330,8 +330,7 @@ static void spectrum(const double *image, uint32_t width, uint32_t height, doubl
 }
 
 /* Noise has a pattern, and the blur must remove it: what it leaves at high frequencies is little,
- * and none of them stands out of the others by more than a factor of 100 (noise as it is: 170 to
- * 450). The groove's shade varies along y only; its rows' means are taken out. */
+ * and the largest of them less than half a step of an 8-bit image. The groove's shade varies along y only; its rows' means are taken out. */
 static void no_pattern_of_the_noise_is_left(void **state)
 {
     (void)state;
@@ -359,9 +358,9 @@ static void no_pattern_of_the_noise_is_left(void **state)
                       "%.1f), amplitude %.4f\n",
                       names[method], mean[1] / mean[0], peak[1] / mean[1], peak[0] / mean[0],
                       amplitude);
-        assert_true(mean[1] < 0.02 * mean[0]);
-        assert_true(peak[1] < 100.0 * mean[1]);
-        assert_true(amplitude < 0.004);
+        assert_true(peak[0] > 50.0 * mean[0]); /* there is a pattern */
+        assert_true(mean[1] < 0.002 * mean[0]);
+        assert_true(amplitude < 0.5 / 255.0);
     }
 }
 
@@ -401,7 +400,8 @@ static void ao_is_not_clamped_before_the_blur(void **state)
         double clamping = difference_of(want, clamped, 4800).mean;
         print_message("    %s: least %.3f, clamping would brighten by %.4f\n", names[methods[i]],
                       least, clamping);
-        check_close("blurred", p.values[SLOT_AO], want, 4800, 6e-4, 2e-3); /* 11 bits in between */
+        check_close("blurred", p.values[SLOT_AO], want, 4800, 6e-4,
+                    3e-3); /* codes of 1/100 in between */
         assert_true(clamping > 1e-3);
         ref_scene_free(&reference);
         free(want);

@@ -44,7 +44,18 @@ static double normal_weight(const struct blur *blur, size_t center, size_t tap)
     return pow(fmax(0.0, ref_dot(a, b)), (double)blur->params->normal_power);
 }
 
-/* exp(-2 k^2 / r^2) * max(0, 1 - sharpness |z_k - z - slope k| / z) * max(0, n.n_k)^normal_power;
+/* The mean of 4 neighbours that are means of 2 r - 2 each; in small blurs of 2 that are of 2 r. */
+static double flat_weight(int k, int radius)
+{
+    int box = radius < 3 ? 2 : 4, other = 2 * radius + 2 - box, shared = 0;
+    for (int i = 0; i < box; ++i) {
+        int rest = k + radius - i;
+        shared += rest >= 0 && rest < other;
+    }
+    return (double)shared / box;
+}
+
+/* flat_weight * max(0, 1 - sharpness |z_k - z - slope k| / z) * max(0, n.n_k)^normal_power;
  * at half resolution the larger of the distances by the centre's slope and by the tap's */
 static double blurred(const struct blur *blur, const double *ao, int x, int y, int dx, int dy)
 {
@@ -60,7 +71,7 @@ static double blurred(const struct blur *blur, const double *ao, int x, int y, i
         if (isnan(tap_z))
             continue;
         size_t tap = texel_index(blur, x + k * dx, y + k * dy);
-        double w = radius ? exp(-2.0 * k * k / ((double)radius * radius)) : 1.0;
+        double w = k ? flat_weight(k, radius) : 1.0;
         double off = fabs(tap_z - z - s * k);
         if (blur->half_resolution)
             off = fmax(off, fabs(tap_z - z - slope(blur, x + k * dx, y + k * dy, dx, dy) * k));

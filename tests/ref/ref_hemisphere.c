@@ -11,8 +11,8 @@ static double visibility(const struct ref_scene *scene, const vkao_ssao_params *
                          int y, const double p[3], const double n[3])
 {
     const double golden_angle = 2.39996322972865332, two_pi = 6.28318530717958647692;
-    double turn = two_pi * ref_gradient_noise((uint32_t)x, (uint32_t)y, params->noise_index);
-    double shift = ref_r2_noise((uint32_t)x, (uint32_t)y, params->noise_index);
+    const struct ref_noise noise = ref_noise(x, y, 1, params->noise_index);
+    double turn = two_pi * noise.turn, shift = noise.jitter;
     double bias = ref_guard(scene, params, p[2]), blocked = 0.0;
     double t[3], b[3];
     ref_basis(n, t, b);

@@ -2,7 +2,6 @@
 #include "ref_horizon.h"
 
 #include "params.h"
-#include "ref_noise.h"
 #include "ref_normal.h"
 
 #include <math.h>
@@ -48,8 +47,8 @@ void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
     memcpy(slice->n, n, sizeof slice->n);
     ref_view_eye(&scene->view, p, slice->to_eye);
     slice->guard = 2.0 * ref_view_depth_error(&scene->view, p[2]); /* both ends of v */
-    double noise = ref_gradient_noise((uint32_t)x, (uint32_t)y, params->noise_index);
-    ref_slice_turn(slice, pi * (k + noise) / params->slice_count);
+    slice->noise = ref_noise(x, y, params->slice_count, params->noise_index);
+    ref_slice_turn(slice, pi * (k + slice->noise.turn) / params->slice_count);
 }
 
 /* Distances crowd towards the point, but lie at least 1 + t/2 texels out. Where the point at that
@@ -57,8 +56,7 @@ void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
 static void step_texel(const struct ref_slice *s, double side, uint32_t step, double reach,
                        int at[2])
 {
-    double jitter = ref_r2_noise((uint32_t)s->x, (uint32_t)s->y, s->params->noise_index);
-    double q = (step + jitter) / s->params->step_count;
+    double q = (step + s->noise.jitter) / s->params->step_count;
     double distance = reach * q * (VKAO_STEP_LINEAR + (1.0 - VKAO_STEP_LINEAR) * q);
     double from[2], to[2];
     const double unit[3] = {s->p[0] + s->direction[0], s->p[1] + s->direction[1], s->p[2]};
@@ -83,7 +81,7 @@ bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, dou
     for (int i = 0; i < 3; ++i)
         sample->v[i] = q[i] - s->p[i];
     /* Into the slice along the tangent plane: the height over that plane, n.v, stays what it is. */
-    double off = ref_dot(sample->v, s->across), facing = fmax(ref_dot(s->n, s->to_eye), 0.02);
+    double off = ref_dot(sample->v, s->across), facing = fmax(ref_dot(s->n, s->to_eye), 0.002);
     sample->out = side * ref_dot(sample->v, s->outward);
     /* The depth may be off by a step of its format. */
     sample->up = ref_dot(sample->v, s->to_eye) + off * ref_dot(s->n, s->across) / facing - s->guard;

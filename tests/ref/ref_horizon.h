@@ -6,12 +6,14 @@
 #ifndef VKAO_TESTS_REF_HORIZON_H_
 #define VKAO_TESTS_REF_HORIZON_H_
 
+#include "ref_noise.h"
 #include "ref_view.h"
 
 struct ref_slice {
     const struct ref_scene *scene;
     const vkao_ssao_params *params;
     int x, y;
+    struct ref_noise noise;
     double p[3], n[3], to_eye[3];
     double direction[2];          /* on screen, unit */
     double outward[3], across[3]; /* orthonormal with to_eye */

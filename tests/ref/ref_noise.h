@@ -9,15 +9,18 @@
 /* Fixed-point constants as the definition has them: round(c * 2^32). */
 uint32_t ref_fixed_point(double c);
 
-uint32_t ref_gradient_phase(uint32_t x, uint32_t y, uint32_t index);
-uint32_t ref_r2_phase(uint32_t x, uint32_t y, uint32_t index);
 uint32_t ref_golden_phase(uint32_t i);
 
 /* The upper 24 bits as a fraction. */
 double ref_unit(uint32_t phase);
 double ref_fract(double v);
-double ref_gradient_noise(uint32_t x, uint32_t y, uint32_t index);
-double ref_r2_noise(uint32_t x, uint32_t y, uint32_t index);
 double ref_golden(uint32_t i);
+
+/* By how much of their spacing a texel's directions are turned and its samples moved, in [0,1). */
+struct ref_noise {
+    double turn, jitter;
+};
+/* slices: of each texel, 1 in methods without. */
+struct ref_noise ref_noise(int x, int y, uint32_t slices, uint32_t index);
 
 #endif

@@ -55,15 +55,15 @@ static double first_hit(const struct ref_scene *scene, const vkao_ssao_params *p
 static void visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
                        const double p[3], const double n[3], double out[4])
 {
-    double turn = ref_gradient_noise((uint32_t)x, (uint32_t)y, params->noise_index);
-    double shift = ref_r2_noise((uint32_t)x, (uint32_t)y, params->noise_index), t[3], b[3];
+    const struct ref_noise noise = ref_noise(x, y, 1, params->noise_index);
+    double t[3], b[3];
     ref_basis(n, t, b);
     out[0] = out[1] = out[2] = out[3] = 0.0;
     for (uint32_t k = 0; k < params->sample_count; ++k) {
         /* Malley's method: uniform in the disk, lifted onto the hemisphere. */
-        double r = sqrt((k + shift) / params->sample_count), height = sqrt(1.0 - r * r);
-        double angle = k * golden_angle + two_pi * turn;
-        struct ray ray = {.jitter = ref_fract(ref_golden(k) + shift)};
+        double r = sqrt((k + noise.jitter) / params->sample_count), height = sqrt(1.0 - r * r);
+        double angle = k * golden_angle + two_pi * noise.turn;
+        struct ray ray = {.jitter = ref_fract(ref_golden(k) + noise.jitter)};
         for (int i = 0; i < 3; ++i) {
             ray.p[i] = p[i];
             ray.n[i] = n[i];

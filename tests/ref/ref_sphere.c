@@ -26,7 +26,7 @@ static double literal(const struct ref_scene *scene, const vkao_ssao_params *par
     const double g = 1.22074408460575947536; /* g^4 = g + 1 (Roberts 2018, three dimensions) */
     const uint32_t steps[3] = {ref_fixed_point(1.0 / g), ref_fixed_point(1.0 / (g * g)),
                                ref_fixed_point(1.0 / (g * g * g))};
-    double turn = two_pi * ref_gradient_noise((uint32_t)x, (uint32_t)y, params->noise_index);
+    double turn = two_pi * ref_noise(x, y, 1, params->noise_index).turn;
     double factor = 0.0;
     (void)n;
     for (uint32_t k = 1; k <= params->sample_count; ++k) {
@@ -65,8 +65,8 @@ static double hidden(const struct ref_scene *scene, const vkao_ssao_params *para
 static double rescaled(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
                        const double p[3], const double n[3])
 {
-    double turn = two_pi * ref_gradient_noise((uint32_t)x, (uint32_t)y, params->noise_index);
-    double shift = ref_r2_noise((uint32_t)x, (uint32_t)y, params->noise_index);
+    const struct ref_noise noise = ref_noise(x, y, 1, params->noise_index);
+    double turn = two_pi * noise.turn, shift = noise.jitter;
     uint32_t pairs = (params->sample_count + 1) / 2;
     double blocked = 0.0;
     for (uint32_t k = 0; k < pairs; ++k) {

@@ -87,7 +87,7 @@ const struct param params[] = {
      .help = "texels on each side; 0: intensity and power alone",
      .offset = AT(blur.radius), .low = 0, .high = 16},
     {.label = "sharpness", .option = "blur-sharpness", .group = GROUP_BLUR, .kind = PARAM_FLOAT,
-     .help = "how strictly the blur stops at depth edges; 0: a plain Gaussian",
+     .help = "how strictly the blur stops at depth edges; 0: not at all",
      .offset = AT(blur.sharpness), .low = 0, .high = 10000, .logarithmic = true},
     {.label = "normal power", .option = "blur-normal-power", .group = GROUP_BLUR,
      .kind = PARAM_FLOAT, .help = "how strictly it stops where normals turn; 0: not at all",

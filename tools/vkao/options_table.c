@@ -198,7 +198,7 @@ const struct option_row option_table[] = {
      .help = "edge-aware blur, 0 to 16 texels on each side; off = 0; auto: by --quality",
      .commands = RENDER, .apply = apply_blur, .offset = AT(blur.radius), .range = FROM_TO(0, 16)},
     {.name = "blur-sharpness", .argument = "X", .fallback = "200",
-     .help = "0 (plain Gaussian) to 10000: how strictly it stops at edges",
+     .help = "0 (not at all) to 10000: how strictly it stops at edges of depth",
      .commands = RENDER, .apply = apply_float, .offset = AT(blur.sharpness),
      .range = FROM_TO(0, 10000)},
     {.name = "blur-normal-power", .argument = "X", .fallback = "auto",
