@@ -179,8 +179,12 @@ static uint32_t stage_flags(enum pipeline which)
     }
 }
 
-/* Loops this long are not worth unrolling: they take long to compile, and their overhead is small. */
-enum { MAX_UNROLLED = 64 };
+/* Are the counts of slices and steps worth a variant? vbao has them roll the loop over slices if that is too long. */
+static bool unrolls(const vkao_ssao_params *ssao)
+{
+    uint32_t slices = ssao->method == VKAO_SSAO_VBAO ? 1 : ssao->slice_count;
+    return slices * ssao->step_count <= VKAO_MOST_UNROLLED;
+}
 
 struct pipeline_key pipeline_key(enum pipeline which, uint32_t flags, const vkao_ssao_params *ssao,
                                  const vkao_blur_params *blur)
@@ -193,13 +197,13 @@ struct pipeline_key pipeline_key(enum pipeline which, uint32_t flags, const vkao
     switch (ssao->method) {
     case VKAO_SSAO_SPHERE:
     case VKAO_SSAO_HEMISPHERE:
-        if (ssao->sample_count <= MAX_UNROLLED)
+        if (ssao->sample_count <= VKAO_MOST_UNROLLED)
             key.samples = ssao->sample_count;
         break;
     case VKAO_SSAO_RAYMARCH:
         break;
     default:
-        if (ssao->slice_count * ssao->step_count <= MAX_UNROLLED) {
+        if (unrolls(ssao)) {
             key.slices = ssao->slice_count;
             key.steps = ssao->step_count;
         }

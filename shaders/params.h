@@ -71,6 +71,8 @@
 #define VKAO_CONSTANT_RADIUS 6
 #define VKAO_CONSTANT_COUNT 7
 #define VKAO_FLAGS_UNKNOWN 0xffffffffu
+/* Samples or steps in a row: loops longer than that take long to compile, and their overhead is small. */
+#define VKAO_MOST_UNROLLED 64u
 
 /* What a recording says in one word: three enums, and yes or no. */
 #define VKAO_FLAG_NORMALS_SHIFT 0       /* vkao_normal_encoding, 3 bits */

@@ -30,6 +30,12 @@
 
 const float SECTORS = 31.0;
 
+/* Is all of it together short enough to unroll, and not the steps of one slice alone? 0 is unknown, and too long. */
+bool slices_unroll()
+{
+    return SLICES * STEPS - 1u < VKAO_MOST_UNROLLED;
+}
+
 /* g(c) = c (G1 + G3 c^2). Largest error .0053: below half a sector. */
 const float G1 = 1.0225, G3 = -0.232;
 
@@ -164,7 +170,12 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
     Noise noise = texel_noise(texel, slice_count());
     /* The mean direction of an open hemisphere is 2/3 of its normal. */
     Visibility v = Visibility(times(normal, real(2.0 / 3.0)), real(1.0));
-    [[unroll]] for (uint k = 0u; k < slice_count(); ++k)
-        add_slice(v, k, texel, position, normal, to_eye, noise.turn, noise.jitter);
+    if (slices_unroll()) {
+        [[unroll]] for (uint k = 0u; k < slice_count(); ++k)
+            add_slice(v, k, texel, position, normal, to_eye, noise.turn, noise.jitter);
+    } else {
+        [[dont_unroll]] for (uint k = 0u; k < slice_count(); ++k)
+            add_slice(v, k, texel, position, normal, to_eye, noise.turn, noise.jitter);
+    }
     return v;
 }
