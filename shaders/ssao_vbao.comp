@@ -30,7 +30,7 @@
 
 const float SECTORS = 31.0;
 
-/* Is all of it together short enough to unroll, and not the steps of one slice alone? 0 is unknown, and too long. */
+/* Are the slices few enough to be unrolled too, with all of their steps? Unknown counts, 0, are not. */
 bool slices_unroll()
 {
     return SLICES * STEPS - 1u < VKAO_MOST_UNROLLED;
