@@ -11,9 +11,6 @@
 #define VKAO_HORIZON_GLSL_
 
 const float PI = 3.14159265358979324;
-/* Cosine to the eye at which tangent planes stop getting steeper: beyond the last texels that walls of 80 degrees have
- * before their horizon. */
-const float STEEPEST = 0.002;
 
 struct Slice {
     Real2 step;          /* direction on screen, in texels that one scene unit has at unit distance */
@@ -51,7 +48,7 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
     real off = dot3(normal, across), facing = dot3(normal, to_eye), out_n = dot3(normal, s.outward);
     /* A sample's texel lies off the slice by rounding. It is moved into it along the tangent plane, which keeps its
      * height over that plane, so that a tilted wall still lies flat in the slice. */
-    real moved = off / max(facing, real(STEEPEST));
+    real moved = off / max(facing, real(VKAO_STEEPEST));
     vec2 radii = params.unproject.xy * params.inverse_radius;
     s.to_x = Real2(radii.x * s.outward.x, radii.y * s.outward.y);
     s.to_y = Real2(radii.x * (to_eye.x + across.x * moved), radii.y * (to_eye.y + across.y * moved));

@@ -163,6 +163,10 @@
 #define VKAO_VBAO_GAP_BACK 0.7         /* share of the gap by which its back moves out */
 #define VKAO_VBAO_ROUND 0.9            /* added before a sector bound is cut to an integer */
 
+/* Cosine to the eye at which tangent planes stop getting steeper in slices: less than that of the last texels that a
+ * wall of 80 degrees has before its horizon. */
+#define VKAO_STEEPEST 0.002
+
 /* Rectangles are half open and packed two 16-bit texel coordinates to a word, x low: [0] = min, [1] = max.
  * unproject: view xy = texel * unproject.xy + unproject.zw, times view z in perspective. Texel centres are integers
  * here. Inside the shaders view space has +z away from the eye, whatever the caller's hand. */

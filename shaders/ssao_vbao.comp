@@ -136,7 +136,7 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter)
 {
     float reach = params.normal_x.w;
     reach *= flag(VKAO_FLAG_THRESHOLD) ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH;
-    reals tangent = SIDES * both(s.sin_n / max(s.cos_n, real(STEEPEST)));
+    reals tangent = SIDES * both(s.sin_n / max(s.cos_n, real(VKAO_STEEPEST)));
     Masks m = make_masks(s);
     const reals none = reals(0.0);
     Steps steps = make_steps(s, jitter, reach);

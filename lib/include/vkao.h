@@ -425,7 +425,7 @@ static inline vkao_ssao_params vkao_ssao_params_default(void)
  * radius 0 applies intensity and power alone. */
 struct vkao_blur_params {
     uint32_t struct_size;
-    uint32_t radius; /* [0,16] texels on each side; the outermost 3 count less and less. Default 3 */
+    uint32_t radius; /* [0,16] texels on each side; those near the ends count less. Default 3 */
     /* [0,10000] edge stopping: a tap whose view z is off the continued slope by more than 1 / sharpness of its own
      * distance counts nothing. 0 = depth is ignored. Default 200 */
     float sharpness;

@@ -3,9 +3,10 @@
 """What the blur leaves of the noise's pattern on G-buffers of real renderers: spectra of flat,
 shaded windows. The corpus lies outside the repository: without it the cases on it are skipped.
 
-Digits of the noise repeat after four texels, and turns climb by a quarter of 1/g from row
-to row. Whatever the scene makes of that, a flat wall shows as waves (i / 4, j / 4 + k / 4g); those along a column, i = 0, are mixtures of turns and moves. The scene goes out of the
-spectrum with the mean over several noise patterns."""
+Digits of the noise repeat after four texels, and turns climb by a quarter of 1/g from row to row.
+Whatever the scene makes of that, a flat wall shows as waves (i / 4, j / 4 + k / 4g); those along a
+column, i = 0, are mixtures of turns and moves. The scene goes out of the spectrum with the mean
+over several noise patterns."""
 import numpy as np
 
 from cli import cases, check, check_ao, corpus, main, read_ao, read_parts

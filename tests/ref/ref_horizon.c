@@ -81,7 +81,8 @@ bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, dou
     for (int i = 0; i < 3; ++i)
         sample->v[i] = q[i] - s->p[i];
     /* Into the slice along the tangent plane: the height over that plane, n.v, stays what it is. */
-    double off = ref_dot(sample->v, s->across), facing = fmax(ref_dot(s->n, s->to_eye), 0.002);
+    double off = ref_dot(sample->v, s->across);
+    double facing = fmax(ref_dot(s->n, s->to_eye), VKAO_STEEPEST);
     sample->out = side * ref_dot(sample->v, s->outward);
     /* The depth may be off by a step of its format. */
     sample->up = ref_dot(sample->v, s->to_eye) + off * ref_dot(s->n, s->across) / facing - s->guard;

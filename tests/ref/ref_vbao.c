@@ -76,7 +76,7 @@ static void march(struct side *s)
         bool known = ref_slice_sample(s->slice, s->sign, t, reach * radius, &p);
         double dx = p.out - before[0], dy = p.up - before[1], joined_angle = before_angle;
         /* The tangent plane falls by this for every unit outwards. */
-        double fall = sin(s->n) / fmax(cos(s->n), 0.002);
+        double fall = sin(s->n) / fmax(cos(s->n), VKAO_STEEPEST);
         before[0] = p.out;
         before[1] = known ? p.up : -p.out * fall;
         before_angle = known ? fabs(atan2(p.out, p.up)) : INFINITY;
