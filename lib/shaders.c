@@ -179,7 +179,7 @@ static uint32_t stage_flags(enum pipeline which)
     }
 }
 
-/* May the counts of slices and steps be constants? vbao keeps its loop over slices if both are too many together. */
+/* May the counts of slices and steps be constants? vbao loops over slices if both are too many together. */
 static bool unrolls(const vkao_ssao_params *ssao)
 {
     uint32_t slices = ssao->method == VKAO_SSAO_VBAO ? 1 : ssao->slice_count;

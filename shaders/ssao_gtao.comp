@@ -23,7 +23,8 @@ reals horizon_cosines(Slice s, ivec2 texel, real jitter)
     reals horizon = low, open = low + params.bias_cosine;
     Offset next = step_offset(s, steps, 0u);
     reals next_z = load_sides(texel, next);
-    [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
+    uint t = 0u;
+    [[unroll]] for (;;) {
         Offset offset = next;
         reals z = next_z, x, y;
         next = step_offset(s, steps, t + 1u);
@@ -33,6 +34,8 @@ reals horizon_cosines(Slice s, ivec2 texel, real jitter)
         reals d2 = x * x + y * y;
         reals weight = mix(reals(0.0), falloff_weight(d2), greaterThan(z, reals(0.0)));
         horizon = greater(horizon, low + weight * (y * inversesqrt(d2) - open));
+        if (++t >= step_count())
+            break;
     }
     return clamp(horizon, reals(-1.0), reals(1.0));
 }
@@ -61,7 +64,8 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
     Noise noise = texel_noise(texel, slice_count());
     real lost = real(0.0);
     float share = 1.0 / float(slice_count());
-    [[unroll]] for (uint k = 0u; k < slice_count(); ++k) {
+    uint k = 0u;
+    [[unroll]] for (;;) {
         Slice s = make_slice((float(k) + noise.turn) * share, position, normal, to_eye);
         reals cosines = horizon_cosines(s, texel, noise.jitter);
         real n = acos(s.cos_n);
@@ -74,6 +78,8 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
         if (BENT_NORMALS)
             bent = plus(bent, times(plus(times(s.outward, bent_outward(h0, h1, n)),
                                          times(to_eye, bent_to_eye(h0, h1, n))), s.normal_length));
+        if (++k >= slice_count())
+            break;
     }
     return Visibility(bent, 1.0 - lost * share);
 }

@@ -21,7 +21,8 @@ real occlusion(Slice s, ivec2 texel, real jitter)
     Steps steps = make_steps(s, jitter, params.normal_x.w);
     reals sine = reals(params.bias_cosine), occluded = reals(0.0);
     reals along = SIDES * both(s.normal_length * s.sin_n), facing = both(s.normal_length * s.cos_n);
-    [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
+    uint t = 0u;
+    [[unroll]] for (;;) {
         Offset offset = step_offset(s, steps, t);
         reals z = load_sides(texel, offset), x, y;
         slice_points(s, offset, z, x, y);
@@ -31,6 +32,8 @@ real occlusion(Slice s, ivec2 texel, real jitter)
         reals higher = mix(sine, max(sine, elevation), greaterThan(weight, reals(0.0)));
         occluded += weight * (higher - sine);
         sine = higher;
+        if (++t >= step_count())
+            break;
     }
     return first_side(occluded) + other_side(occluded);
 }
@@ -41,7 +44,11 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
     Noise noise = texel_noise(texel, slice_count());
     real occluded = real(0.0);
     float share = 1.0 / float(slice_count());
-    [[unroll]] for (uint k = 0u; k < slice_count(); ++k)
+    uint k = 0u;
+    [[unroll]] for (;;) {
         occluded += occlusion(make_slice((float(k) + noise.turn) * share, position, normal, to_eye), texel, noise.jitter);
+        if (++k >= slice_count())
+            break;
+    }
     return Visibility(Real3(real(0.0), real(0.0), real(0.0)), 1.0 - 0.5 * share * occluded);
 }

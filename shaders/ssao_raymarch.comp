@@ -19,26 +19,26 @@ float first_hit(vec3 position, vec3 normal, vec3 direction, float jitter)
     float radius = params.normal_x.w;
     float bias = params.normal_y.w + depth_error(position.z);
     vec3 to_eye = direction_to_eye(position);
-    for (uint t = 0u; t < step_count(); ++t) {
+    uint t = 0u;
+    for (;;) {
         float d = radius * (float(t) + jitter) / float(step_count());
         vec3 point = position + d * direction;
         if (point.z <= 0.0)
             return 0.0;
         ivec2 at = ivec2(floor(project_to_texel(point) + 0.5));
         float z = load_view_z(at);
-        if (z <= 0.0)
-            continue;
         vec3 surface = view_position(vec2(at), z);
         vec3 v = surface - position;
         float lateral = length(v - dot(v, to_eye) * to_eye);
         float behind = dot(to_eye, surface - point);
         float depth = params.thickness_base * radius + params.thickness_slope * min(lateral, radius);
-        if (dot(normal, surface - point) > bias && behind > 0.0 && behind < depth) {
+        if (z > 0.0 && dot(normal, surface - point) > bias && behind > 0.0 && behind < depth) {
             d *= params.inverse_radius;
             return falloff_weight(reals(d * d)).x;
         }
+        if (++t >= step_count())
+            return 0.0;
     }
-    return 0.0;
 }
 
 Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
@@ -50,7 +50,8 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
     vec3 p = lane3(position, 0), n = lane3(normal, 0);
     vec3 bent = vec3(0.0);
     float lost = 0.0;
-    for (uint k = 0u; k < sample_count(); ++k) {
+    uint k = 0u;
+    for (;;) {
         float r2 = (float(k) + shift) / float(sample_count());
         float angle = float(k) * GOLDEN_ANGLE + turn;
         vec3 across = cos(angle) * lane3(t, 0) + sin(angle) * lane3(b, 0);
@@ -58,6 +59,8 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
         float hit = first_hit(p, n, direction, fract(golden_sequence(k) + shift));
         lost += hit;
         bent += (1.0 - hit) * direction;
+        if (++k >= sample_count())
+            break;
     }
     return Visibility(Real3(bent.x, bent.y, bent.z), 1.0 - lost / float(sample_count()));
 }

@@ -30,10 +30,17 @@
 
 const float SECTORS = 31.0;
 
-/* Are the slices few enough to be unrolled too, with all of their steps? Unknown counts, 0, are not. */
-bool slices_unroll()
+/* Is all to be unrolled, steps and slices? Unknown counts, 0, are not. */
+bool unrolls()
 {
-    return SLICES * STEPS - 1u < VKAO_MOST_UNROLLED;
+    return SLICES * STEPS - 1u < VKAO_VBAO_MOST_UNROLLED;
+}
+
+/* Steps that are unrolled in a loop over the rest. */
+uint chunk()
+{
+    uint chunks = (STEPS + VKAO_VBAO_MOST_AT_ONCE - 1u) / VKAO_VBAO_MOST_AT_ONCE;
+    return STEPS == 0u ? 1u : (STEPS + chunks - 1u) / chunks;
 }
 
 /* g(c) = c (G1 + G3 c^2). Largest error .0053: below half a sector. */
@@ -80,8 +87,6 @@ struct March {
     reals last_x, last_height, last_front;
     reals hidden; /* sectors, weighted */
     reals out_moment, eye_moment;
-    Offset next; /* of the step to come */
-    reals next_z;
 };
 
 /* Takes what a sample of both sides hides first. */
@@ -132,7 +137,17 @@ real both_sides(reals sectors)
     return (first_side(sectors) + other_side(sectors)) * (1.0 / SECTORS);
 }
 
-Hidden hidden_mass(Slice s, ivec2 texel, real jitter)
+/* One that is beyond the last hides nothing. */
+void take_step(inout March march, Slice s, Masks m, reals tangent, ivec2 texel, Steps steps, uint t)
+{
+    Offset offset = step_offset(s, steps, t);
+    reals z = load_sides(texel, offset);
+    if (STEPS % chunk() != 0u)
+        z = t < STEPS ? z : reals(0.0);
+    hide(march, s, m, tangent, offset, z);
+}
+
+Hidden hidden_mass(Slice s, ivec2 texel, real jitter, bool unrolled)
 {
     float reach = params.normal_x.w;
     reach *= flag(VKAO_FLAG_THRESHOLD) ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH;
@@ -140,25 +155,29 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter)
     Masks m = make_masks(s);
     const reals none = reals(0.0);
     Steps steps = make_steps(s, jitter, reach);
-    Offset first = step_offset(s, steps, 0u);
-    March march = March(ints(0), none, none, reals(-2.0), none, none, none, first, load_sides(texel, first));
-    [[unroll]] for (uint t = 0u; t < step_count(); ++t) {
-        Offset offset = march.next;
-        reals z = march.next_z;
-        march.next = step_offset(s, steps, t + 1u);
-        if (STEPS == 0u || t + 1u < STEPS)
-            march.next_z = load_sides(texel, march.next);
-        hide(march, s, m, tangent, offset, z);
+    March march = March(ints(0), none, none, reals(-2.0), none, none, none);
+    if (unrolled) {
+        [[unroll]] for (uint t = 0u; t < STEPS; ++t)
+            take_step(march, s, m, tangent, texel, steps, t);
+    } else {
+        uint t = 0u;
+        [[dont_unroll]] for (;;) {
+            [[unroll]] for (uint i = 0u; i < chunk(); ++i)
+                take_step(march, s, m, tangent, texel, steps, t + i);
+            t += chunk();
+            if (t >= step_count())
+                break;
+        }
     }
     return Hidden(both_sides(march.hidden * m.mass), both_sides(march.out_moment), both_sides(march.eye_moment));
 }
 
 void add_slice(inout Visibility v, uint k, ivec2 texel, Real3 position, Real3 normal, Real3 to_eye, real turn,
-               real jitter)
+               real jitter, bool unrolled)
 {
     float share = 1.0 / float(slice_count());
     Slice s = make_slice((float(k) + turn) * share, position, normal, to_eye);
-    Hidden hidden = hidden_mass(s, texel, jitter);
+    Hidden hidden = hidden_mass(s, texel, jitter, unrolled);
     v.open -= s.normal_length * hidden.mass * share;
     Real3 moment = plus(times(s.outward, hidden.out_moment), times(to_eye, hidden.eye_moment));
     v.bent = plus(v.bent, times(moment, -share * s.normal_length));
@@ -170,12 +189,16 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
     Noise noise = texel_noise(texel, slice_count());
     /* The mean direction of an open hemisphere is 2/3 of its normal. */
     Visibility v = Visibility(times(normal, real(2.0 / 3.0)), real(1.0));
-    if (slices_unroll()) {
-        [[unroll]] for (uint k = 0u; k < slice_count(); ++k)
-            add_slice(v, k, texel, position, normal, to_eye, noise.turn, noise.jitter);
+    if (unrolls()) {
+        [[unroll]] for (uint k = 0u; k < SLICES; ++k)
+            add_slice(v, k, texel, position, normal, to_eye, noise.turn, noise.jitter, true);
     } else {
-        [[dont_unroll]] for (uint k = 0u; k < slice_count(); ++k)
-            add_slice(v, k, texel, position, normal, to_eye, noise.turn, noise.jitter);
+        uint k = 0u;
+        [[dont_unroll]] for (;;) {
+            add_slice(v, k, texel, position, normal, to_eye, noise.turn, noise.jitter, false);
+            if (++k >= slice_count())
+                break;
+        }
     }
     return v;
 }

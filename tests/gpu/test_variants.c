@@ -33,23 +33,29 @@ static vkao_context *layout_context(vkao_scratch_layout layout)
 
 /* --- Variants --- */
 
-enum { PRESETS = 4, SETTINGS = PRESETS + 4 };
-static const char *const names[SETTINGS] = {"fast",     "default",       "high",      "best",
-                                            "gtao 3x6", "hemisphere 16", "sphere 16", "hbao"};
+enum { PRESETS = 4, SETTINGS = PRESETS + 5 };
+static const char *const names[SETTINGS] = {"fast",      "default",  "high",
+                                            "best",      "gtao 3x6", "hemisphere 16",
+                                            "sphere 16", "hbao",     "vbao 2x13"};
 
 static void choose(int i, vkao_ssao_params *ssao, vkao_blur_params *blur)
 {
-    static const vkao_ssao_method methods[SETTINGS - PRESETS] = {
-        VKAO_SSAO_GTAO, VKAO_SSAO_HEMISPHERE, VKAO_SSAO_SPHERE, VKAO_SSAO_HBAO};
+    /* 13 steps are two loops of 7, one of which has one too many. */
+    static const struct {
+        vkao_ssao_method method;
+        uint32_t slices, steps; /* 0 = the default */
+    } rows[SETTINGS - PRESETS] = {{VKAO_SSAO_GTAO, 3, 6},
+                                  {VKAO_SSAO_HEMISPHERE, 0, 0},
+                                  {VKAO_SSAO_SPHERE, 0, 0},
+                                  {VKAO_SSAO_HBAO, 0, 0},
+                                  {VKAO_SSAO_VBAO, 2, 13}};
     if (i < PRESETS) {
         check_vkao(vkao_preset((vkao_quality)i, NULL, ssao, blur));
         return;
     }
-    ssao->method = methods[i - PRESETS];
-    if (ssao->method == VKAO_SSAO_GTAO) {
-        ssao->slice_count = 3;
-        ssao->step_count = 6;
-    }
+    ssao->method = rows[i - PRESETS].method;
+    ssao->slice_count = rows[i - PRESETS].slices;
+    ssao->step_count = rows[i - PRESETS].steps;
 }
 
 /* Each setting at full and at half resolution. */
