@@ -32,6 +32,8 @@ struct Visibility {
     real open;
 };
 
+/* These are at least 1. Loops over them test at their end, as a driver in software goes through a body once more to find
+ * that no lane is left. */
 uint slice_count()
 {
     return SLICES != 0u ? SLICES : params.counts & 0xffu;
@@ -64,19 +66,19 @@ real depth_error(real z)
     return orthographic() ? line : z * line;
 }
 
-/* Length of a point of the kernel, u uniform in [0,1). A point at length l is hidden if its ray hits anything within l,
- * so the distribution of l carries the falloff: P(l > t) = 1 - (t/R)^2 for l = R sqrt(u), the smooth one. For the
- * threshold a ray counts alike wherever it hits, so the lengths crowd towards R. */
-real point_length(real u, float radius)
+/* Length of a point of the kernel in radii, u uniform in [0,1). A point at length l is hidden if its ray hits anything
+ * within l, so the distribution of l carries the falloff: P(l > t) = 1 - t^2 for l = sqrt(u), the smooth one. For the
+ * threshold a ray counts alike wherever it hits, so the lengths crowd towards 1. */
+float point_length(float u)
 {
-    return radius * (flag(VKAO_FLAG_THRESHOLD) ? sqrt(sqrt(u)) : sqrt(u));
+    return flag(VKAO_FLAG_THRESHOLD) ? sqrt(sqrt(u)) : sqrt(u);
 }
 
 /* How much an occluder counts whose view z is dz off the shaded point's: all within the radius, then less and less, as
  * the surface in front need not reach down to the point behind it. */
-real range_weight(real dz, float radius)
+reals range_weight(reals dz, float radius)
 {
-    real t = radius / max(abs(dz), real(radius));
+    reals t = radius / greater(abs(dz), reals(radius));
     return t * t * (3.0 - 2.0 * t);
 }
 

@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
  * Normal-oriented hemisphere (Filion and McNaughton, 'StarCraft II: Effects and Techniques', 2008), with a
- * cosine-weighted kernel: direction k of n lies over the point k of a Fibonacci disk,
+ * cosine-weighted kernel in pairs of points: the directions of pair k of n lie over the point k of a Fibonacci disk and
+ * over the one across it,
  *     r = sqrt((k + 1/2) / n), angle = k * golden angle + noise, height sqrt(1 - r^2),
- * so that the mean over k needs no weights. Lengths are stratified over k by the golden ratio and a second noise;
- * their distribution carries the falloff, see point_length. A point is blocked if the scene stands in front of it;
- * each blocked point counts by range_weight. */
+ * so that the mean over k needs no weights. Of the two lengths one is of the shorter half; each half is stratified over
+ * k by the golden ratio, and within its stratum a length moves with a second noise. Their distribution carries the
+ * falloff, see point_length. A point is blocked if the scene stands in front of it; each blocked point counts by
+ * range_weight. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -15,14 +17,14 @@
 #define VKAO_SIDE_BY_SIDE
 #include "ssao.glsl"
 
-/* Directions on their way to texels: what a step in view space adds to (texel, 1) * z, in perspective, or (texel, z). A
- * point is projected by one division, without going through view space. */
-Real3 to_texels(Real3 direction)
+/* What a step in view space adds to (x, y, 1) * z, in perspective, or (x, y, z), x and y being texels off the shaded
+ * one, which is seen at sight * z. A point is projected by one division, without going through view space. */
+Real3 to_texels(Real3 direction, Real2 sight)
 {
     real x = direction.x, y = direction.y;
     if (!orthographic()) {
-        x -= params.unproject.z * direction.z;
-        y -= params.unproject.w * direction.z;
+        x -= sight.x * direction.z;
+        y -= sight.y * direction.z;
     }
     return Real3(x * params.inverse_unproject.x, y * params.inverse_unproject.y, direction.z);
 }
@@ -32,58 +34,78 @@ Real3 weighted(Real3 a, real wa, Real3 b, real wb)
     return plus(times(a, wa), times(b, wb));
 }
 
-/* View z of the texels nearest to some points. */
-real load_rounded(Rounded x, Rounded y)
+/* One coordinate of the directions of a pair: as high, and across the normal from each other. */
+reals mirrored(float height, real up, vec2 at, real across, real along)
 {
-    ivec2 to_border = border_texel(ivec2(-ROUND_BITS));
-    whole at_x = x.bits + to_border.x, at_y = y.bits + to_border.y;
-    float z[TEXELS];
-    [[unroll]] for (int i = 0; i < TEXELS; ++i)
-        z[i] = border_view_z(ivec2(lane(at_x, i), lane(at_y, i)));
-    return join(z);
+    return both(height * up) + SIDES * both(at.x * across + at.y * along);
+}
+
+/* View z of the texels nearest to points that are some texels off. */
+reals load_nearest(ivec2 texel, RoundedSides x, RoundedSides y)
+{
+    ivec2 origin = border_texel(texel - ROUND_BITS);
+    whole origin_x = origin.x + whole(BESIDE);
+    ints at_x = x.bits + ints(origin_x, origin_x), at_y = y.bits + origin.y;
+    reals z;
+    [[unroll]] for (int i = 0; i < 2 * TEXELS; ++i)
+        z[i] = border_view_z(ivec2(at_x[i], at_y[i]));
+    return z;
+}
+
+/* Of pair k, in radii. Straight between the ends of its stratum: that saves a root for each. */
+reals pair_lengths(uint k, uint pairs, real jitter)
+{
+    float n = float(pairs), low = golden_sequence(k) * (n - 1.0) / n, high = low + 1.0 / n;
+    vec2 near = 0.5 * vec2(low, high), far = near + 0.5;
+    vec2 from = vec2(point_length(near.x), point_length(far.x)), to = vec2(point_length(near.y), point_length(far.y));
+    return reals(from.x + (to.x - from.x) * jitter, from.y + (to.y - from.y) * jitter);
 }
 
 Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
 {
     float radius = params.normal_x.w;
+    real inverse_z = 1.0 / position.z;
+    Real2 sight = Real2(position.x * inverse_z, position.y * inverse_z);
     Real3 t, b;
     tangents(normal, t, b);
-    /* The kernel is turned with its frame: the directions in it are constants then. */
+    /* The kernel is turned with its frame, which is as long as the radius: the directions in it are constants then. */
     Noise noise = texel_noise(texel, 1u);
     Real2 turn = full_turn(noise.turn);
-    Real3 across = to_texels(weighted(t, turn.x, b, turn.y)), along = to_texels(weighted(b, turn.x, t, -turn.y));
-    Real3 up = to_texels(normal);
-    real center_x = float(texel.x) + BESIDE, center_y = real(float(texel.y));
-    if (!orthographic()) {
-        center_x *= position.z;
-        center_y *= position.z;
-    }
-    /* stands_in_front, in texels: the height of an occluder is dot(normal, occluder) - dot(normal, position). */
-    real slope_x = normal.x * params.unproject.x, slope_y = normal.y * params.unproject.y;
-    real level = normal.x * params.unproject.z + normal.y * params.unproject.w;
-    level += orthographic() ? real(0.0) : normal.z;
-    real least = dot3(normal, position) + params.normal_y.w + depth_error(position.z);
-    real blocked = real(0.0);
-    [[unroll]] for (uint k = 0u; k < sample_count(); ++k) {
-        float r2 = (float(k) + 0.5) / float(sample_count()), r = sqrt(r2), height = sqrt(1.0 - r2);
+    turn = Real2(turn.x * radius, turn.y * radius);
+    Real3 across = to_texels(weighted(t, turn.x, b, turn.y), sight);
+    Real3 along = to_texels(weighted(b, turn.x, t, -turn.y), sight);
+    Real3 up = to_texels(times(normal, real(radius)), sight);
+    /* stands_in_front, in texels and radii: the height of an occluder is dot(normal, occluder) - dot(normal, position),
+     * and in perspective the latter is position.z times that of where the texel is seen. */
+    Real3 n = times(normal, real(params.inverse_radius));
+    real slope_x = n.x * params.unproject.x, slope_y = n.y * params.unproject.y;
+    real facing = orthographic() ? n.z : n.x * sight.x + n.y * sight.y + n.z;
+    real least = (params.normal_y.w + depth_error(position.z)) * params.inverse_radius + facing * position.z;
+    uint pairs = (sample_count() + 1u) / 2u, k = 0u;
+    reals blocked = reals(0.0);
+    [[unroll]] for (;;) {
+        float r2 = (float(k) + 0.5) / float(pairs), r = sqrt(r2), height = sqrt(1.0 - r2);
         float angle = float(k) * GOLDEN_ANGLE;
-        float a = r * cos(angle), c = r * sin(angle);
-        real len = point_length(fract(golden_sequence(k) + noise.jitter), radius);
-        real x = center_x + len * (a * across.x + c * along.x + height * up.x);
-        real y = center_y + len * (a * across.y + c * along.y + height * up.y);
-        real z = position.z + len * (a * across.z + c * along.z + height * up.z);
+        vec2 at = r * vec2(cos(angle), sin(angle));
+        reals len = pair_lengths(k, pairs, noise.jitter);
+        reals x = len * mirrored(height, up.x, at, across.x, along.x);
+        reals y = len * mirrored(height, up.y, at, across.y, along.y);
+        reals z = both(position.z) + len * mirrored(height, up.z, at, across.z, along.z);
         if (!orthographic()) {
-            real inverse = 1.0 / z;
+            reals inverse = 1.0 / z;
             x *= inverse;
             y *= inverse;
         }
-        Rounded at_x = rounded(x), at_y = rounded(y);
-        real scene_z = load_rounded(at_x, at_y);
-        real over = slope_x * at_x.number + slope_y * at_y.number + level;
-        over = orthographic() ? over + normal.z * scene_z : over * scene_z;
-        real weight = range_weight(scene_z - position.z, radius);
-        weight = choose(real(0.0), weight, above(over, len * height + least));
-        blocked += choose(real(0.0), weight, above(min(scene_z, z), real(0.0)));
+        RoundedSides at_x = rounded(x), at_y = rounded(y);
+        reals scene_z = load_nearest(texel, at_x, at_y);
+        reals over = both(slope_x) * at_x.number + both(slope_y) * at_y.number;
+        over = orthographic() ? over + both(facing) * scene_z : (over + both(facing)) * scene_z;
+        reals weight = range_weight(scene_z - both(position.z), radius);
+        weight = mix(reals(0.0), weight, greaterThan(over, height * len + both(least)));
+        blocked += mix(reals(0.0), weight, greaterThan(lesser(scene_z, z), reals(0.0)));
+        if (++k >= pairs)
+            break;
     }
-    return Visibility(Real3(real(0.0), real(0.0), real(0.0)), 1.0 - blocked / float(sample_count()));
+    real sum = first_side(blocked) + other_side(blocked);
+    return Visibility(Real3(real(0.0), real(0.0), real(0.0)), 1.0 - sum / float(2u * pairs));
 }

@@ -38,13 +38,16 @@ float literal_blocking(ivec2 texel, vec3 position)
     float turn = TWO_PI * texel_noise(texel, 1u).turn;
     vec2 rotation = vec2(cos(turn), sin(turn));
     float factor = 0.0;
-    for (uint k = 0u; k < sample_count(); ++k) {
+    uint k = 0u;
+    for (;;) {
         vec3 p = table_point(k);
         p.xy = vec2(p.x * rotation.x - p.y * rotation.y, p.x * rotation.y + p.y * rotation.x);
         vec3 point = position + radius * p;
         float scene_z = point.z > 0.0 ? load_view_z(ivec2(floor(project_to_texel(point) + 0.5))) : 0.0;
         float dz = scale * max(0.0, scene_z - point.z);
         factor += scene_z > 0.0 ? 1.0 / (1.0 + dz * dz) : 0.0;
+        if (++k >= sample_count())
+            break;
     }
     return factor / float(sample_count());
 }
@@ -57,7 +60,7 @@ float hidden(vec3 position, vec3 normal, vec3 offset)
     ivec2 at = ivec2(floor(project_to_texel(point) + 0.5));
     float scene_z = point.z > 0.0 ? load_view_z(at) : 0.0;
     vec3 occluder = view_position(vec2(at), scene_z);
-    float weight = scene_z > 0.0 ? range_weight(scene_z - position.z, radius) : 0.0;
+    float weight = scene_z > 0.0 ? range_weight(reals(scene_z - position.z), radius).x : 0.0;
     bool behind = stands_in_front(occluder, position, normal, height + bias);
     return mix(height < 0.0 ? 1.0 : 0.0, behind ? 1.0 : 0.0, weight);
 }
@@ -68,13 +71,16 @@ float rescaled_blocking(ivec2 texel, vec3 position, vec3 normal)
     float turn = TWO_PI * noise.turn, shift = noise.jitter;
     uint pairs = (sample_count() + 1u) / 2u;
     float blocked = 0.0;
-    for (uint k = 0u; k < pairs; ++k) {
+    uint k = 0u;
+    for (;;) {
         /* z over (0,1), the antipode over (-1,0) */
         float z = (float(k) + shift) / float(pairs), ring = sqrt(1.0 - z * z);
         float angle = float(k) * GOLDEN_ANGLE + turn;
-        float len = point_length(fract(golden_sequence(k) + shift), params.normal_x.w);
+        float len = params.normal_x.w * point_length(fract(golden_sequence(k) + shift));
         vec3 offset = len * vec3(ring * cos(angle), ring * sin(angle), z);
         blocked += hidden(position, normal, offset) + hidden(position, normal, -offset);
+        if (++k >= pairs)
+            break;
     }
     return blocked / float(2u * pairs);
 }

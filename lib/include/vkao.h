@@ -384,8 +384,8 @@ struct vkao_ssao_params {
     vkao_ssao_method method;
     vkao_falloff falloff;
     vkao_sphere_form sphere_form; /* SPHERE only */
-    /* [1,1024] points per texel of SPHERE and HEMISPHERE, rays of RAYMARCH. SPHERE_RESCALED takes antipodal pairs: an
-     * odd count becomes one more. Default 16 */
+    /* [1,1024] points per texel of SPHERE and HEMISPHERE, rays of RAYMARCH. HEMISPHERE and SPHERE_RESCALED take
+     * pairs: an odd count becomes one more. Default 16 */
     uint32_t sample_count;
     uint32_t noise_index;  /* any; 0 = the static pattern; a frame counter if something temporal follows */
     float radius;          /* (0,inf) scene units that an occluder reaches. Default 0.5 */
