@@ -160,10 +160,11 @@ static vkao_result plan_variant(const vkao_context *ctx, const struct vkao_logge
     const vkao_blur_params *has_blur = info.blur ? &blur : NULL;
     const bool packed = ctx->buffers && has_blur && !info.bent_normals;
     const uint32_t way = recording_way(packed, packed ? vk_format_staged(info.staged_ao) : 0);
+    /* SSAO first: it takes longest to compile, beside the others if there are threads. */
     const enum pipeline stages[VARIANT_STAGES] = {
+        (enum pipeline)(PIPELINE_SSAO + (int)ssao.method),
         PIPELINE_PREPARE,
         PIPELINE_TILES,
-        (enum pipeline)(PIPELINE_SSAO + (int)ssao.method),
         packed ? PIPELINE_PACKED_BLUR_X : PIPELINE_BLUR_X,
         packed ? PIPELINE_PACKED_BLUR_Y : PIPELINE_BLUR_Y,
         packed ? PIPELINE_PACKED_UPSAMPLE : PIPELINE_UPSAMPLE,
