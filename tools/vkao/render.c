@@ -5,6 +5,7 @@
 #include "automatic.h"
 #include "gpu.h"
 #include "output.h"
+#include "parallel.h"
 #include "placement.h"
 #include "plan.h"
 #include "views.h"
@@ -165,25 +166,58 @@ static bool compute(struct session *s, struct rendered_view *view, struct tool_e
     return true;
 }
 
+/* Pixels of a view, and the driver before the first one: neither waits for the other. */
+struct opening {
+    struct session *session;
+    const struct frame_source *source;
+    const struct view *view;
+    struct gbuffer *gbuffer;
+    double read_ms;
+    bool is_read, is_started;
+    struct tool_error read_err, start_err;
+};
+
+enum opening_part { OPENING_PIXELS, OPENING_DEVICE, OPENING_PARTS };
+
+static void open_part(void *data, uint32_t part)
+{
+    struct opening *o = data;
+    if (part == OPENING_DEVICE) {
+        o->is_started = session_start(o->session, &o->start_err);
+        return;
+    }
+    const struct gbuffer_options options = view_options(o->session->options, o->view);
+    const double start = now_ms();
+    o->is_read = gbuffer_load(&o->source->info, &options, o->view->camera, o->session->report,
+                              o->gbuffer, &o->read_err);
+    o->read_ms = now_ms() - start;
+}
+
+static bool open_view(struct session *s, const struct frame_source *source, const struct view *view,
+                      struct gbuffer *g, struct times *times, struct tool_error *err)
+{
+    struct opening o = {.session = s, .source = source, .view = view, .gbuffer = g};
+    parallel_run(NULL, OPENING_PARTS, open_part, &o);
+    times->read += o.read_ms;
+    if (!o.is_read || !o.is_started)
+        *err = o.is_read ? o.start_err : o.read_err;
+    return o.is_read && o.is_started;
+}
+
 static bool render_view(struct session *s, const struct frame_source *source,
                         const struct view *view, struct rendered_view *out, struct times *times,
                         struct tool_error *err)
 {
-    const struct gbuffer_options options = view_options(s->options, view);
-    double start = now_ms();
-    out->name = view->name;
-    if (!gbuffer_load(&source->info, &options, view->camera, s->report, &out->gbuffer, err))
-        return false;
     struct gbuffer *g = &out->gbuffer;
-    times->read += now_ms() - start;
+    out->name = view->name;
+    if (!open_view(s, source, view, g, times, err))
+        return false;
     out->ssao = s->options->ssao;
     out->ssao.radius = choose_radius(s, g);
     out->ssao.bias = choose_bias(s, g, out->ssao.radius);
-    if (!session_start(s, err))
-        return false;
     summarise(s, out);
     tell_details(s, source, out);
-    start = now_ms();
+    double start = now_ms();
     bool ok = compute(s, out, err);
     times->compute += now_ms() - start;
     free(g->depth);
