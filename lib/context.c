@@ -65,14 +65,15 @@ static vkao_result check_info(const struct vkao_logger *log, const vkao_context_
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "context.method_mask is 0x%x, want bits of 0x%x", info->method_mask,
                            (1u << VKAO_METHOD_COUNT) - 1u);
-    if (info->stage_mask & ~VKAO_STAGE_ALL || info->reserved)
+    if (info->stage_mask & ~VKAO_STAGE_ALL)
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "context.stage_mask is 0x%x, reserved %u, want bits of 0x%x, 0",
-                           info->stage_mask, info->reserved, VKAO_STAGE_ALL);
-    if (info->half_view_z > 1 || info->variants_only > 1)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "context.half_view_z is %u, variants_only %u, want 0 or 1",
-                           info->half_view_z, info->variants_only);
+                           "context.stage_mask is 0x%x, want bits of 0x%x", info->stage_mask,
+                           VKAO_STAGE_ALL);
+    if (info->half_view_z > 1 || info->variants_only > 1 || info->storage_16bit > 1)
+        return vkao_refuse(
+            log, VKAO_ERROR_INVALID_ARGUMENT,
+            "context.half_view_z is %u, variants_only %u, storage_16bit %u, want 0 or 1",
+            info->half_view_z, info->variants_only, info->storage_16bit);
     if ((uint32_t)info->scratch_layout > VKAO_SCRATCH_BUFFERS ||
         (info->scratch_layout == VKAO_SCRATCH_BUFFERS && info->half_view_z))
         return vkao_refuse(
@@ -228,6 +229,7 @@ vkao_result vkao_context_create(const vkao_context_info *caller_info, vkao_conte
     ctx->device = info.device;
     ctx->physical_device = info.physical_device;
     ctx->half_view_z = info.half_view_z;
+    ctx->storage_16bit = info.storage_16bit;
     ctx->method_mask = info.method_mask ? info.method_mask : (1u << VKAO_METHOD_COUNT) - 1u;
     ctx->stage_mask = info.stage_mask ? info.stage_mask : VKAO_STAGE_ALL;
     if (info.allocator) {

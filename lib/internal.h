@@ -28,7 +28,7 @@ struct vkao_context {
     const VkAllocationCallbacks *allocator; /* &allocator_copy or NULL */
     uint32_t method_mask;
     vkao_stage_flags stage_mask;
-    bool half_view_z;
+    bool half_view_z, storage_16bit;
     bool buffers; /* scratch is in buffers, and shaders are those for it */
     uint32_t max_texels, max_buffer;
     VkDescriptorSetLayout set_layout;

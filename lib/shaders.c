@@ -21,12 +21,15 @@
 #include "prepare_z16.comp.h"
 #include "ssao_gtao.comp.h"
 #include "ssao_gtao_buf.comp.h"
+#include "ssao_gtao_buf16.comp.h"
 #include "ssao_gtao_z16.comp.h"
 #include "ssao_hbao.comp.h"
 #include "ssao_hbao_buf.comp.h"
+#include "ssao_hbao_buf16.comp.h"
 #include "ssao_hbao_z16.comp.h"
 #include "ssao_hemisphere.comp.h"
 #include "ssao_hemisphere_buf.comp.h"
+#include "ssao_hemisphere_buf16.comp.h"
 #include "ssao_hemisphere_z16.comp.h"
 #include "ssao_raymarch.comp.h"
 #include "ssao_raymarch_buf.comp.h"
@@ -36,6 +39,7 @@
 #include "ssao_sphere_z16.comp.h"
 #include "ssao_vbao.comp.h"
 #include "ssao_vbao_buf.comp.h"
+#include "ssao_vbao_buf16.comp.h"
 #include "ssao_vbao_z16.comp.h"
 #include "tiles_buf.comp.h"
 #include "upsample.comp.h"
@@ -46,7 +50,13 @@
 #include <string.h>
 
 /* How view z is kept. */
-enum build { BUILD_Z32, BUILD_Z16, BUILD_BUFFERS, BUILD_COUNT };
+enum build {
+    BUILD_Z32,
+    BUILD_Z16,
+    BUILD_BUFFERS,
+    BUILD_BUFFERS_16BIT, /* with codes of two texels in one store; those without are BUILD_BUFFERS */
+    BUILD_COUNT
+};
 
 struct shader {
     const char *name;
@@ -67,6 +77,11 @@ struct shader {
 #name,                                                                                         \
     {                                                                                              \
         CODE(name##_comp), CODE(name##_z16_comp), CODE(name##_buf_comp)                            \
+    }
+#define SHADER_OF_PAIRS(name)                                                                      \
+#name,                                                                                         \
+    {                                                                                              \
+        CODE(name##_comp), CODE(name##_z16_comp), CODE(name##_buf_comp), CODE(name##_buf16_comp)   \
     }
 #define ONE_TEXEL                                                                                  \
     {                                                                                              \
@@ -107,22 +122,26 @@ static const struct shader shaders[PIPELINE_COUNT] = {
     [PIPELINE_DEBUG] = {SHADER(debug), VK_FALSE, false, ONE_TEXEL},
     [PIPELINE_SSAO + VKAO_SSAO_SPHERE] = {SHADER(ssao_sphere), VK_FALSE, false, ONE_TEXEL},
     [PIPELINE_SSAO +
-        VKAO_SSAO_HEMISPHERE] = {SHADER(ssao_hemisphere), VK_FALSE, false, SSAO_TEXELS},
-    [PIPELINE_SSAO + VKAO_SSAO_HBAO] = {SHADER(ssao_hbao), VK_FALSE, false, SSAO_TEXELS},
-    [PIPELINE_SSAO + VKAO_SSAO_GTAO] = {SHADER(ssao_gtao), VK_FALSE, true, SSAO_TEXELS},
-    [PIPELINE_SSAO + VKAO_SSAO_VBAO] = {SHADER(ssao_vbao), VK_FALSE, true, SSAO_TEXELS},
+        VKAO_SSAO_HEMISPHERE] = {SHADER_OF_PAIRS(ssao_hemisphere), VK_FALSE, false, SSAO_TEXELS},
+    [PIPELINE_SSAO + VKAO_SSAO_HBAO] = {SHADER_OF_PAIRS(ssao_hbao), VK_FALSE, false, SSAO_TEXELS},
+    [PIPELINE_SSAO + VKAO_SSAO_GTAO] = {SHADER_OF_PAIRS(ssao_gtao), VK_FALSE, true, SSAO_TEXELS},
+    [PIPELINE_SSAO + VKAO_SSAO_VBAO] = {SHADER_OF_PAIRS(ssao_vbao), VK_FALSE, true, SSAO_TEXELS},
     [PIPELINE_SSAO + VKAO_SSAO_RAYMARCH] = {SHADER(ssao_raymarch), VK_FALSE, true, ONE_TEXEL},
 };
 
 static enum build context_build(const vkao_context *ctx)
 {
-    return ctx->buffers ? BUILD_BUFFERS : ctx->half_view_z ? BUILD_Z16 : BUILD_Z32;
+    if (ctx->buffers)
+        return ctx->storage_16bit ? BUILD_BUFFERS_16BIT : BUILD_BUFFERS;
+    return ctx->half_view_z ? BUILD_Z16 : BUILD_Z32;
 }
 
 struct shader_code shader_code(const vkao_context *ctx, enum pipeline which)
 {
     const struct shader *s = &shaders[which];
-    const enum build build = context_build(ctx);
+    enum build build = context_build(ctx);
+    if (build == BUILD_BUFFERS_16BIT && !s->builds[build].code)
+        build = BUILD_BUFFERS;
     return (struct shader_code){s->name, s->builds[build].code, s->builds[build].bytes, s->vertical,
                                 s->bent};
 }

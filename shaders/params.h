@@ -105,7 +105,8 @@
 #define VKAO_VIEW_Z_BORDER 1
 
 /* Shaders are compiled for scratch in images, and with VKAO_BUFFERS for scratch in buffers. A CPU takes several texels
- * from a buffer at once, where an image gives them one by one; on GPUs images have the better caches.
+ * from a buffer at once, where an image gives them one by one; on GPUs images have the better caches. With
+ * VKAO_STORAGE_16BIT SSAO stores two codes at once to a storage buffer, which costs a CPU less than a texel buffer.
  *
  * Rows of such a buffer have VKAO_BUFFER_PAD texels of padding on each side, as the blur reads beyond the edge, and
  * begin at multiples of VKAO_BLUR_X_WIDTH. View z is a float per texel and has VKAO_VIEW_Z_BORDER rows above and below.

@@ -19,8 +19,12 @@ layout(binding = VKAO_BINDING_NOISY_WRITE) uniform writeonly image2D noisy_image
 #define VKAO_UNPROJECT
 #include "lanes.glsl"
 #ifdef VKAO_BUFFERS
+#ifdef VKAO_STORAGE_16BIT
+layout(binding = VKAO_BINDING_PACKED_WORDS) writeonly buffer Packed { uint16_t packed_pairs[]; };
+#else
 layout(binding = TEXELS == 1 ? VKAO_BINDING_PACKED_WRITE : VKAO_BINDING_PACKED_WRITE2) uniform writeonly
     uimageBuffer packed_codes;
+#endif
 layout(binding = VKAO_BINDING_TILES) readonly buffer Tiles { vkao_tiles_head head; uint tiles[]; };
 #endif
 #include "view.glsl"
@@ -114,7 +118,12 @@ void store_noisy(ivec2 texel, Visibility v)
     /* All of the texels at once, those beyond the rect as well: what they are does not depend on it. */
     if (flag(VKAO_FLAG_PACKED)) {
         whole code = whole(clamp((v.open + VKAO_CODE_OFFSET) * VKAO_CODE_SCALE, 0.0, 255.0) + 0.5);
-        imageStore(packed_codes, (buffer_row(texel.y) + texel.x) / TEXELS, uvec4(pack_codes(code)));
+        int at = (buffer_row(texel.y) + texel.x) / TEXELS;
+#ifdef VKAO_STORAGE_16BIT
+        packed_pairs[at] = uint16_t(pack_codes(code));
+#else
+        imageStore(packed_codes, at, uvec4(pack_codes(code)));
+#endif
         return;
     }
 #endif

@@ -7,6 +7,7 @@
  * .118 for the point form, max(0, sine - bias) * falloff averaged over samples. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_shader_16bit_storage : enable
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL

@@ -10,6 +10,7 @@
  * range_weight. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_shader_16bit_storage : enable
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
@@ -19,7 +20,7 @@
 
 /* What a step in view space adds to (x, y, 1) * z, in perspective, or (x, y, z), x and y being texels off the shaded
  * one, which is seen at sight * z. A point is projected by one division, without going through view space. */
-Real3 to_texels(Real3 direction, Real2 sight)
+Real3 to_texels(Real3 direction, Real3 sight)
 {
     real x = direction.x, y = direction.y;
     if (!orthographic()) {
@@ -64,8 +65,7 @@ reals pair_lengths(uint k, uint pairs, real jitter)
 Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
 {
     float radius = params.normal_x.w;
-    real inverse_z = 1.0 / position.z;
-    Real2 sight = Real2(position.x * inverse_z, position.y * inverse_z);
+    Real3 sight = view_positions(texel, real(1.0));
     Real3 t, b;
     tangents(normal, t, b);
     /* The kernel is turned with its frame, which is as long as the radius: the directions in it are constants then. */

@@ -20,6 +20,7 @@
  *  - what is seen is as thick as VKAO_THICKNESS_BASE of the radius plus VKAO_THICKNESS_SLOPE of its lateral distance. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_shader_16bit_storage : enable
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL

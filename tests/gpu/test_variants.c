@@ -187,6 +187,35 @@ static void buffers_agree_with_images(void **state)
     vkao_context_destroy(buffers);
 }
 
+static void storage_of_16_bits_changes_nothing(void **state)
+{
+    (void)state;
+    const struct scene scene = scene_corner();
+    vkao_context_info info = fixture_context_info();
+    if (!info.storage_16bit)
+        skip();
+    info.scratch_layout = VKAO_SCRATCH_BUFFERS;
+    vkao_context *with = create(&info);
+    info.storage_16bit = VK_FALSE;
+    vkao_context *without = create(&info);
+    for (int method = 0; method <= VKAO_SSAO_RAYMARCH; ++method) {
+        struct picture p;
+        picture_make(&p, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, &scene);
+        p.ssao.method = (vkao_ssao_method)method;
+        run_with(without, &p);
+        double *want = p.values[SLOT_AO];
+        p.values[SLOT_AO] = NULL;
+        picture_set(&p, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
+        run_with(with, &p);
+        assert_memory_equal(p.values[SLOT_AO], want, picture_texels(&p) * sizeof *want);
+        assert_true(mean_of(want, picture_texels(&p)) < 0.999);
+        free(want);
+        picture_free(&p);
+    }
+    vkao_context_destroy(without);
+    vkao_context_destroy(with);
+}
+
 static void rects_equal_the_whole_in(vkao_scratch_layout layout)
 {
     static const VkRect2D rects[] = {
@@ -232,6 +261,7 @@ int main(void)
         gpu_test(variants_equal_the_general_pipelines_in_buffers),
         gpu_test(variants_equal_the_general_pipelines_in_images),
         gpu_test(buffers_agree_with_images),
+        gpu_test(storage_of_16_bits_changes_nothing),
         gpu_test(rects_equal_the_whole_in_buffers),
         gpu_test(rects_equal_the_whole_in_images),
     };

@@ -58,6 +58,7 @@ vkao_context_info fixture_context_info(void)
         .get_instance_proc_addr = vkGetInstanceProcAddr,
         .get_device_proc_addr = vkGetDeviceProcAddr,
         .enabled_features = &fixture.gpu.features,
+        .storage_16bit = fixture.gpu.storage_16bit,
     };
 }
 

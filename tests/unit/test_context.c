@@ -302,6 +302,45 @@ static void unknown_method_is_refused(void **state)
     }
 }
 
+/* Does a shader say that it stores 16 bits? Validation would refuse it on other devices. */
+static bool stores_16_bits(const uint32_t *code)
+{
+    enum { HEADER = 5, CAPABILITY = 2u << 16 | 17u, STORAGE_BUFFER_16BIT_ACCESS = 4433 };
+    for (code += HEADER; code[0] == CAPABILITY; code += 2) {
+        if (code[1] == STORAGE_BUFFER_16BIT_ACCESS)
+            return true;
+    }
+    return false;
+}
+
+static void only_devices_that_store_16_bits_are_asked_to(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4; ++i) {
+        const bool has_it = i & 1, cpu = i & 2;
+        struct world w;
+        world_init(&w, true);
+        if (cpu)
+            w.fake.device_type = VK_PHYSICAL_DEVICE_TYPE_CPU;
+        w.info.storage_16bit = has_it;
+        assert_int_equal(vkao_context_create(&w.info, &w.ctx), VKAO_SUCCESS);
+        int count = 0;
+        for (size_t o = 0; o < w.fake.object_count; ++o) {
+            if (w.fake.objects[o].type == VK_OBJECT_TYPE_PIPELINE)
+                count += stores_16_bits(w.fake.objects[o].code);
+        }
+        /* hemisphere, hbao, and with and without bent normals gtao and vbao */
+        assert_int_equal(count, has_it && cpu ? 6 : 0);
+        world_close(&w);
+    }
+    struct world w;
+    world_init(&w, true);
+    w.info.storage_16bit = 2;
+    expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, vkao_context_create(&w.info, &w.ctx),
+                   "context.", "storage_16bit 2");
+    world_close(&w);
+}
+
 static void context_owns_no_device_memory_and_no_modules(void **state)
 {
     (void)state;
@@ -379,6 +418,7 @@ int main(void)
         cmocka_unit_test(allocation_callbacks_are_copied),
         cmocka_unit_test(method_mask_builds_only_what_was_asked),
         cmocka_unit_test(unknown_method_is_refused),
+        cmocka_unit_test(only_devices_that_store_16_bits_are_asked_to),
         cmocka_unit_test(context_owns_no_device_memory_and_no_modules),
         cmocka_unit_test(pipeline_cache_reaches_the_driver),
         cmocka_unit_test(debug_labels_are_optional_in_every_way),

@@ -240,17 +240,25 @@ static bool create_device(struct gpu *gpu, const struct gpu_options *options,
     gpu->timestamp_bits = families[gpu->queue_family].timestampValidBits;
     vkGetPhysicalDeviceMemoryProperties(gpu->physical_device, &gpu->memory);
     vkao_add_required_features(&gpu->features);
-    VkPhysicalDeviceFeatures supported;
-    vkGetPhysicalDeviceFeatures(gpu->physical_device, &supported);
-    if (!supported.shaderStorageImageWriteWithoutFormat)
+    VkPhysicalDevice16BitStorageFeatures storage = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_16BIT_STORAGE_FEATURES};
+    VkPhysicalDeviceFeatures2 supported = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                           .pNext = &storage};
+    vkGetPhysicalDeviceFeatures2(gpu->physical_device, &supported);
+    if (!supported.features.shaderStorageImageWriteWithoutFormat)
         return fail(err, EXIT_DEVICE, "%s lacks shaderStorageImageWriteWithoutFormat",
                     gpu->properties.deviceName);
     /* For contexts with half_view_z */
-    gpu->features.shaderStorageImageExtendedFormats = supported.shaderStorageImageExtendedFormats;
+    gpu->features.shaderStorageImageExtendedFormats =
+        supported.features.shaderStorageImageExtendedFormats;
+    gpu->storage_16bit = storage.storageBuffer16BitAccess;
+    storage = (VkPhysicalDevice16BitStorageFeatures){
+        .sType = storage.sType, .storageBuffer16BitAccess = gpu->storage_16bit};
     VkResult result =
         vkCreateDevice(gpu->physical_device,
                        &(VkDeviceCreateInfo){
                            .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                           .pNext = &storage,
                            .queueCreateInfoCount = 1,
                            .pQueueCreateInfos =
                                &(VkDeviceQueueCreateInfo){
@@ -393,6 +401,7 @@ vkao_context_info gpu_context_info(const struct gpu *gpu, uint32_t method_mask)
         .get_instance_proc_addr = vkGetInstanceProcAddr,
         .get_device_proc_addr = vkGetDeviceProcAddr,
         .enabled_features = &gpu->features,
+        .storage_16bit = gpu->storage_16bit,
         .log = print_log,
         .debug_labels = gpu->messenger != VK_NULL_HANDLE,
         /* Messages of validation are counted in one thread. */

@@ -27,6 +27,7 @@ struct gpu {
     VkPhysicalDeviceProperties properties;
     VkPhysicalDeviceMemoryProperties memory;
     VkPhysicalDeviceFeatures features; /* as enabled */
+    VkBool32 storage_16bit;            /* storageBuffer16BitAccess is enabled */
     uint32_t validation_messages;      /* warnings and errors of the validation layers so far */
     bool print_validation;
 };
