@@ -278,6 +278,7 @@ def start_is_cold_and_warm(scratch):
         equal((row['stage'], row['runs']), ('total', 1), row)
         check(abs(row['context_ms'] + row['first_ms'] - row['median_ms']) < 1e-3 * row['median_ms'],
               f'{row}')
+        check(0 < row['device_ms'] < 1e4, f'{row}')
 
 
 @case

@@ -149,7 +149,8 @@ bool speed_scaling(struct speed_device *d, const struct config *config, VkExtent
 struct speed_start {
     char name[SPEED_NAME];
     struct start_times {
-        double context, first, second; /* milliseconds: vkao_context_create, two frames */
+        /* milliseconds: instance and device, vkao_context_create, two frames */
+        double device, context, first, second;
     } cold, warm;
 };
 /* device: as of --device. Nothing in this process may have used Vulkan before. */

@@ -47,8 +47,11 @@ static void run_child(const char *device, const struct config *config, VkExtent2
     const struct speed_features none = {0};
     struct speed_device d;
     struct room room = {0};
-    if (speed_device_create(device, none, &d, &m->err) &&
-        speed_device_compile(&d, config, 1, &m->err) && speed_size_check(&d, extent, &m->err) &&
+    const double start = speed_now_ms();
+    bool ok = speed_device_create(device, none, &d, &m->err);
+    m->times.device = speed_now_ms() - start;
+    if (ok && speed_device_compile(&d, config, 1, &m->err) &&
+        speed_size_check(&d, extent, &m->err) &&
         room_create(extent.width, extent.height, 0, &room, &m->err)) {
         snprintf(m->device, sizeof m->device, "%s", d.gpu.properties.deviceName);
         m->times.context = d.context_ms;
@@ -111,18 +114,22 @@ static int remove_entry(const char *path, const struct stat *status, int type, s
     return remove(path);
 }
 
-static struct start_times median_of(float values[3][MAX_RUNS], unsigned runs)
+enum { TIMES = 4 }; /* members of start_times */
+
+static struct start_times median_of(float values[TIMES][MAX_RUNS], unsigned runs)
 {
-    return (struct start_times){.context = speed_median(values[0], runs),
-                                .first = speed_median(values[1], runs),
-                                .second = speed_median(values[2], runs)};
+    return (struct start_times){.device = speed_median(values[0], runs),
+                                .context = speed_median(values[1], runs),
+                                .first = speed_median(values[2], runs),
+                                .second = speed_median(values[3], runs)};
 }
 
-static void keep(float values[3][MAX_RUNS], unsigned run, const struct start_times *times)
+static void keep(float values[TIMES][MAX_RUNS], unsigned run, const struct start_times *times)
 {
-    values[0][run] = (float)times->context;
-    values[1][run] = (float)times->first;
-    values[2][run] = (float)times->second;
+    values[0][run] = (float)times->device;
+    values[1][run] = (float)times->context;
+    values[2][run] = (float)times->first;
+    values[3][run] = (float)times->second;
 }
 
 /* One cold and one warm start. */
@@ -149,7 +156,7 @@ bool speed_start_measure(const char *device, const struct config *config, VkExte
                          unsigned runs, char device_name[256], struct speed_start *start,
                          struct tool_error *err)
 {
-    static float cold_ms[3][MAX_RUNS], warm_ms[3][MAX_RUNS];
+    static float cold_ms[TIMES][MAX_RUNS], warm_ms[TIMES][MAX_RUNS];
     for (unsigned run = 0; run < runs; run++) {
         struct message cold, warm;
         if (!run_pair(device, config, extent, &cold, &warm, err))
@@ -171,9 +178,9 @@ static void add_start(const struct speed_start *start, bool is_warm, bool markdo
 {
     const struct start_times *t = is_warm ? &start->warm : &start->cold;
     text_add(text,
-             markdown ? "| %s | %s | %.1f | %.1f | %.1f | %.1f |\n"
-                      : "%-18s%-6s%12.1f%14.1f%14.1f%12.1f\n",
-             start->name, is_warm ? "warm" : "cold", t->context, t->first, t->second,
+             markdown ? "| %s | %s | %.1f | %.1f | %.1f | %.1f | %.1f |\n"
+                      : "%-18s%-6s%11.1f%12.1f%14.1f%14.1f%12.1f\n",
+             start->name, is_warm ? "warm" : "cold", t->device, t->context, t->first, t->second,
              t->context + t->first - t->second);
 }
 
@@ -186,10 +193,10 @@ void speed_start_report(const struct speed_start *starts, size_t count, const st
              speed->device, speed->threads, extent.width, extent.height, speed->runs,
              markdown ? ":" : "");
     text_add(text, markdown
-                       ? "\n| setting | cache | context | first frame | second frame | overhead |\n"
-                         "|---|---|---:|---:|---:|---:|\n"
-                       : "\nsetting           cache      context   first frame  second frame    "
-                         "overhead\n");
+                       ? "\n| setting | cache | device | context | first frame | second frame | "
+                         "overhead |\n|---|---|---:|---:|---:|---:|---:|\n"
+                       : "\nsetting           cache      device     context   first frame  second "
+                         "frame    overhead\n");
     for (size_t i = 0; i < count; i++)
         for (int warm = 0; warm < 2; warm++)
             add_start(&starts[i], warm, markdown, text);
@@ -209,6 +216,7 @@ cJSON *speed_start_json(const struct speed_start *starts, size_t count, unsigned
         cJSON_AddStringToObject(object, "stage", stage_name(STAGE_TOTAL));
         json_add_number(object, "median_ms", t->context + t->first);
         cJSON_AddNumberToObject(object, "runs", runs);
+        json_add_number(object, "device_ms", t->device);
         json_add_number(object, "context_ms", t->context);
         json_add_number(object, "first_ms", t->first);
         json_add_number(object, "second_ms", t->second);
