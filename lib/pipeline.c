@@ -53,7 +53,7 @@ static void plan_general(vkao_context *ctx, bool variants_only)
 {
     for (uint32_t i = 0; i < PIPELINE_COUNT; ++i) {
         const enum pipeline which = (enum pipeline)i;
-        const struct shader_code shader = shader_code(ctx, which);
+        const struct shader_code shader = shader_code(ctx, which, true);
         if (!shader.code || !(pipeline_stage(which) & ctx->stage_mask) ||
             (variants_only && pipeline_stage(which) != VKAO_STAGE_COMPOSITE) ||
             (i >= PIPELINE_SSAO && !(ctx->method_mask >> (i - PIPELINE_SSAO) & 1u)))
@@ -68,7 +68,8 @@ static vkao_result create_pipeline(const vkao_context *ctx, VkPipelineCache cach
                                    struct pipeline_entry *entry)
 {
     const struct pipeline_key key = entry->key;
-    const struct shader_code shader = shader_code(ctx, entry->which);
+    const struct shader_code shader =
+        shader_code(ctx, entry->which, memcmp(&key, &general, sizeof key) == 0);
     VkShaderModule module = VK_NULL_HANDLE;
     VkResult result =
         ctx->vk.CreateShaderModule(ctx->device,
@@ -172,7 +173,7 @@ static vkao_result plan_variant(const vkao_context *ctx, const struct vkao_logge
     view.grid_shift = info.half_resolution;
     plan->count = 0;
     for (size_t i = 0; i < (!has_blur ? 3 : info.half_resolution ? 6 : 5); ++i) {
-        if (!shader_code(ctx, stages[i]).code)
+        if (!shader_code(ctx, stages[i], false).code)
             continue;
         /* Upsampling is of the image's own grid. */
         struct view_constants grid = view;
@@ -181,7 +182,7 @@ static vkao_result plan_variant(const vkao_context *ctx, const struct vkao_logge
         const uint32_t flags = recording_flags(&grid, way, &ssao, has_blur);
         plan->stages[plan->count++] = (struct pipeline_entry){
             .which = stages[i],
-            .bent = info.bent_normals && shader_code(ctx, stages[i]).bent,
+            .bent = info.bent_normals && shader_code(ctx, stages[i], false).bent,
             .key = pipeline_key(stages[i], flags, &ssao, has_blur),
         };
     }
@@ -272,7 +273,7 @@ void pipelines_destroy(vkao_context *ctx)
 VkPipeline pipeline_find(const vkao_context *ctx, enum pipeline which, bool bent,
                          struct pipeline_key key)
 {
-    const VkBool32 is_bent = bent && shader_code(ctx, which).bent;
+    const VkBool32 is_bent = bent && shader_code(ctx, which, false).bent;
     const struct pipeline_entry *e = find_entry(&ctx->pipelines, which, is_bent, &key);
     if (!e)
         e = find_entry(&ctx->pipelines, which, is_bent, &general);
@@ -307,7 +308,7 @@ vkao_result pipelines_check(const vkao_frame *frame, const struct view_constants
                            pipeline_key(which, flags, ssao, blur)))
             return vkao_refuse(&frame->ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
                                "the context has variants_only, and none for these settings of %s",
-                               shader_code(frame->ctx, which).name);
+                               shader_code(frame->ctx, which, false).name);
     }
     return VKAO_SUCCESS;
 }

@@ -52,7 +52,8 @@ struct shader_code {
     bool bent;         /* has a form with VKAO_CONSTANT_BENT_NORMALS */
 };
 
-struct shader_code shader_code(const vkao_context *ctx, enum pipeline which);
+/* general: of the general pipeline, which may have code of its own; all else is the same. */
+struct shader_code shader_code(const vkao_context *ctx, enum pipeline which, bool general);
 
 /* Creates what the info asks for; info is checked. On failure the rest is for pipelines_destroy. */
 vkao_result pipelines_create(vkao_context *ctx, const vkao_context_info *info);

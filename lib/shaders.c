@@ -7,7 +7,9 @@
 
 #include "blur.comp.h"
 #include "blur_buf.comp.h"
+#include "blur_x_buffers_any.comp.h"
 #include "blur_x_buffers_buf.comp.h"
+#include "blur_y_buffers_any.comp.h"
 #include "blur_y_buffers_buf.comp.h"
 #include "blur_z16.comp.h"
 #include "composite.comp.h"
@@ -54,7 +56,10 @@ enum build {
     BUILD_Z32,
     BUILD_Z16,
     BUILD_BUFFERS,
-    BUILD_BUFFERS_16BIT, /* with codes of two texels in one store; those without are BUILD_BUFFERS */
+    /* In their place, where there is one: codes of two texels in one store; the general pipeline, if
+     * it has code of its own. */
+    BUILD_BUFFERS_16BIT,
+    BUILD_BUFFERS_GENERAL,
     BUILD_COUNT
 };
 
@@ -104,12 +109,14 @@ static const struct shader shaders[PIPELINE_COUNT] = {
     [PIPELINE_TILES] =
         {"tiles", {[BUILD_BUFFERS] = CODE(tiles_buf_comp)}, VK_FALSE, true, ONE_TEXEL},
     [PIPELINE_PACKED_BLUR_X] = {"blur_x",
-                                {[BUILD_BUFFERS] = CODE(blur_x_buffers_buf_comp)},
+                                {[BUILD_BUFFERS] = CODE(blur_x_buffers_buf_comp),
+                                 [BUILD_BUFFERS_GENERAL] = CODE(blur_x_buffers_any_comp)},
                                 VK_FALSE,
                                 false,
                                 {VKAO_BLUR_X_WIDTH, 1}},
     [PIPELINE_PACKED_BLUR_Y] = {"blur_y",
-                                {[BUILD_BUFFERS] = CODE(blur_y_buffers_buf_comp)},
+                                {[BUILD_BUFFERS] = CODE(blur_y_buffers_buf_comp),
+                                 [BUILD_BUFFERS_GENERAL] = CODE(blur_y_buffers_any_comp)},
                                 VK_TRUE,
                                 false,
                                 {VKAO_BLUR_Y_WIDTH, VKAO_BLUR_Y_HEIGHT}},
@@ -136,10 +143,12 @@ static enum build context_build(const vkao_context *ctx)
     return ctx->half_view_z ? BUILD_Z16 : BUILD_Z32;
 }
 
-struct shader_code shader_code(const vkao_context *ctx, enum pipeline which)
+struct shader_code shader_code(const vkao_context *ctx, enum pipeline which, bool general)
 {
     const struct shader *s = &shaders[which];
     enum build build = context_build(ctx);
+    if (ctx->buffers && general && s->builds[BUILD_BUFFERS_GENERAL].code)
+        build = BUILD_BUFFERS_GENERAL;
     if (build == BUILD_BUFFERS_16BIT && !s->builds[build].code)
         build = BUILD_BUFFERS;
     return (struct shader_code){s->name, s->builds[build].code, s->builds[build].bytes, s->vertical,

@@ -51,7 +51,8 @@ vec4 blurred(ivec2 texel, float z)
     vec3 normal = use_normals ? decode_normal(texel << grid_shift()) : vec3(0.0);
     vec4 sum = load_noisy(texel);
     float weights = 1.0;
-    for (int k = -int(params.radius); k <= int(params.radius); ++k) {
+    int k = -int(params.radius);
+    for (;;) {
         ivec2 at = texel + k * AXIS;
         float tap_z = k == 0 ? 0.0 : load_view_z(at);
         if (tap_z > 0.0) {
@@ -62,6 +63,8 @@ vec4 blurred(ivec2 texel, float z)
             sum += w * load_noisy(at);
             weights += w;
         }
+        if (++k > int(params.radius))
+            break;
     }
     return sum / weights;
 }

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * blur.comp, horizontally, from packed noisy AO to the ring: VKAO_BLUR_X_WIDTH texels of a row per invocation, from one
- * window of them and their neighbours. */
+ * window of them and their neighbours. With VKAO_ANY_RADIUS, for the general pipeline, tap by tap. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -32,8 +32,8 @@ float slope_at(ivec2 texel)
                        surface_z(load_view_z(texel + ivec2(1, 0))));
 }
 
-/* For any radius, tap by tap. */
-float blurred_slowly(ivec2 texel)
+#ifdef VKAO_ANY_RADIUS
+float blurred(ivec2 texel)
 {
     int radius = int(params.radius);
     float z = surface_z(fetch_view_z(texel)), edge = edge_stop(z, params.sharpness, params.reference_z);
@@ -41,18 +41,27 @@ float blurred_slowly(ivec2 texel)
     bool use_normals = flag(VKAO_FLAG_BLUR_NORMALS);
     vec4 normal = use_normals ? window_normal(texel) : vec4(0.0);
     float sum = fetch_code(texel), weights = 1.0;
-    for (int k = -radius; k <= radius; ++k) {
+    int k = -radius;
+    for (;;) {
         ivec2 at = texel + ivec2(k, 0);
         float off = off_surface(z, slope, surface_z(load_view_z(at)), slope_at(at), float(k));
         float w = blur_weight(k, radius) * max(0.0, 1.0 - edge * off);
         w = k == 0 ? 0.0 : use_normals ? w * normal_weight(normal, window_normal(at), params.normal_power) : w;
         sum += w * fetch_code(at);
         weights += w;
+        if (++k > radius)
+            break;
     }
     return sum / weights;
 }
 
-void blur_window(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
+void blur(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
+{
+    for (int i = 0; i < VKAO_BLUR_X_WIDTH; ++i)
+        result[i] = blurred(texel + ivec2(i, 0));
+}
+#else
+void blur(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
 {
     float z[WINDOW], code[WINDOW], slope[WINDOW];
     vec4 normal[WINDOW];
@@ -88,6 +97,7 @@ void blur_window(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
         result[i] = sum / weights;
     }
 }
+#endif
 
 void main()
 {
@@ -97,12 +107,7 @@ void main()
     if (any(greaterThanEqual(texel, high)))
         return;
     float result[VKAO_BLUR_X_WIDTH];
-    if (RADIUS != 0) {
-        blur_window(texel, result);
-    } else {
-        for (int i = 0; i < VKAO_BLUR_X_WIDTH; ++i)
-            result[i] = blurred_slowly(texel + ivec2(i, 0));
-    }
+    blur(texel, result);
     int word = (ring_row(texel.y) * int(params.stride) + VKAO_BUFFER_PAD + texel.x) >> 1;
     [[unroll]] for (int i = 0; i < VKAO_BLUR_X_WIDTH / 2; ++i) {
         ivec2 fine = ivec2(vec2(result[2 * i], result[2 * i + 1]) * VKAO_CODE_FINE + 0.5);

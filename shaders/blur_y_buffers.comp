@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * blur.comp, vertically, from the ring to the AO image, or at half resolution to the buffer that upsampling reads:
- * VKAO_BLUR_Y_WIDTH columns of VKAO_BLUR_Y_HEIGHT rows per invocation. */
+ * VKAO_BLUR_Y_WIDTH columns of VKAO_BLUR_Y_HEIGHT rows per invocation. With VKAO_ANY_RADIUS, for the general
+ * pipeline, tap by tap. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -68,22 +69,26 @@ vec4 normal_weights(ivec2 texel, ivec2 tap)
     return w;
 }
 
-/* For any radius, tap by tap. */
-vec4 blurred_slowly(ivec2 texel)
+#ifdef VKAO_ANY_RADIUS
+vec4 blurred(ivec2 texel, vec4 z)
 {
     int radius = int(params.radius);
-    vec4 z = load_z(texel), slope = slopes_at(texel);
+    vec4 slope = slopes_at(texel);
     vec4 sum = load_codes(texel), weights = vec4(1.0);
-    for (int k = -radius; k <= radius; ++k) {
+    int k = -radius;
+    for (;;) {
         ivec2 at = texel + ivec2(0, k);
         vec4 w = tap_weights(k, radius, z, slope, load_z(at), slopes_at(at));
         w = k == 0 ? vec4(0.0) : flag(VKAO_FLAG_BLUR_NORMALS) ? w * normal_weights(texel, at) : w;
         /* Rows beyond the valid ones are not in the ring; they weigh nothing, but no number times nothing is. */
         sum += mix(vec4(0.0), w * load_codes(at), greaterThan(w, vec4(0.0)));
         weights += w;
+        if (++k > radius)
+            break;
     }
     return sum / weights;
 }
+#endif
 
 /* Four texels of a row. */
 void put(ivec2 texel, vec4 z, vec4 fine)
@@ -98,7 +103,17 @@ void put(ivec2 texel, vec4 z, vec4 fine)
            greaterThanEqual(z, vec4(BACKGROUND_Z)));
 }
 
-void blur_window(ivec2 texel)
+#ifdef VKAO_ANY_RADIUS
+void blur(ivec2 texel)
+{
+    for (int row = 0; row < VKAO_BLUR_Y_HEIGHT; ++row) {
+        ivec2 at = texel + ivec2(0, row);
+        vec4 z = load_z(at);
+        put(at, z, blurred(at, z));
+    }
+}
+#else
+void blur(ivec2 texel)
 {
     vec4 z[WINDOW], slope[WINDOW], fine[WINDOW], normal[WINDOW * VKAO_BLUR_Y_WIDTH];
     bool use_normals = flag(VKAO_FLAG_BLUR_NORMALS);
@@ -131,6 +146,7 @@ void blur_window(ivec2 texel)
         put(texel + ivec2(0, row), z[c], sum / weights);
     }
 }
+#endif
 
 void main()
 {
@@ -139,10 +155,5 @@ void main()
     texel += ivec2(round_down(low.x, VKAO_BLUR_Y_WIDTH), low.y);
     if (any(greaterThanEqual(texel, high)))
         return;
-    if (RADIUS != 0) {
-        blur_window(texel);
-    } else {
-        for (int row = 0; row < VKAO_BLUR_Y_HEIGHT; ++row)
-            put(texel + ivec2(0, row), load_z(texel + ivec2(0, row)), blurred_slowly(texel + ivec2(0, row)));
-    }
+    blur(texel);
 }

@@ -36,7 +36,7 @@ static vkao_context *layout_context(vkao_scratch_layout layout)
 enum { PRESETS = 4, SETTINGS = PRESETS + 5 };
 static const char *const names[SETTINGS] = {"fast",      "default",  "high",
                                             "best",      "gtao 3x6", "hemisphere 16",
-                                            "sphere 16", "hbao",     "vbao 2x13"};
+                                            "sphere 16", "hbao",     "vbao 2x13, no blur"};
 
 static void choose(int i, vkao_ssao_params *ssao, vkao_blur_params *blur)
 {
@@ -56,6 +56,8 @@ static void choose(int i, vkao_ssao_params *ssao, vkao_blur_params *blur)
     ssao->method = rows[i - PRESETS].method;
     ssao->slice_count = rows[i - PRESETS].slices;
     ssao->step_count = rows[i - PRESETS].steps;
+    if (ssao->method == VKAO_SSAO_VBAO)
+        blur->radius = 0;
 }
 
 /* Each setting at full and at half resolution. */
