@@ -76,7 +76,7 @@
 /* Of vbao, whose steps are long: more than the first in all slices leave a CPU's instruction cache, and are looped over
  * instead, slice by slice and at most the second at once. */
 #define VKAO_VBAO_MOST_UNROLLED 16u
-#define VKAO_VBAO_MOST_AT_ONCE 12u
+#define VKAO_VBAO_MOST_AT_ONCE 8u
 
 /* What a recording says in one word: three enums, and yes or no. */
 #define VKAO_FLAG_NORMALS_SHIFT 0       /* vkao_normal_encoding, 3 bits */
