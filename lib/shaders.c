@@ -51,7 +51,7 @@
 
 #include <string.h>
 
-/* How view z is kept. */
+/* How view z is kept, and noisy AO stored. */
 enum build {
     BUILD_Z32,
     BUILD_Z16,

@@ -138,7 +138,7 @@ real both_sides(reals sectors)
     return (first_side(sectors) + other_side(sectors)) * (1.0 / SECTORS);
 }
 
-/* One that is beyond the last hides nothing. */
+/* Steps beyond the last hide nothing. */
 void take_step(inout March march, Slice s, Masks m, reals tangent, ivec2 texel, Steps steps, uint t)
 {
     Offset offset = step_offset(s, steps, t);

@@ -5,6 +5,7 @@
 #include "text.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,18 +34,31 @@ const char *pixel_type_name(enum exr_pixel_type type)
     return names[type];
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
+/* Hoare's FIND: sorts no more than it takes to know what stands in the middle. */
 double gbuffer_median(double *values, size_t count)
 {
-    if (count == 0)
-        return 0;
-    qsort(values, count, sizeof *values, compare_doubles);
-    return values[count / 2];
+    const ptrdiff_t middle = (ptrdiff_t)(count / 2);
+    ptrdiff_t low = 0, high = (ptrdiff_t)count - 1;
+    while (low < high) {
+        const double pivot = values[middle];
+        ptrdiff_t i = low, j = high;
+        while (i <= j) {
+            while (values[i] < pivot)
+                i++;
+            while (pivot < values[j])
+                j--;
+            if (i > j)
+                break;
+            const double moved = values[i];
+            values[i++] = values[j];
+            values[j--] = moved;
+        }
+        if (j < middle)
+            low = i;
+        if (middle < i)
+            high = j;
+    }
+    return count ? values[middle] : 0.0;
 }
 
 static bool check_role(const struct exr_info *info, const struct role *role, struct tool_error *err)

@@ -26,7 +26,7 @@ static inline bool gbuffer_is_foreground(const struct gbuffer *g, size_t texel)
     return !(g->depth[texel] <= g->background_depth && g->depth[texel] >= g->background_depth);
 }
 
-/* Sorts values; 0 if there are none. */
+/* Moves values about; 0 if there are none. */
 double gbuffer_median(double *values, size_t count);
 
 /* Depth as read becomes depth as the library takes it; fills projection and statistics. */

@@ -177,7 +177,7 @@ struct opening {
     struct tool_error read_err, start_err;
 };
 
-enum opening_part { OPENING_PIXELS, OPENING_DEVICE, OPENING_PARTS };
+enum opening_part { OPENING_PIXELS, OPENING_DEVICE /* once */, OPENING_PARTS };
 
 static void open_part(void *data, uint32_t part)
 {
@@ -196,8 +196,9 @@ static void open_part(void *data, uint32_t part)
 static bool open_view(struct session *s, const struct frame_source *source, const struct view *view,
                       struct gbuffer *g, struct times *times, struct tool_error *err)
 {
-    struct opening o = {.session = s, .source = source, .view = view, .gbuffer = g};
-    parallel_run(NULL, OPENING_PARTS, open_part, &o);
+    struct opening o = {
+        .session = s, .source = source, .view = view, .gbuffer = g, .is_started = s->ao != NULL};
+    parallel_run(NULL, o.is_started ? OPENING_DEVICE : OPENING_PARTS, open_part, &o);
     times->read += o.read_ms;
     if (!o.is_read || !o.is_started)
         *err = o.is_read ? o.start_err : o.read_err;
