@@ -25,7 +25,7 @@ enum pipeline {
 };
 
 /* What a pipeline is compiled for: specialization constants VKAO_CONSTANT_FLAGS and those after it, in their order.
- * Zero counts and VKAO_FLAGS_UNKNOWN are left to the push constants. */
+ * Zero counts and VKAO_FLAGS_UNKNOWN are left to the push constants, but for the radius: see blur_window.glsl. */
 struct pipeline_key {
     uint32_t flags, slices, steps, samples, radius;
 };

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * The weights of blur.comp for many texels at once: a window of texels is loaded once, and all of its inner texels are
- * blurred from it. The includer's params are vkao_blur_block. */
+ * blurred from it. With VKAO_ANY_RADIUS, for the general pipelines, the radius is a push constant and taps are taken one
+ * by one. The includer's params are vkao_blur_block. */
 #ifndef VKAO_BLUR_WINDOW_GLSL_
 #define VKAO_BLUR_WINDOW_GLSL_
 

@@ -97,10 +97,7 @@ reals load_sides(ivec2 texel, Offset offset)
     whole x = first.x + whole(BESIDE), y = whole(first.y);
     ints at_x = ints((x - ROUND_BITS) + offset.x.bits, (x + ROUND_BITS) - offset.x.bits);
     ints at_y = ints((y - ROUND_BITS) + offset.y.bits, (y + ROUND_BITS) - offset.y.bits);
-    reals z;
-    [[unroll]] for (int i = 0; i < 2 * TEXELS; ++i)
-        z[i] = border_view_z(ivec2(at_x[i], at_y[i]));
-    return z;
+    return border_view_zs(at_x, at_y);
 }
 
 /* Their coordinates in the slice, in radii. */

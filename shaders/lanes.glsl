@@ -3,8 +3,8 @@
  * Numbers of the texels that an invocation shades side by side: one on a GPU, which has other invocations to turn to
  * while it waits, and with VKAO_SIDE_BY_SIDE two neighbours of a row on a CPU, whose lanes have long chains of
  * dependent operations and nothing else to fill the gaps with. `real` is a number per texel, `reals` one per texel for
- * each of the two sides of a slice: first those of the side along O, then those of the other; or for
- * each of a pair of points. */
+ * each of the two sides of a slice, first those of the side along O, then those of the other, or for each of a pair of
+ * points. */
 #ifndef VKAO_LANES_GLSL_
 #define VKAO_LANES_GLSL_
 

@@ -24,6 +24,15 @@ real load_view_zs(ivec2 texel)
     return join(z);
 }
 
+/* From where border_view_z counts. */
+reals border_view_zs(ints x, ints y)
+{
+    reals z;
+    [[unroll]] for (int i = 0; i < 2 * TEXELS; ++i)
+        z[i] = border_view_z(ivec2(x[i], y[i]));
+    return z;
+}
+
 /* The neighbour along one screen axis that lies on the texel's surface. */
 struct Neighbour {
     real z, side; /* side is -1 or 1: before or after */

@@ -61,7 +61,8 @@
 #define VKAO_BINDING_COUNT 29
 
 /* Specialization constants. Counts that are 0, and flags that are VKAO_FLAGS_UNKNOWN, come from the push constants:
- * that is the general pipeline of a stage. A variant has them all, so that loops unroll and branches go. */
+ * that is the general pipeline of a stage. A variant has them all, so that loops unroll and branches go. A radius of 0 is
+ * one: blurs of any radius are code of their own. */
 #define VKAO_CONSTANT_BLUR_VERTICAL 0
 #define VKAO_CONSTANT_BENT_NORMALS 1
 #define VKAO_CONSTANT_FLAGS 2
@@ -74,7 +75,7 @@
 /* Samples or steps in a row: loops longer than that take long to compile, and their overhead is small. */
 #define VKAO_MOST_UNROLLED 64u
 /* Of vbao, whose steps are long: more than the first in all slices leave a CPU's instruction cache, and are looped over
- * instead, slice by slice and at most the second at once. */
+ * instead, slice by slice and at most the second at once. GPUs, whose caches are no larger, get the same. */
 #define VKAO_VBAO_MOST_UNROLLED 16u
 #define VKAO_VBAO_MOST_AT_ONCE 8u
 

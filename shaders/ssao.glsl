@@ -20,6 +20,9 @@ layout(binding = VKAO_BINDING_NOISY_WRITE) uniform writeonly image2D noisy_image
 #include "lanes.glsl"
 #ifdef VKAO_BUFFERS
 #ifdef VKAO_STORAGE_16BIT
+#ifndef VKAO_SIDE_BY_SIDE
+#error two codes at once are those of two texels
+#endif
 layout(binding = VKAO_BINDING_PACKED_WORDS) writeonly buffer Packed { uint16_t packed_pairs[]; };
 #else
 layout(binding = TEXELS == 1 ? VKAO_BINDING_PACKED_WRITE : VKAO_BINDING_PACKED_WRITE2) uniform writeonly

@@ -46,11 +46,7 @@ reals load_nearest(ivec2 texel, RoundedSides x, RoundedSides y)
 {
     ivec2 origin = border_texel(texel - ROUND_BITS);
     whole origin_x = origin.x + whole(BESIDE);
-    ints at_x = x.bits + ints(origin_x, origin_x), at_y = y.bits + origin.y;
-    reals z;
-    [[unroll]] for (int i = 0; i < 2 * TEXELS; ++i)
-        z[i] = border_view_z(ivec2(at_x[i], at_y[i]));
-    return z;
+    return border_view_zs(x.bits + ints(origin_x, origin_x), y.bits + origin.y);
 }
 
 /* Of pair k, in radii. Straight between the ends of its stratum: that saves a root for each. */

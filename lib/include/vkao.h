@@ -194,8 +194,8 @@ typedef struct vkao_context_info {
     vkao_parallel_fn parallel;
     void *parallel_user_data;
     vkao_stage_flags stage_mask; /* stages that frames may have. 0 = all. Others cost no time here */
-    /* VK_TRUE: the device was created with VkPhysicalDevice16BitStorageFeatures.storageBuffer16BitAccess. SSAO in
-     * BUFFERS takes a twentieth less of a CPU's time then. */
+    /* VK_TRUE: the device was created with VkPhysicalDevice16BitStorageFeatures.storageBuffer16BitAccess, which cannot
+     * be checked here. SSAO in BUFFERS takes a CPU a twentieth less then. Default VK_FALSE */
     VkBool32 storage_16bit;
 } vkao_context_info;
 

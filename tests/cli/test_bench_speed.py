@@ -3,6 +3,7 @@
 """vkao-bench speed: what it measures and prints. How long things take is nobody's promise."""
 import json
 import math
+import re
 
 import numpy as np
 
@@ -288,7 +289,9 @@ def start_leaves_no_cache_behind(scratch):
                       env={'TMPDIR': scratch.directory})
     equal(run.code, OK, f'exit code of {run}')
     equal(scratch.files(), ['note'], 'files')
-    matches(r'(?m)^vbao-default +cold +\d.*\nvbao-default +warm +\d', run.stdout, 'the text')
+    columns = '  '.join(['device', 'context', 'first frame', 'second frame', 'overhead'])
+    check(columns in re.sub('  +', '  ', run.stdout), run.stdout)
+    matches(r'(?m)^vbao-default +cold( +-?\d+\.\d){5}\nvbao-default +warm( +-?\d+\.\d){5}$', run.stdout, 'the text')
 
 
 @case

@@ -395,6 +395,17 @@ def input_is_checked_before_the_device(scratch):
 
 
 @case
+def pixels_come_before_the_device(scratch):
+    gbuffer(scratch)
+    with open(scratch.path('in.exr'), 'rb') as file:
+        whole = file.read()
+    scratch.write('in.exr', whole[:len(whole) * 2 // 3])
+    env = {'VK_ICD_FILENAMES': 'none.json', 'VK_DRIVER_FILES': 'none.json'}
+    for more in ([], ['--validation']):
+        scratch.fails(INPUT, r'in\.exr', *RUN, *more, env=env)
+
+
+@case
 def unknown_device_lists_those_there_are(scratch):
     gbuffer(scratch)
     for name in ('Voodoo2', '77'):

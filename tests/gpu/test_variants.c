@@ -24,10 +24,20 @@ static vkao_context *create(const vkao_context_info *info)
     return context;
 }
 
-static vkao_context *layout_context(vkao_scratch_layout layout)
+enum way { IMAGES, BUFFERS, BUFFERS_16BIT /* if the device has it */ };
+
+static vkao_context_info way_info(enum way way)
 {
     vkao_context_info info = fixture_context_info();
-    info.scratch_layout = layout;
+    info.scratch_layout = way == IMAGES ? VKAO_SCRATCH_IMAGES : VKAO_SCRATCH_BUFFERS;
+    if (way != BUFFERS_16BIT)
+        info.storage_16bit = VK_FALSE;
+    return info;
+}
+
+static vkao_context *way_context(enum way way)
+{
+    const vkao_context_info info = way_info(way);
     return create(&info);
 }
 
@@ -61,11 +71,11 @@ static void choose(int i, vkao_ssao_params *ssao, vkao_blur_params *blur)
 }
 
 /* Each setting at full and at half resolution. */
-static void variants_equal_the_general_pipelines(vkao_scratch_layout layout)
+static void variants_equal_the_general_pipelines(enum way way)
 {
     struct picture pictures[SETTINGS * 2];
     vkao_variant variants[SETTINGS * 2];
-    vkao_context_info info = fixture_context_info();
+    vkao_context_info info = way_info(way);
     const struct scene scene = scene_corner();
     for (int i = 0; i < SETTINGS * 2; ++i) {
         struct picture *p = &pictures[i];
@@ -80,8 +90,7 @@ static void variants_equal_the_general_pipelines(vkao_scratch_layout layout)
             .blur = &p->blur,
         };
     }
-    vkao_context *general = layout_context(layout);
-    info.scratch_layout = layout;
+    vkao_context *general = way_context(way);
     info.variants = variants;
     info.variant_count = SETTINGS * 2;
     info.variants_only = VK_TRUE;
@@ -110,13 +119,14 @@ static void variants_equal_the_general_pipelines(vkao_scratch_layout layout)
 static void variants_equal_the_general_pipelines_in_buffers(void **state)
 {
     (void)state;
-    variants_equal_the_general_pipelines(VKAO_SCRATCH_BUFFERS);
+    variants_equal_the_general_pipelines(BUFFERS);
+    variants_equal_the_general_pipelines(BUFFERS_16BIT);
 }
 
 static void variants_equal_the_general_pipelines_in_images(void **state)
 {
     (void)state;
-    variants_equal_the_general_pipelines(VKAO_SCRATCH_IMAGES);
+    variants_equal_the_general_pipelines(IMAGES);
 }
 
 /* --- Buffers, for images that the blur goes down in strips --- */
@@ -168,8 +178,8 @@ static void make_tall(struct picture *p, const struct tall *t)
 static void buffers_agree_with_images(void **state)
 {
     (void)state;
-    vkao_context *images = layout_context(VKAO_SCRATCH_IMAGES);
-    vkao_context *buffers = layout_context(VKAO_SCRATCH_BUFFERS);
+    vkao_context *images = way_context(IMAGES);
+    vkao_context *buffers = way_context(BUFFERS);
     for (int i = 0; i < TALLS; ++i) {
         struct picture a, b;
         make_tall(&a, &talls[i]);
@@ -193,13 +203,9 @@ static void storage_of_16_bits_changes_nothing(void **state)
 {
     (void)state;
     const struct scene scene = scene_corner();
-    vkao_context_info info = fixture_context_info();
-    if (!info.storage_16bit)
+    if (!fixture.gpu.storage_16bit)
         skip();
-    info.scratch_layout = VKAO_SCRATCH_BUFFERS;
-    vkao_context *with = create(&info);
-    info.storage_16bit = VK_FALSE;
-    vkao_context *without = create(&info);
+    vkao_context *with = way_context(BUFFERS_16BIT), *without = way_context(BUFFERS);
     for (int method = 0; method <= VKAO_SSAO_RAYMARCH; ++method) {
         struct picture p;
         picture_make(&p, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, &scene);
@@ -218,13 +224,13 @@ static void storage_of_16_bits_changes_nothing(void **state)
     vkao_context_destroy(with);
 }
 
-static void rects_equal_the_whole_in(vkao_scratch_layout layout)
+static void rects_equal_the_whole_in(enum way way)
 {
     static const VkRect2D rects[] = {
         {{20, 231}, {51, 300}}, {{33, 255}, {9, 34}}, {{17, 51}, {16, 16}},
         {{0, 288}, {96, 256}},  {{95, 599}, {1, 1}},  {{10, 201}, {70, 700}},
     };
-    vkao_context *context = layout_context(layout);
+    vkao_context *context = way_context(way);
     for (int i = 0; i < TALLS; ++i) {
         struct picture whole;
         make_tall(&whole, &talls[i]);
@@ -248,13 +254,14 @@ static void rects_equal_the_whole_in(vkao_scratch_layout layout)
 static void rects_equal_the_whole_in_buffers(void **state)
 {
     (void)state;
-    rects_equal_the_whole_in(VKAO_SCRATCH_BUFFERS);
+    rects_equal_the_whole_in(BUFFERS);
+    rects_equal_the_whole_in(BUFFERS_16BIT);
 }
 
 static void rects_equal_the_whole_in_images(void **state)
 {
     (void)state;
-    rects_equal_the_whole_in(VKAO_SCRATCH_IMAGES);
+    rects_equal_the_whole_in(IMAGES);
 }
 
 int main(void)

@@ -45,7 +45,7 @@ static const struct {
     ROW(HBAO, ssao.slice_count, U(3), U(4), COUNTS),
     ROW(VBAO, ssao.step_count, U(6), U(7), COUNTS),
     ROW(VBAO, ssao.step_count, U(0), U(8), FREE), /* the same */
-    ROW(VBAO, ssao.step_count, U(22), U(23), COUNTS), /* of 3 slices, which are not unrolled then */
+    ROW(VBAO, ssao.step_count, U(22), U(23), COUNTS), /* of 3 slices: looped over, but constants */
     ROW(VBAO, ssao.step_count, U(65), U(200), FREE),
     ROW(GTAO, ssao.step_count, U(22), U(200), FREE),
     ROW(SPHERE, ssao.slice_count, U(3), U(4), FREE),

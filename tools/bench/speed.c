@@ -59,8 +59,8 @@ static const struct argument rows[] = {
      "prints, or the list that --json writes",
      ARGUMENT_TEXT, AT(vs), 0, 0, NULL},
     {"start", NULL,
-     "instead: vkao_context_create and the first two frames of a process, with an empty (cold) and "
-     "a filled (warm) shader cache on disk",
+     "instead: device, vkao_context_create and the first two frames of a process, with an empty "
+     "(cold) and a filled (warm) shader cache on disk",
      ARGUMENT_FLAG, AT(start), 0, 0, NULL},
     {"scaling", NULL,
      "instead: growth with pixels, samples and radius. Default setting: vbao-default",

@@ -34,12 +34,25 @@ const char *pixel_type_name(enum exr_pixel_type type)
     return names[type];
 }
 
-/* Hoare's FIND: sorts no more than it takes to know what stands in the middle. */
+enum { MEDIAN_MOST_ROUNDS = 64 };
+
+static int compare_doubles(const void *a, const void *b)
+{
+    double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* Hoare's FIND: sorts no more than it takes to know what stands in the middle. Values laid out to make that slow are
+ * sorted: rounds halve what is left, but for these. */
 double gbuffer_median(double *values, size_t count)
 {
     const ptrdiff_t middle = (ptrdiff_t)(count / 2);
     ptrdiff_t low = 0, high = (ptrdiff_t)count - 1;
-    while (low < high) {
+    for (int rounds = 0; low < high; rounds++) {
+        if (rounds == MEDIAN_MOST_ROUNDS) {
+            qsort(values + low, (size_t)(high - low) + 1, sizeof *values, compare_doubles);
+            break;
+        }
         const double pivot = values[middle];
         ptrdiff_t i = low, j = high;
         while (i <= j) {

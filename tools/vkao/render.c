@@ -22,7 +22,7 @@ struct session {
     const struct options *options;
     struct report *report;
     struct gpu gpu;
-    struct ao_session *ao; /* NULL until the first frame is there to be computed */
+    struct ao_session *ao; /* NULL until the driver has started, beside the first view */
     float auto_radius;     /* 0 = not known yet */
     bool summarised;
 };
@@ -177,7 +177,7 @@ struct opening {
     struct tool_error read_err, start_err;
 };
 
-enum opening_part { OPENING_PIXELS, OPENING_DEVICE /* once */, OPENING_PARTS };
+enum opening_part { OPENING_PIXELS, OPENING_DEVICE, OPENING_PARTS };
 
 static void open_part(void *data, uint32_t part)
 {
@@ -198,7 +198,14 @@ static bool open_view(struct session *s, const struct frame_source *source, cons
 {
     struct opening o = {
         .session = s, .source = source, .view = view, .gbuffer = g, .is_started = s->ao != NULL};
-    parallel_run(NULL, o.is_started ? OPENING_DEVICE : OPENING_PARTS, open_part, &o);
+    const uint32_t parts = o.is_started ? 1 : OPENING_PARTS; /* the device, the last, but once */
+    if (s->options->validation) {
+        /* Its layers are set up through the environment, which threads must not see change. */
+        for (uint32_t part = 0; part < parts; part++)
+            open_part(&o, part);
+    } else {
+        parallel_run(NULL, parts, open_part, &o);
+    }
     times->read += o.read_ms;
     if (!o.is_read || !o.is_started)
         *err = o.is_read ? o.start_err : o.read_err;
