@@ -99,7 +99,7 @@ static void killers_are_sorted(void **state)
     static struct adversary a;
     double sorted[MOST];
     const int rounds = find_against(&a);
-    assert_true(rounds > 64); /* where gbuffer_median gives up */
+    assert_true(rounds > MEDIAN_MOST_ROUNDS);
     memcpy(sorted, a.values, sizeof sorted);
     qsort(sorted, MOST, sizeof *sorted, compare);
     assert_memory_equal(&(double){gbuffer_median(a.values, MOST)}, &sorted[MOST / 2],

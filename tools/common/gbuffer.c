@@ -34,16 +34,14 @@ const char *pixel_type_name(enum exr_pixel_type type)
     return names[type];
 }
 
-enum { MEDIAN_MOST_ROUNDS = 64 };
-
 static int compare_doubles(const void *a, const void *b)
 {
     double x = *(const double *)a, y = *(const double *)b;
     return x < y ? -1 : x > y;
 }
 
-/* Hoare's FIND: sorts no more than it takes to know what stands in the middle. Values laid out to make that slow are
- * sorted: rounds halve what is left, but for these. */
+/* Hoare's FIND: sorts no more than it takes to know what stands in the middle. What is left after MEDIAN_MOST_ROUNDS
+ * is sorted. */
 double gbuffer_median(double *values, size_t count)
 {
     const ptrdiff_t middle = (ptrdiff_t)(count / 2);

@@ -26,6 +26,9 @@ static inline bool gbuffer_is_foreground(const struct gbuffer *g, size_t texel)
     return !(g->depth[texel] <= g->background_depth && g->depth[texel] >= g->background_depth);
 }
 
+/* Rounds halve what is left, more or less, unless values are laid out to make them slow. */
+enum { MEDIAN_MOST_ROUNDS = 64 };
+
 /* Moves values about; 0 if there are none. */
 double gbuffer_median(double *values, size_t count);
 
