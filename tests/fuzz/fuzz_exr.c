@@ -21,7 +21,7 @@ static void read_pixels(const struct exr_info *info, size_t part)
     struct tool_error err = {0};
     const struct exr_read read = {p->channels[0].name, values, 1};
     if (values)
-        (void)exr_read_channels(info->path, part, &read, 1, &err);
+        (void)exr_read_channels(info, part, &read, 1, &err);
     free(values);
 }
 

@@ -81,12 +81,31 @@ struct exr_new_part make_part(const char *name, const char *compression)
     };
 }
 
+bool write_copy(const char *path, const char *copy_from, const struct exr_new_part *parts,
+                size_t count, struct tool_error *err)
+{
+    struct exr_info info = {0};
+    bool ok = (!copy_from || exr_info_read(copy_from, &info, err)) &&
+              exr_write_file(path, copy_from ? &info : NULL, parts, count, true, err);
+    exr_info_free(&info);
+    return ok;
+}
+
 void write_ok(const char *path, const char *copy_from, const struct exr_new_part *parts,
               size_t count)
 {
     struct tool_error err = {0};
-    if (!exr_write_file(path, copy_from, parts, count, true, &err))
+    if (!write_copy(path, copy_from, parts, count, &err))
         fail_msg("%s", err.message);
+}
+
+bool read_part(const char *path, size_t part, const struct exr_read *reads, size_t count,
+               struct tool_error *err)
+{
+    struct exr_info info;
+    bool ok = exr_info_read(path, &info, err) && exr_read_channels(&info, part, reads, count, err);
+    exr_info_free(&info);
+    return ok;
 }
 
 static void fill_pixels(void)

@@ -31,6 +31,12 @@ void store_file(const char *path, const void *data, size_t size);
 /* Two channels that compress badly and well, at an offset inside the display window. */
 extern struct exr_write default_channels[2];
 struct exr_new_part make_part(const char *name, const char *compression);
+/* exr_write_file and exr_read_channels for files that are not open yet; copy_from may be NULL. What
+ * is there is replaced. */
+bool write_copy(const char *path, const char *copy_from, const struct exr_new_part *parts,
+                size_t count, struct tool_error *err);
+bool read_part(const char *path, size_t part, const struct exr_read *reads, size_t count,
+               struct tool_error *err);
 /* Replaces what is there; fails the test if it cannot. */
 void write_ok(const char *path, const char *copy_from, const struct exr_new_part *parts,
               size_t count);

@@ -18,6 +18,8 @@
 
 #include <cmocka.h>
 
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static void info_ok(const char *path, struct exr_info *info)
@@ -49,7 +51,7 @@ static bool reads_whole(const char *path, struct tool_error *err)
         assert_non_null(values);
         for (size_t c = 0; ok && c < part->channel_count; c++) {
             struct exr_read read = {part->channels[c].name, values, 1};
-            ok = exr_read_channels(path, p, &read, 1, err);
+            ok = exr_read_channels(&info, p, &read, 1, err);
         }
         free(values);
     }
@@ -120,7 +122,7 @@ static void written_floats_come_back_exactly(void **state)
         struct tool_error err = {0};
         write_ok(in_directory("a.exr"), NULL, &part, 1);
         memset(values, 0, sizeof values);
-        assert_true(exr_read_channels(in_directory("a.exr"), 0, &read, 1, &err));
+        assert_true(read_part(in_directory("a.exr"), 0, &read, 1, &err));
         for (size_t k = 0; k < PIXELS; k++) {
             assert_memory_equal(&values[2 * k + 1], &noise[k], sizeof noise[k]);
             assert_true(values[2 * k] == 0.0f); /* the stride leaves its gaps alone */
@@ -150,7 +152,7 @@ static void halves_are_rounded_to_nearest_and_stay_finite(void **state)
     part.channels = &channel;
     part.channel_count = 1;
     write_ok(in_directory("h.exr"), NULL, &part, 1);
-    assert_true(exr_read_channels(in_directory("h.exr"), 0, &read, 1, &err));
+    assert_true(read_part(in_directory("h.exr"), 0, &read, 1, &err));
     assert_memory_equal(back, expected, sizeof back);
 }
 
@@ -162,7 +164,7 @@ static void a_channel_asked_for_twice_is_filled_twice(void **state)
     struct exr_read reads[] = {{"Z", one, 1}, {"Z", two, 1}};
     struct tool_error err = {0};
     write_ok(in_directory("a.exr"), NULL, &part, 1);
-    assert_true(exr_read_channels(in_directory("a.exr"), 0, reads, 2, &err));
+    assert_true(read_part(in_directory("a.exr"), 0, reads, 2, &err));
     assert_memory_equal(one, noise, sizeof one);
     assert_memory_equal(two, noise, sizeof two);
 }
@@ -228,12 +230,13 @@ static void new_parts_take_attributes_but_no_structure_from_another(void **state
     (void)state;
     struct exr_string strings[] = {{"owner", "studio"}, {"cryptomatte/1/name", "object"}};
     struct exr_new_part part = make_part("g", "piz"), ao = make_part("ao", "zip");
-    struct exr_info info;
+    struct exr_info info, from;
     part.view = "left";
     part.strings = strings;
     part.string_count = 2;
-    ao.attributes_from = in_directory("in.exr");
+    ao.attributes_from = &from;
     write_ok(in_directory("in.exr"), NULL, &part, 1);
+    info_ok(in_directory("in.exr"), &from);
     write_ok(in_directory("out.exr"), NULL, &ao, 1);
     info_ok(in_directory("out.exr"), &info);
     assert_non_null(find_attribute(&info.parts[0], "owner"));
@@ -242,6 +245,7 @@ static void new_parts_take_attributes_but_no_structure_from_another(void **state
     assert_string_equal(info.parts[0].view, "");
     assert_string_equal(info.parts[0].compression, "zip");
     exr_info_free(&info);
+    exr_info_free(&from);
 }
 
 static void two_parts_of_one_name_are_an_error(void **state)
@@ -251,7 +255,7 @@ static void two_parts_of_one_name_are_an_error(void **state)
     struct tool_error err = {0};
     write_ok(in_directory("in.exr"), NULL, &part, 1);
     assert_false(
-        exr_write_file(in_directory("out.exr"), in_directory("in.exr"), &part, 1, true, &err));
+        write_copy(in_directory("out.exr"), in_directory("in.exr"), &part, 1, &err));
     assert_int_equal(err.code, EXIT_OUTPUT);
     assert_non_null(strstr(err.message, "'ao'"));
     assert_int_equal(files_in_directory(), 1);
@@ -288,7 +292,7 @@ static void truncated_file_is_not_appended_to(void **state)
     store_file(in_directory("cut.exr"), file.data, file.size * 6 / 10);
     free(file.data);
     assert_false(
-        exr_write_file(in_directory("out.exr"), in_directory("cut.exr"), &ao, 1, true, &err));
+        write_copy(in_directory("out.exr"), in_directory("cut.exr"), &ao, 1, &err));
     assert_int_equal(err.code, EXIT_INPUT);
     assert_non_null(strstr(err.message, "cut.exr"));
     assert_int_equal(files_in_directory(), 2);
@@ -371,6 +375,176 @@ static void other_formats_and_empty_files_are_named(void **state)
     expect_refused(in_directory("."), EXIT_INPUT, "Is a directory");
 }
 
+/* Puts an attribute in front of all others of a single-part file; the chunk table follows the shift. */
+static struct bytes with_attribute(const struct bytes *file, const char *type, const void *value,
+                                   size_t size, size_t claimed)
+{
+    const size_t name = 2, head = name + strlen(type) + 1 + 4, shift = head + size;
+    struct bytes out = {malloc(file->size + shift), file->size + shift};
+    assert_non_null(out.data);
+    memcpy(out.data, file->data, 8);
+    memcpy(out.data + 8, "x", name);
+    memcpy(out.data + 8 + name, type, strlen(type) + 1);
+    for (size_t i = 0; i < 4; i++)
+        out.data[8 + head - 4 + i] = (unsigned char)(claimed >> 8 * i);
+    memcpy(out.data + 8 + head, value, size);
+    memcpy(out.data + 8 + shift, file->data + 8, file->size - 8);
+    const size_t table = skip_headers(file);
+    const size_t chunks = ((size_t)little_endian(file->data + table, 8) - table) / 8;
+    for (size_t i = 0; i < chunks; i++) {
+        const uint64_t offset = little_endian(file->data + table + 8 * i, 8) + shift;
+        for (size_t k = 0; k < 8; k++)
+            out.data[table + shift + 8 * i + k] = (unsigned char)(offset >> 8 * k);
+    }
+    return out;
+}
+
+static void attributes_of_another_size_than_their_types_are_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *type;
+        size_t bytes;
+    } types[] = {
+        {"box2i", 16},  {"box2f", 16},     {"chromaticities", 32}, {"compression", 1},
+        {"double", 8},  {"envmap", 1},     {"float", 4},           {"int", 4},
+        {"keycode", 28}, {"lineOrder", 1}, {"m33f", 36},           {"m33d", 72},
+        {"m44f", 64},   {"m44d", 128},     {"rational", 8},        {"timecode", 8},
+        {"v2i", 8},     {"v2f", 8},        {"v2d", 16},            {"v3i", 12},
+        {"v3f", 12},    {"v3d", 24},       {"tiledesc", 9},        {"floatvector", 8},
+        {"stringvector", 6}, {"preview", 12},
+    };
+    /* A string of two bytes, and a picture of one pixel: valid where lengths are read. */
+    static const unsigned char zeros[160], string[6] = {2, 0, 0, 0, 'a', 'b'},
+                                           picture[12] = {1, 0, 0, 0, 1},
+                                           film[28] = {[20] = 4, [24] = 64};
+    struct exr_new_part part = make_part("g", "none");
+    write_ok(in_directory("in.exr"), NULL, &part, 1);
+    struct bytes file = load_file(in_directory("in.exr"));
+    for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
+        const bool strings = strcmp(types[i].type, "stringvector") == 0;
+        const bool preview = strcmp(types[i].type, "preview") == 0;
+        const bool key = strcmp(types[i].type, "keycode") == 0;
+        for (int difference = -1; difference <= 1; difference++) {
+            /* tiledesc, chromaticities and so on hold values of which zero is one. */
+            const size_t size = types[i].bytes + (size_t)difference;
+            unsigned char value[161] = {0};
+            memcpy(value, strings ? string : preview ? picture : key ? film : zeros, types[i].bytes);
+            struct bytes made = with_attribute(&file, types[i].type, value, size, size);
+            struct tool_error err = {0};
+            store_file(in_directory("x.exr"), made.data, made.size);
+            free(made.data);
+            const bool read = reads_whole(in_directory("x.exr"), &err);
+            if (read != (difference == 0))
+                fail_msg("%s of %zu bytes: %s", types[i].type, size, read ? "accepted" : err.message);
+            if (!read) {
+                assert_int_equal(err.code, EXIT_INPUT);
+                assert_non_null(strstr(err.message, "is not a valid"));
+            }
+        }
+    }
+    free(file.data);
+}
+
+/* What two parsers of the headers would disagree on: the window of the second becomes larger. */
+static void a_header_hidden_in_an_attribute_does_not_move_the_window(void **state)
+{
+    (void)state;
+    struct exr_new_part part = make_part("g", "none");
+    unsigned char value[8 + 64] = {0};
+    /* Behind the 8 bytes that are claimed come 4 that a v3f takes, and then a header of its own. */
+    memcpy(value + 12, "dataWindow\0box2i\0\x10\0\0\0\0\0\0\0\0\0\0\0\xff\xff\0\0\xff\xff\0\0", 37);
+    write_ok(in_directory("in.exr"), NULL, &part, 1);
+    struct bytes file = load_file(in_directory("in.exr"));
+    struct bytes made = with_attribute(&file, "v3f", value, sizeof value, 8);
+    store_file(in_directory("x.exr"), made.data, made.size);
+    expect_refused(in_directory("x.exr"), EXIT_INPUT, "attribute 'x' of 8 bytes is not a valid v3f");
+    free(made.data);
+    free(file.data);
+}
+
+static void an_open_file_is_read_as_it_was_when_another_takes_its_place(void **state)
+{
+    (void)state;
+    static float values[PIXELS];
+    struct exr_new_part part = make_part("g", "zip"), larger = make_part("g", "zip");
+    static float many[4 * PIXELS];
+    const struct exr_write channels[] = {{"Y", EXR_HALF, many, 1}, {"Z", EXR_FLOAT, many, 1}};
+    larger.data_window = (struct exr_box){0, 0, 2 * WIDTH - 1, 2 * HEIGHT - 1};
+    larger.channels = channels;
+    struct exr_info info;
+    struct tool_error err = {0};
+    const struct exr_read read = {"Z", values, 1};
+    write_ok(in_directory("in.exr"), NULL, &part, 1);
+    info_ok(in_directory("in.exr"), &info);
+    write_ok(in_directory("in.exr"), NULL, &larger, 1);
+    assert_true(exr_read_channels(&info, 0, &read, 1, &err));
+    assert_memory_equal(values, noise, sizeof noise);
+    /* And the copy is of what was opened. */
+    struct exr_new_part ao = make_part("ao", "zip");
+    assert_true(exr_write_file(in_directory("out.exr"), &info, &ao, 1, true, &err));
+    exr_info_free(&info);
+    assert_true(read_part(in_directory("out.exr"), 0, &read, 1, &err));
+    assert_memory_equal(values, noise, sizeof noise);
+}
+
+static void a_file_written_to_while_open_is_an_error(void **state)
+{
+    (void)state;
+    static float values[PIXELS];
+    struct exr_new_part part = make_part("g", "none"), ao = make_part("ao", "zip");
+    const struct exr_read read = {"Z", values, 1};
+    write_ok(in_directory("in.exr"), NULL, &part, 1);
+    struct bytes file = load_file(in_directory("in.exr"));
+    const struct {
+        size_t size, from; /* bytes kept, and where other ones are written */
+    } changes[] = {{file.size / 2, SIZE_MAX}, {file.size, 40}, {file.size, file.size - 100},
+                   {0, SIZE_MAX}};
+    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+        struct exr_info info;
+        struct tool_error read_err = {0}, write_err = {0};
+        store_file(in_directory("in.exr"), file.data, file.size);
+        info_ok(in_directory("in.exr"), &info);
+        FILE *f = fopen(in_directory("in.exr"), "r+b");
+        assert_non_null(f);
+        assert_int_equal(ftruncate(fileno(f), (off_t)changes[i].size), 0);
+        if (changes[i].from < file.size) {
+            fseek(f, (long)changes[i].from, SEEK_SET);
+            fwrite("xxxxxxxxxxxxxxxx", 1, 16, f);
+        }
+        fclose(f);
+        /* Clocks of file systems tick slower than this test runs. */
+        const struct timespec later[2] = {{.tv_nsec = UTIME_OMIT}, {.tv_sec = 2000000000 + (time_t)i}};
+        assert_int_equal(utimensat(AT_FDCWD, in_directory("in.exr"), later, 0), 0);
+        assert_false(exr_read_channels(&info, 0, &read, 1, &read_err));
+        assert_int_equal(read_err.code, EXIT_INPUT);
+        assert_non_null(strstr(read_err.message, "written to it"));
+        assert_false(exr_write_file(in_directory("out.exr"), &info, &ao, 1, true, &write_err));
+        assert_int_equal(write_err.code, EXIT_INPUT);
+        assert_int_equal(files_in_directory(), 1);
+        exr_info_free(&info);
+    }
+    free(file.data);
+}
+
+static void chunks_in_the_wrong_place_are_not_appended_to(void **state)
+{
+    (void)state;
+    struct exr_new_part part = make_part("g", "none"), ao = make_part("ao", "zip");
+    write_ok(in_directory("in.exr"), NULL, &part, 1);
+    struct bytes file = load_file(in_directory("in.exr"));
+    unsigned char *table = file.data + skip_headers(&file);
+    struct tool_error err = {0};
+    /* Twice the same one: each is whole and inside the file. */
+    memcpy(table + 8 * 7, table + 8 * 3, 8);
+    store_file(in_directory("in.exr"), file.data, file.size);
+    free(file.data);
+    assert_false(write_copy(in_directory("out.exr"), in_directory("in.exr"), &ao, 1, &err));
+    assert_int_equal(err.code, EXIT_INPUT);
+    assert_non_null(strstr(err.message, "chunk 7 of part 0"));
+    assert_int_equal(files_in_directory(), 1);
+}
+
 static void missing_channel_is_a_channel_error(void **state)
 {
     (void)state;
@@ -379,7 +553,7 @@ static void missing_channel_is_a_channel_error(void **state)
     struct exr_read read = {"depth.Z", value, 1};
     struct tool_error err = {0};
     write_ok(in_directory("a.exr"), NULL, &part, 1);
-    assert_false(exr_read_channels(in_directory("a.exr"), 0, &read, 1, &err));
+    assert_false(read_part(in_directory("a.exr"), 0, &read, 1, &err));
     assert_int_equal(err.code, EXIT_CHANNELS);
     assert_non_null(strstr(err.message, "'depth.Z'"));
 }
@@ -402,6 +576,11 @@ int main(void)
         TEST(unfinished_file_is_an_error),
         TEST(damaged_headers_are_named_errors),
         TEST(other_formats_and_empty_files_are_named),
+        TEST(attributes_of_another_size_than_their_types_are_refused),
+        TEST(a_header_hidden_in_an_attribute_does_not_move_the_window),
+        TEST(an_open_file_is_read_as_it_was_when_another_takes_its_place),
+        TEST(a_file_written_to_while_open_is_an_error),
+        TEST(chunks_in_the_wrong_place_are_not_appended_to),
         TEST(missing_channel_is_a_channel_error),
     };
     return cmocka_run_group_tests(tests, make_directory, remove_directory);

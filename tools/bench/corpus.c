@@ -182,7 +182,7 @@ static bool read_truth(const struct exr_info *info, vkao_falloff falloff, struct
     if (!scene->truth[falloff])
         return fail(err, EXIT_MEMORY, "%s: out of memory", info->path);
     const struct exr_read read = {channel, scene->truth[falloff], 1};
-    return exr_read_channels(info->path, (size_t)(part - info->parts), &read, 1, err);
+    return exr_read_channels(info, (size_t)(part - info->parts), &read, 1, err);
 }
 
 /* As a number or as text: renderers and scripts write either. */

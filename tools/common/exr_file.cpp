@@ -117,9 +117,9 @@ void fill_attribute(const char *name, const Imf::Attribute &attribute, exr_attri
     }
 }
 
-exr_box to_box(const Imath::Box2i &b)
+exr_box to_box(const window &w)
 {
-    return {b.min.x, b.min.y, b.max.x, b.max.y};
+    return {int32_t(w.x_min), int32_t(w.y_min), int32_t(w.x_max), int32_t(w.y_max)};
 }
 
 void fill_channels(const Imf::ChannelList &channels, exr_part &part)
@@ -163,8 +163,8 @@ void fill_part(const Imf::Header &header, const part_layout &layout, exr_part &p
     part.type = copy_string(layout.type);
     part.compression = compression_names[layout.compression];
     part.line_order = line_order_names[header.lineOrder()];
-    part.data_window = to_box(header.dataWindow());
-    part.display_window = to_box(header.displayWindow());
+    part.data_window = to_box(layout.data);
+    part.display_window = to_box(layout.display);
     part.pixel_aspect = header.pixelAspectRatio();
     part.deep = layout.deep;
     fill_channels(header.channels(), part);
@@ -173,12 +173,14 @@ void fill_part(const Imf::Header &header, const part_layout &layout, exr_part &p
 
 void read_info(const char *path, exr_info *info)
 {
-    const input_file in(path);
+    info->input = new exr_input(path);
+    const auto file = info->input->open();
+    const std::vector<part_layout> &parts = info->input->layout.parts;
     info->path = copy_string(path);
-    info->parts = allocate<exr_part>(in.layout.parts.size());
-    for (const part_layout &layout : in.layout.parts) {
+    info->parts = allocate<exr_part>(parts.size());
+    for (const part_layout &layout : parts) {
         const int i = int(info->part_count++);
-        fill_part(in.file.header(i), layout, info->parts[i]);
+        fill_part(file->header(i), layout, info->parts[i]);
     }
 }
 
@@ -194,9 +196,10 @@ void check_channel(const char *path, size_t part, const Imf::Header &header, con
               channel->xSampling, channel->ySampling);
 }
 
-void read_channels(const char *path, size_t index, const exr_read *reads, size_t count)
+void read_channels(const exr_info *info, size_t index, const exr_read *reads, size_t count)
 {
-    input_file in(path);
+    const char *path = info->path;
+    exr_input &in = *info->input;
     if (index >= in.layout.parts.size())
         raise(EXIT_CHANNELS, nullptr, "%s: no part %zu; the file has %zu", path, index,
               in.layout.parts.size());
@@ -207,10 +210,10 @@ void read_channels(const char *path, size_t index, const exr_read *reads, size_t
         raise(EXIT_INPUT, hint.c_str(), "%s: deep data (part %zu '%s') is not supported", path,
               index, layout.type.c_str());
     }
-    Imf::InputPart part(in.file, int(index));
+    const auto file = in.open();
+    Imf::InputPart part(*file, int(index));
     const Imath::Box2i window = part.header().dataWindow();
-    const size_t width = size_t(layout.x_max - layout.x_min + 1);
-    const size_t height = size_t(layout.y_max - layout.y_min + 1);
+    const size_t width = size_t(layout.data.width()), height = size_t(layout.data.height());
     Imf::FrameBuffer frame;
     for (size_t i = 0; i < count; i++) {
         check_channel(path, index, part.header(), reads[i].channel);
@@ -223,6 +226,7 @@ void read_channels(const char *path, size_t index, const exr_read *reads, size_t
         return;
     part.setFrameBuffer(frame);
     part.readPixels(window.min.y, window.max.y);
+    in.stream.check_unchanged();
 
     /* A frame buffer holds each channel once; whoever asked again gets a copy. */
     std::map<std::string, const exr_read *> first;
@@ -278,15 +282,15 @@ void exr_info_free(struct exr_info *info)
     }
     free(info->parts);
     free(info->path);
+    delete info->input;
     *info = {};
 }
 
-bool exr_read_channels(const char *path, size_t part, const struct exr_read *reads, size_t count,
-                       struct tool_error *err)
+bool exr_read_channels(const struct exr_info *info, size_t part, const struct exr_read *reads,
+                       size_t count, struct tool_error *err)
 {
-    set_limits();
-    return at_border(err, EXIT_INPUT, path, "damaged",
-                     [&] { read_channels(path, part, reads, count); });
+    return at_border(err, EXIT_INPUT, info->path, "damaged",
+                     [&] { read_channels(info, part, reads, count); });
 }
 
 const char *exr_library_version(void)

@@ -56,14 +56,18 @@ struct exr_part {
     bool deep;
 };
 
+/* A file, open. Whoever reads or copies it later sees what was there when it was opened, even if the
+ * path names another file by then; that somebody wrote to this one is an error 3 of the next call.
+ * One thread at a time. */
 struct exr_info {
     char *path;
     struct exr_part *parts;
     size_t part_count;
+    struct exr_input *input; /* of the exr_*.cpp files */
 };
 
-/* Reads headers only. Error codes: EXIT_INPUT (missing, not EXR, damaged, unknown compression),
- * EXIT_MEMORY. */
+/* Opens a file and reads its headers; it stays open until exr_info_free. Error codes: EXIT_INPUT
+ * (missing, not EXR, damaged, unknown compression), EXIT_MEMORY. */
 bool exr_info_read(const char *path, struct exr_info *info, struct tool_error *err);
 void exr_info_free(struct exr_info *info);
 
@@ -77,8 +81,8 @@ struct exr_read {
 
 /* Reads channels of one part over its data window (level 0 of mip-mapped files). A file that ends
  * early or whose chunks do not decode is an error; nothing is made up for missing pixels. */
-bool exr_read_channels(const char *path, size_t part, const struct exr_read *reads, size_t count,
-                       struct tool_error *err);
+bool exr_read_channels(const struct exr_info *info, size_t part, const struct exr_read *reads,
+                       size_t count, struct tool_error *err);
 
 /* A channel to write, from values[(row * width + column) * stride]. */
 struct exr_write {
@@ -107,9 +111,9 @@ struct exr_new_part {
     size_t channel_count;
     const struct exr_string *strings; /* string attributes to add */
     size_t string_count;
-    /* File and part whose other attributes (time code, chromaticities, owner, camera, anything
+    /* Open file and part whose other attributes (time code, chromaticities, owner, camera, anything
      * unknown) are copied verbatim, or NULL. */
-    const char *attributes_from;
+    const struct exr_info *attributes_from;
     size_t attributes_from_part;
     const struct exr_matrix *matrices; /* m44f attributes to add */
     size_t matrix_count;
@@ -119,10 +123,12 @@ struct exr_new_part {
 
 /* Writes a new file. With copy_from every part of that file is copied first, its pixels as raw
  * chunks and its attributes as they are, and the new parts follow. The file is written beside path,
+ * read back (copies byte for byte, new pixels decoded and, if the compression keeps them, compared),
  * synced and renamed; on error nothing is left. If replace is false an existing path is
  * EXIT_OUTPUT, also when it appears meanwhile. */
-bool exr_write_file(const char *path, const char *copy_from, const struct exr_new_part *parts,
-                    size_t count, bool replace, struct tool_error *err);
+bool exr_write_file(const char *path, const struct exr_info *copy_from,
+                    const struct exr_new_part *parts, size_t count, bool replace,
+                    struct tool_error *err);
 
 /* "OpenEXR 3.1.5" */
 const char *exr_library_version(void);

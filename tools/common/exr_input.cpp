@@ -4,10 +4,13 @@
 #include "exr_internal.h"
 
 #include <Iex.h>
+#include <ImfChannelList.h>
 #include <ImfThreading.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdarg>
+#include <cstdlib>
 #include <cstring>
 
 #include <fcntl.h>
@@ -70,13 +73,14 @@ std::string library_message(const std::exception &error)
     return printable(text);
 }
 
-input_stream::input_stream(const char *path) : Imf::IStream(path)
+input_stream::input_stream(const char *path, const char *shown)
+    : Imf::IStream(shown ? shown : path)
 {
     struct stat status = {};
     /* O_NONBLOCK: a pipe without a writer must not hang us before we can refuse it. */
-    const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+    const int fd = ::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0)
-        raise(EXIT_INPUT, nullptr, "%s: cannot open: %s", path, strerror(errno));
+        raise(EXIT_INPUT, nullptr, "%s: cannot open: %s", fileName(), strerror(errno));
     const int error = fstat(fd, &status) != 0          ? errno
                       : S_ISDIR(status.st_mode)        ? EISDIR
                       : !(file_ = fdopen(fd, "rb"))    ? errno
@@ -84,13 +88,14 @@ input_stream::input_stream(const char *path) : Imf::IStream(path)
     if (!file_)
         close(fd);
     if (error)
-        raise(EXIT_INPUT, nullptr, "%s: cannot open: %s", path, strerror(error));
+        raise(EXIT_INPUT, nullptr, "%s: cannot open: %s", fileName(), strerror(error));
     if (!S_ISREG(status.st_mode)) {
         fclose(file_);
         raise(EXIT_INPUT, "write it to a file first: OpenEXR needs to seek",
-              "%s: cannot open: not a regular file", path);
+              "%s: cannot open: not a regular file", fileName());
     }
     size_ = uint64_t(status.st_size);
+    modified_ = status.st_mtim;
 }
 
 input_stream::~input_stream()
@@ -109,6 +114,26 @@ bool input_stream::read(char data[], int bytes)
               errno ? strerror(errno) : "the file became shorter meanwhile");
     position_ += uint64_t(bytes);
     return position_ < size_;
+}
+
+void input_stream::read_all(char data[], size_t bytes)
+{
+    for (size_t done = 0; done < bytes;) {
+        const int part = int(std::min(bytes - done, size_t{1} << 30));
+        read(data + done, part);
+        done += size_t(part);
+    }
+}
+
+void input_stream::check_unchanged() const
+{
+    struct stat now = {};
+    if (fstat(fileno(file_), &now) != 0)
+        raise(EXIT_INPUT, nullptr, "%s: cannot read: %s", fileName(), strerror(errno));
+    if (uint64_t(now.st_size) != size_ || now.st_mtim.tv_sec != modified_.tv_sec ||
+        now.st_mtim.tv_nsec != modified_.tv_nsec)
+        raise(EXIT_INPUT, "run again when it is written; writers should rename a finished file",
+              "%s: somebody has written to it while it was read", fileName());
 }
 
 uint64_t input_stream::tellg()
@@ -147,22 +172,112 @@ uint64_t input_stream::get_u64()
     return low | uint64_t(uint32_t(get_i32())) << 32;
 }
 
-/* No reconstruction: OpenEXR would search an unfinished file for chunks, and we would show an image
- * with holes. */
-input_file::input_file(const char *path)
-try : stream(path), layout(read_layout(stream)),
-      file(stream, Imf::globalThreadCount(), false)
+namespace {
+
+bool same_window(const Imath::Box2i &box, const window &w)
 {
-    if (file.parts() != int(layout.parts.size()))
-        raise(EXIT_BUG, nullptr, "%s: headers read in two ways disagree", path);
-    for (int i = 0; i < file.parts(); i++) {
-        if (!file.partComplete(i))
-            raise(EXIT_INPUT, "render or copy the file again",
-                  "%s: truncated: part %d lacks chunks", path, i);
-    }
-} catch (const Iex::BaseExc &e) {
-    raise(EXIT_INPUT, "render or copy the file again", "%s: damaged: %s", path,
-          library_message(e).c_str());
+    return box.min.x == w.x_min && box.min.y == w.y_min && box.max.x == w.x_max &&
+           box.max.y == w.y_max;
 }
 
+bool same_channels(const Imf::ChannelList &list, const std::vector<channel_layout> &channels)
+{
+    size_t count = 0;
+    for (auto i = list.begin(); i != list.end(); ++i)
+        count++;
+    for (const channel_layout &c : channels) {
+        const Imf::Channel *other = list.findChannel(c.name.c_str());
+        if (!other || int(other->type) != c.type || other->xSampling != c.x_sampling ||
+            other->ySampling != c.y_sampling)
+            return false;
+    }
+    return count == channels.size();
+}
+
+bool same_tiles(const Imf::Header &header, const part_layout &part)
+{
+    if (!part.tiled)
+        return true;
+    if (!header.hasTileDescription())
+        return false;
+    const Imf::TileDescription &t = header.tileDescription();
+    return t.xSize == part.tile_width && t.ySize == part.tile_height &&
+           int(t.mode) == part.level_mode && int(t.roundingMode) == part.level_rounding;
+}
+
+/* What OpenEXR understood differently from the walk; NULL if nothing. */
+const char *find_difference(const Imf::Header &header, const part_layout &part)
+{
+    if (!same_window(header.dataWindow(), part.data))
+        return "data window";
+    if (!same_window(header.displayWindow(), part.display))
+        return "display window";
+    if (int(header.compression()) != part.compression)
+        return "compression";
+    if (header.hasType() && header.type() != part.type)
+        return "type";
+    if (header.hasName() && header.name() != part.name)
+        return "name";
+    if (!same_channels(header.channels(), part.channels))
+        return "channels";
+    return same_tiles(header, part) ? nullptr : "tiles";
+}
+
+/* No header may make the two disagree: a fuzzer stops here. Anybody else is told that the file is
+ * damaged, which it is. */
+[[noreturn]] void disagree(const input_stream &stream, size_t part, const char *what)
+{
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+    fprintf(stderr, "two readings of the headers disagree: part %zu: %s\n", part, what);
+    abort();
+#endif
+    raise(EXIT_INPUT, "render or copy the file again",
+          "%s: damaged header: two readings of part %zu disagree: %s", stream.fileName(), part,
+          what);
+}
+
+/* Each thread of OpenEXR takes buffers for two chunks: no more of them than chunks to decode. */
+int useful_threads(const file_layout &layout)
+{
+    int64_t most = 1;
+    for (const part_layout &part : layout.parts)
+        most = std::max(most, part.chunk_count);
+    return int(std::min(int64_t{Imf::globalThreadCount()}, most));
+}
+
+} // namespace
+
 } // namespace exr
+
+exr_input::exr_input(const char *path, const char *shown)
+    : stream(path, shown), layout(exr::read_layout(stream))
+{
+}
+
+/* No reconstruction: OpenEXR would search an unfinished file for chunks, and we would show an image
+ * with holes. */
+std::unique_ptr<exr::Imf::MultiPartInputFile> exr_input::open()
+{
+    using namespace exr;
+    try {
+        stream.check_unchanged();
+        stream.seekg(0);
+        auto file =
+            std::make_unique<Imf::MultiPartInputFile>(stream, useful_threads(layout), false);
+        stream.check_unchanged();
+        if (file->parts() != int(layout.parts.size()))
+            disagree(stream, 0, "number of parts");
+        for (int i = 0; i < file->parts(); i++) {
+            const char *difference = find_difference(file->header(i), layout.parts[size_t(i)]);
+            if (difference)
+                disagree(stream, size_t(i), difference);
+            if (!file->partComplete(i))
+                raise(EXIT_INPUT, "render or copy the file again",
+                      "%s: truncated: part %d lacks chunks", stream.fileName(), i);
+        }
+        return file;
+    } catch (const Iex::BaseExc &e) {
+        raise(EXIT_INPUT, "render or copy the file again", "%s: damaged: %s", stream.fileName(),
+              library_message(e).c_str());
+    }
+}

@@ -11,9 +11,12 @@
 #include <ImfIO.h>
 #include <ImfMultiPartInputFile.h>
 
+#include <sys/stat.h>
+
 #include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 #include <string>
 #include <utility>
@@ -59,15 +62,19 @@ bool at_border(tool_error *err, exit_code code, const char *path, const char *wh
 }
 
 /* A regular file, opened once for both the checks here and OpenEXR, so that both see the same file
- * even if it is replaced meanwhile. */
+ * even if it is replaced meanwhile. shown: what messages call it, if not path. */
 class input_stream : public Imf::IStream {
 public:
-    explicit input_stream(const char *path);
+    explicit input_stream(const char *path, const char *shown = nullptr);
     ~input_stream() override;
     bool read(char data[], int bytes) override;
+    void read_all(char data[], size_t bytes);
     uint64_t tellg() override;
     void seekg(uint64_t position) override;
     uint64_t size() const { return size_; }
+    /* Refuses a file that somebody has written to since it was opened: what was learned from it
+     * then may not hold for what is read now. */
+    void check_unchanged() const;
     /* Little-endian, as everything in the format. */
     uint8_t get_u8();
     int32_t get_i32();
@@ -76,18 +83,34 @@ public:
 private:
     FILE *file_ = nullptr;
     uint64_t size_ = 0, position_ = 0;
+    timespec modified_ = {};
+};
+
+struct channel_layout {
+    std::string name;
+    int32_t type, x_sampling, y_sampling;
+};
+
+/* Whole numbers are 64 bits wide, so that no difference of two of them overflows. */
+struct window {
+    int64_t x_min, y_min, x_max, y_max;
+    int64_t width() const { return x_max - x_min + 1; }
+    int64_t height() const { return y_max - y_min + 1; }
 };
 
 struct part_layout {
     std::string name, type;
     bool tiled, deep;
     int compression;
-    int64_t x_min, y_min, x_max, y_max;
+    window data, display;
+    std::vector<channel_layout> channels; /* in the order of the file */
     int64_t tile_width, tile_height;
     int level_mode, level_rounding;
     int64_t pixel_bytes; /* of one pixel that has all channels */
     int64_t level_bytes; /* decoded size of level 0, less what subsampling saves; 0 if deep */
     int64_t chunk_count;
+    /* Decoded bytes of the largest chunk: lines, or a tile with all that lies beyond the image. */
+    int64_t chunk_bytes;
 };
 
 /* Where things are in a file, found by a walk of our own over the headers. */
@@ -101,17 +124,28 @@ struct file_layout {
 /* Refuses what is not an OpenEXR file, what the library would not understand, whose sizes are
  * absurd for its length, or that ends early, before OpenEXR allocates anything for it. */
 file_layout read_layout(input_stream &stream);
-/* Checks that every chunk lies inside the file, which OpenEXR does not before it allocates for raw
- * copies, and that tiles lie as it expects them. */
+/* Checks that every chunk lies inside the file and is the one that its place in the table wants.
+ * OpenEXR does neither before it makes raw copies. Tiles must also lie as it expects them. */
 void check_chunks(input_stream &stream, const file_layout &layout);
+/* Checks that part `part` of both files has the same chunks, byte for byte. Both passed
+ * check_chunks. */
+void check_same_chunks(input_stream &a, const file_layout &a_layout, input_stream &b,
+                       const file_layout &b_layout, size_t part);
 
-/* A checked file: its layout, and OpenEXR's view of it. */
-struct input_file {
-    explicit input_file(const char *path);
-    input_stream stream;
-    file_layout layout;
-    Imf::MultiPartInputFile file;
+} // namespace exr
+
+/* An open file, and its layout as found by the walk. */
+struct exr_input {
+    explicit exr_input(const char *path, const char *shown = nullptr);
+    exr::input_stream stream;
+    exr::file_layout layout;
+    /* OpenEXR's view of the file, made anew: a part of one cannot be both read and copied. Whatever
+     * it understands differently from the walk is an error: sizes that come from the layout then
+     * hold for what OpenEXR does. */
+    std::unique_ptr<exr::Imf::MultiPartInputFile> open();
 };
+
+namespace exr {
 
 /* Tells OpenEXR our own limits; cheap when repeated. */
 void set_limits();

@@ -35,6 +35,7 @@ constexpr int64_t max_pixels = int64_t{1} << 30;
 /* The decoders of 3.1 count the bytes of a chunk in int (CVE-2026-34588). */
 constexpr int64_t max_chunk_bytes = int64_t{1} << 30;
 constexpr int64_t slack_bytes = 1 << 20; /* small files may pad more than any ratio allows */
+constexpr int64_t tile_slack_bytes = 1 << 25; /* a small image may lie in one tile of usual size */
 
 constexpr uint32_t flag_tiled = 0x200, flag_non_image = 0x800, flag_multi_part = 0x1000;
 
@@ -94,6 +95,65 @@ std::string read_name(input_stream &stream, const char *what)
     return name;
 }
 
+/* The bytes that an attribute has in any file, by its type. */
+const struct {
+    const char *type;
+    int64_t bytes;
+} natural_sizes[] = {
+    {"box2i", 16},   {"box2f", 16},      {"chromaticities", 32}, {"compression", 1},
+    {"double", 8},   {"envmap", 1},      {"float", 4},           {"int", 4},
+    {"keycode", 28}, {"lineOrder", 1},   {"m33f", 36},           {"m33d", 72},
+    {"m44f", 64},    {"m44d", 128},      {"rational", 8},        {"deepImageState", 1},
+    {"tiledesc", 9}, {"timecode", 8},    {"v2i", 8},             {"v2f", 8},
+    {"v2d", 16},     {"v3i", 12},        {"v3f", 12},            {"v3d", 24},
+};
+
+/* Whether strings with their lengths in front fill the attribute to its end. */
+bool is_string_vector(input_stream &stream, const attribute &a)
+{
+    const uint64_t end = a.offset + uint64_t(a.bytes);
+    stream.seekg(a.offset);
+    while (end - stream.tellg() >= 4) {
+        const int64_t length = stream.get_i32();
+        if (length < 0 || uint64_t(length) > end - stream.tellg())
+            return false;
+        stream.seekg(stream.tellg() + uint64_t(length));
+    }
+    return stream.tellg() == end;
+}
+
+bool is_preview(input_stream &stream, const attribute &a)
+{
+    if (a.bytes < 8)
+        return false;
+    stream.seekg(a.offset);
+    const int64_t width = uint32_t(stream.get_i32()), height = uint32_t(stream.get_i32());
+    return width <= max_axis && height <= max_axis && a.bytes == 8 + 4 * width * height;
+}
+
+/* OpenEXR reads as many bytes as the type has, whatever the attribute says: after one that is
+ * shorter or longer, it would take other bytes for headers than the walk. */
+void check_natural_size(input_stream &stream, const std::string &name, const attribute &a)
+{
+    bool valid = true;
+    for (const auto &natural : natural_sizes) {
+        if (a.type == natural.type)
+            valid = a.bytes == natural.bytes;
+    }
+    if (a.type == "floatvector")
+        valid = a.bytes % 4 == 0;
+    else if (a.type == "idmanifest")
+        valid = a.bytes >= 4;
+    else if (a.type == "stringvector")
+        valid = is_string_vector(stream, a);
+    else if (a.type == "preview")
+        valid = is_preview(stream, a);
+    if (!valid)
+        raise(EXIT_INPUT, damaged_hint,
+              "%s: damaged header: attribute '%s' of %" PRId64 " bytes is not a valid %s",
+              stream.fileName(), printable(name).c_str(), a.bytes, printable(a.type).c_str());
+}
+
 /* name is that of the first attribute, already read. */
 attributes read_attributes(input_stream &stream, std::string name)
 {
@@ -108,10 +168,11 @@ attributes read_attributes(input_stream &stream, std::string name)
                   "%s: truncated or damaged: attribute '%s' claims %" PRId64
                   " bytes of the %" PRIu64 " left",
                   stream.fileName(), printable(name).c_str(), a.bytes, stream.size() - a.offset);
-        stream.seekg(a.offset + uint64_t(a.bytes));
         if (!found.emplace(name, a).second)
             raise(EXIT_INPUT, damaged_hint, "%s: damaged header: attribute '%s' occurs twice",
                   stream.fileName(), printable(name).c_str());
+        check_natural_size(stream, name, a);
+        stream.seekg(a.offset + uint64_t(a.bytes));
     }
     return found;
 }
@@ -134,8 +195,11 @@ const attribute &seek_required(input_stream &stream, const attributes &all, cons
 std::string read_string(input_stream &stream, const attributes &all, const char *name)
 {
     const auto found = all.find(name);
-    if (found == all.end() || found->second.type != "string" || found->second.bytes > 65536)
+    if (found == all.end() || found->second.type != "string")
         return "";
+    if (found->second.bytes > 65536)
+        raise(EXIT_INPUT, damaged_hint, "%s: damaged header: the %s of a part is too long",
+              stream.fileName(), name);
     std::string text(size_t(found->second.bytes), '\0');
     stream.seekg(found->second.offset);
     stream.read(text.data(), int(text.size()));
@@ -160,37 +224,53 @@ void read_channels(input_stream &stream, const attributes &all, part_layout &par
 {
     const attribute &a = seek_required(stream, all, "channels", "chlist", -1);
     const uint64_t end = a.offset + uint64_t(a.bytes);
-    const int64_t width = part.x_max - part.x_min + 1, height = part.y_max - part.y_min + 1;
-    while (stream.tellg() < end) {
-        const std::string name = read_name(stream, "a channel name");
-        if (name.empty())
-            break;
-        const int32_t type = stream.get_i32();
+    bool terminated = false;
+    while (!terminated && stream.tellg() < end) {
+        channel_layout c = {read_name(stream, "a channel name"), 0, 0, 0};
+        terminated = c.name.empty();
+        if (terminated)
+            continue;
+        c.type = stream.get_i32();
         stream.get_i32(); /* pLinear and three reserved bytes */
-        const int32_t x_sampling = stream.get_i32(), y_sampling = stream.get_i32();
-        if (type < 0 || type > 2 || x_sampling < 1 || y_sampling < 1 || stream.tellg() > end)
+        c.x_sampling = stream.get_i32();
+        c.y_sampling = stream.get_i32();
+        if (c.type < 0 || c.type > 2 || c.x_sampling < 1 || c.y_sampling < 1)
             raise(EXIT_INPUT, damaged_hint, "%s: damaged header: channel '%s' is invalid",
-                  stream.fileName(), printable(name).c_str());
-        const int64_t bytes = type == EXR_HALF ? 2 : 4;
+                  stream.fileName(), printable(c.name).c_str());
+        const int64_t bytes = c.type == EXR_HALF ? 2 : 4;
         part.pixel_bytes += bytes;
-        part.level_bytes += divide_up(width, x_sampling) * divide_up(height, y_sampling) * bytes;
+        part.level_bytes += divide_up(part.data.width(), c.x_sampling) *
+                            divide_up(part.data.height(), c.y_sampling) * bytes;
+        part.channels.push_back(c);
     }
-    if (part.pixel_bytes == 0)
+    if (!terminated || stream.tellg() != end)
+        raise(EXIT_INPUT, damaged_hint, "%s: damaged header: the list of channels does not end "
+                                        "where it says",
+              stream.fileName());
+    if (part.channels.empty())
         raise(EXIT_INPUT, damaged_hint, "%s: damaged header: a part without channels",
               stream.fileName());
 }
 
-void read_window(input_stream &stream, const attributes &all, part_layout &part)
+window read_window(input_stream &stream, const attributes &all, const char *name)
 {
-    seek_required(stream, all, "dataWindow", "box2i", 16);
-    part.x_min = stream.get_i32();
-    part.y_min = stream.get_i32();
-    part.x_max = stream.get_i32();
-    part.y_max = stream.get_i32();
-    const int64_t width = part.x_max - part.x_min + 1, height = part.y_max - part.y_min + 1;
-    if (width < 1 || height < 1)
-        raise(EXIT_INPUT, damaged_hint, "%s: damaged header: the dataWindow is empty",
-              stream.fileName());
+    window w = {};
+    seek_required(stream, all, name, "box2i", 16);
+    w.x_min = stream.get_i32();
+    w.y_min = stream.get_i32();
+    w.x_max = stream.get_i32();
+    w.y_max = stream.get_i32();
+    if (w.width() < 1 || w.height() < 1)
+        raise(EXIT_INPUT, damaged_hint, "%s: damaged header: the %s is empty", stream.fileName(),
+              name);
+    return w;
+}
+
+void read_windows(input_stream &stream, const attributes &all, part_layout &part)
+{
+    part.display = read_window(stream, all, "displayWindow");
+    part.data = read_window(stream, all, "dataWindow");
+    const int64_t width = part.data.width(), height = part.data.height();
     if (width > max_axis || height > max_axis || width * height > max_pixels)
         raise(EXIT_INPUT, nullptr,
               "%s: %" PRId64 "x%" PRId64 " pixels are more than the limit of %" PRId64
@@ -223,49 +303,62 @@ std::vector<int64_t> level_sizes(int64_t size, const part_layout &part)
     return sizes;
 }
 
-int64_t tile_count(const part_layout &part)
+struct tile_level {
+    int32_t x, y; /* numbers of the level across and down */
+    int64_t columns, rows;
+};
+
+/* In the order of the chunk table. */
+std::vector<tile_level> tile_levels(const part_layout &part)
 {
     enum { one_level, mipmap, ripmap };
-    const int64_t width = part.x_max - part.x_min + 1, height = part.y_max - part.y_min + 1;
-    int64_t count = 0;
-    if (part.level_mode == one_level)
-        return divide_up(width, part.tile_width) * divide_up(height, part.tile_height);
-    if (part.level_mode == mipmap) {
+    auto across = level_sizes(part.data.width(), part), down = level_sizes(part.data.height(), part);
+    std::vector<tile_level> levels;
+    const auto add = [&](size_t x, size_t y) {
+        levels.push_back({int32_t(x), int32_t(y), divide_up(across[x], part.tile_width),
+                          divide_up(down[y], part.tile_height)});
+    };
+    if (part.level_mode == one_level) {
+        add(0, 0);
+    } else if (part.level_mode == mipmap) {
         /* As many levels as the longer axis has; the shorter one stays at 1 pixel. */
-        const auto levels = level_sizes(std::max(width, height), part).size();
-        auto across = level_sizes(width, part), down = level_sizes(height, part);
-        across.resize(levels, 1);
-        down.resize(levels, 1);
-        for (size_t i = 0; i < levels; i++)
-            count += divide_up(across[i], part.tile_width) * divide_up(down[i], part.tile_height);
-        return count;
+        const size_t count = std::max(across.size(), down.size());
+        across.resize(count, 1);
+        down.resize(count, 1);
+        for (size_t i = 0; i < count; i++)
+            add(i, i);
+    } else {
+        for (size_t y = 0; y < down.size(); y++) {
+            for (size_t x = 0; x < across.size(); x++)
+                add(x, y);
+        }
     }
-    for (const int64_t w : level_sizes(width, part)) {
-        for (const int64_t h : level_sizes(height, part))
-            count += divide_up(w, part.tile_width) * divide_up(h, part.tile_height);
-    }
+    return levels;
+}
+
+int64_t count_chunks(const part_layout &part)
+{
+    int64_t count = 0;
+    if (!part.tiled)
+        return divide_up(part.data.height(), compressions[part.compression].lines);
+    for (const tile_level &level : tile_levels(part))
+        count += level.columns * level.rows;
     return count;
 }
 
 void check_sizes(const input_stream &stream, const part_layout &part)
 {
-    const int64_t width = part.x_max - part.x_min + 1;
+    const int64_t width = part.data.width();
     const int64_t file_bytes = int64_t(stream.size());
     if (!part.deep &&
         part.level_bytes > compressions[part.compression].ratio * file_bytes + slack_bytes)
         raise(EXIT_INPUT, damaged_hint,
               "%s: truncated or damaged: %" PRId64 " bytes cannot hold %" PRId64 "x%" PRId64
               " pixels of %" PRId64 " bytes with compression %s",
-              stream.fileName(), file_bytes, width, part.y_max - part.y_min + 1, part.pixel_bytes,
+              stream.fileName(), file_bytes, width, part.data.height(), part.pixel_bytes,
               compression_names[part.compression]);
     /* OpenEXR allocates whole tiles, also for images smaller than one. */
-    const int64_t chunk_pixels = part.tiled ? part.tile_width * part.tile_height
-                                            : width * compressions[part.compression].lines;
-    if (chunk_pixels > max_chunk_bytes / part.pixel_bytes)
-        raise(EXIT_INPUT, nullptr, "%s: chunks of %" PRId64 " pixels of %" PRId64
-              " bytes are more than the limit of %" PRId64 " bytes",
-              stream.fileName(), chunk_pixels, part.pixel_bytes, max_chunk_bytes);
-    if (part.tiled && chunk_pixels > 4 * width * (part.y_max - part.y_min + 1) + (1 << 22))
+    if (part.tiled && part.chunk_bytes > 4 * part.level_bytes + tile_slack_bytes)
         raise(EXIT_INPUT, damaged_hint,
               "%s: damaged header: tiles of %" PRId64 "x%" PRId64 " for so small an image",
               stream.fileName(), part.tile_width, part.tile_height);
@@ -303,88 +396,141 @@ part_layout read_part(input_stream &stream, const attributes &all, uint32_t vers
               "%s: part '%s' has the unknown type '%s'", stream.fileName(),
               printable(part.name).c_str(), printable(part.type).c_str());
     read_compression(stream, all, part);
-    read_window(stream, all, part);
+    read_windows(stream, all, part);
     read_channels(stream, all, part);
     if (part.tiled)
         read_tiles(stream, all, part);
-    const auto preview = all.find("preview");
-    if (preview != all.end() && preview->second.type == "preview") {
-        stream.seekg(preview->second.offset);
-        const int64_t width = uint32_t(stream.get_i32()), height = uint32_t(stream.get_i32());
-        if (width > max_axis || height > max_axis ||
-            preview->second.bytes != 8 + 4 * width * height)
-            raise(EXIT_INPUT, damaged_hint, "%s: damaged header: invalid preview image",
-                  stream.fileName());
-    }
+    const int64_t chunk_pixels =
+        part.tiled ? part.tile_width * part.tile_height
+                   : part.data.width() * compressions[part.compression].lines;
+    if (chunk_pixels > max_chunk_bytes / part.pixel_bytes)
+        raise(EXIT_INPUT, nullptr,
+              "%s: chunks of %" PRId64 " pixels of %" PRId64
+              " bytes are more than the limit of %" PRId64 " bytes",
+              stream.fileName(), chunk_pixels, part.pixel_bytes, max_chunk_bytes);
+    part.chunk_bytes = chunk_pixels * part.pixel_bytes;
     check_sizes(stream, part);
-    part.chunk_count = part.tiled ? tile_count(part)
-                                  : divide_up(part.y_max - part.y_min + 1,
-                                              compressions[part.compression].lines);
+    part.chunk_count = count_chunks(part);
     return part;
 }
 
-/* The bytes of the chunk at offset; < 0 or far too many if it is damaged. */
-int64_t chunk_end(input_stream &stream, const file_layout &layout, const part_layout &part,
-                  uint64_t offset)
+/* --- Chunks --- */
+
+struct chunk {
+    int32_t part, x, y, level_x, level_y; /* y: the first line; the rest is 0 without tiles */
+    uint64_t begin, end;
+};
+
+/* False if there is no whole chunk at the offset. */
+bool read_chunk(input_stream &stream, const file_layout &layout, const part_layout &part,
+                uint64_t offset, chunk &c)
 {
-    const uint64_t coordinates = (layout.multi_part ? 4u : 0u) + (part.tiled ? 16u : 4u);
-    const uint64_t leader = coordinates + (part.deep ? 24 : 4);
+    const uint64_t leader =
+        (layout.multi_part ? 4u : 0u) + (part.tiled ? 16u : 4u) + (part.deep ? 24u : 4u);
+    c = {};
     if (offset > stream.size() || leader > stream.size() - offset)
-        return -1;
-    stream.seekg(offset + coordinates);
-    const uint64_t limit = uint64_t(INT64_MAX) / 4;
+        return false;
+    stream.seekg(offset);
+    if (layout.multi_part)
+        c.part = stream.get_i32();
+    if (part.tiled)
+        c.x = stream.get_i32();
+    c.y = stream.get_i32();
+    if (part.tiled) {
+        c.level_x = stream.get_i32();
+        c.level_y = stream.get_i32();
+    }
+    const uint64_t room = stream.size() - offset - leader;
     uint64_t bytes = 0;
     if (part.deep) {
         const uint64_t counts = stream.get_u64(), samples = stream.get_u64();
-        bytes = counts > limit || samples > limit ? limit : counts + samples;
+        if (counts > room || samples > room - counts)
+            return false;
+        bytes = counts + samples;
     } else {
         const int32_t size = stream.get_i32();
-        if (size < 0)
-            return -1;
+        if (size < 0 || uint64_t(size) > room || size > part.chunk_bytes)
+            return false;
         bytes = uint64_t(size);
     }
-    return int64_t(offset + leader + bytes);
+    c.begin = offset;
+    c.end = offset + leader + bytes;
+    return true;
 }
 
-/* every_chunk looks at all of them. Otherwise only at the last one that begins inside the file: if
- * the end of the file is missing, that is the one which was cut. Returns the offset of the chunk
- * that lies first. */
-uint64_t check_tables(input_stream &stream, const file_layout &layout, bool every_chunk)
+/* Calls f(k, chunk) for the place of every chunk that the table of a part should name, in its order;
+ * where it lies is left open. */
+template <typename F> void each_place(const file_layout &layout, size_t index, F &&f)
 {
-    uint64_t position = layout.table_offset, data = layout.table_offset, first = UINT64_MAX;
-    for (const part_layout &part : layout.parts)
-        data += 8 * uint64_t(part.chunk_count); /* the sum was checked by read_layout */
-    for (size_t i = 0; i < layout.parts.size(); i++) {
-        const part_layout &part = layout.parts[i];
-        std::vector<uint64_t> offsets(size_t(part.chunk_count));
-        stream.seekg(position);
-        for (uint64_t &offset : offsets)
-            offset = stream.get_u64();
-        position = stream.tellg();
-
-        std::sort(offsets.begin(), offsets.end());
-        const auto beyond = std::lower_bound(offsets.begin(), offsets.end(), stream.size());
-        int64_t there = part.chunk_count, gaps = 0;
-        int64_t end = int64_t(offsets.front());
-        for (auto offset = offsets.begin(); offset != offsets.end(); ++offset) {
-            bool good = *offset >= data && offset < beyond;
-            if (good && (every_chunk || offset + 1 == beyond)) {
-                gaps += int64_t(*offset) != end;
-                end = chunk_end(stream, layout, part, *offset);
-                good = end >= 0 && uint64_t(end) <= stream.size();
-            }
-            there -= !good;
+    const part_layout &part = layout.parts[index];
+    const int32_t number = layout.multi_part ? int32_t(index) : 0;
+    const int64_t lines = compressions[part.compression].lines;
+    size_t k = 0;
+    for (int64_t i = 0; !part.tiled && i < part.chunk_count; i++)
+        f(k++, chunk{number, 0, int32_t(part.data.y_min + i * lines), 0, 0, 0, 0});
+    if (!part.tiled)
+        return;
+    for (const tile_level &level : tile_levels(part)) {
+        for (int64_t y = 0; y < level.rows; y++) {
+            for (int64_t x = 0; x < level.columns; x++)
+                f(k++, chunk{number, int32_t(x), int32_t(y), level.x, level.y, 0, 0});
         }
-        if (there != part.chunk_count)
+    }
+}
+
+bool same_place(const chunk &a, const chunk &b)
+{
+    return a.part == b.part && a.x == b.x && a.y == b.y && a.level_x == b.level_x &&
+           a.level_y == b.level_y;
+}
+
+/* The offsets of a part's chunks, as its table has them. */
+std::vector<uint64_t> read_table(input_stream &stream, const file_layout &layout, size_t index)
+{
+    uint64_t position = layout.table_offset;
+    for (size_t i = 0; i < index; i++)
+        position += 8 * uint64_t(layout.parts[i].chunk_count);
+    std::vector<uint64_t> offsets(size_t(layout.parts[index].chunk_count));
+    stream.seekg(position);
+    for (uint64_t &offset : offsets)
+        offset = stream.get_u64();
+    return offsets;
+}
+
+/* Offset of the first byte behind all tables. read_layout has checked that there is one. */
+uint64_t first_data(const file_layout &layout)
+{
+    uint64_t data = layout.table_offset;
+    for (const part_layout &part : layout.parts)
+        data += 8 * uint64_t(part.chunk_count);
+    return data;
+}
+
+/* Of a file whose end is missing, the chunk that lies last is the one which was cut: so that one is
+ * looked at, and of the others only where they begin. Returns the offset of the chunk that lies
+ * first. */
+uint64_t check_tables(input_stream &stream, const file_layout &layout)
+{
+    const uint64_t data = first_data(layout);
+    uint64_t first = UINT64_MAX;
+    for (size_t i = 0; i < layout.parts.size(); i++) {
+        const std::vector<uint64_t> offsets = read_table(stream, layout, i);
+        int64_t there = 0;
+        uint64_t last = 0;
+        chunk c;
+        for (const uint64_t offset : offsets) {
+            const bool inside = offset >= data && offset < stream.size();
+            there += inside;
+            first = std::min(first, offset);
+            last = inside ? std::max(last, offset) : last;
+        }
+        if (there > 0 && !read_chunk(stream, layout, layout.parts[i], last, c))
+            there--;
+        if (there != layout.parts[i].chunk_count)
             raise(EXIT_INPUT, damaged_hint,
                   "%s: truncated: the chunk table of part %zu has %" PRId64 " of %" PRId64
                   " chunks",
-                  stream.fileName(), i, there, part.chunk_count);
-        if (every_chunk && part.tiled && !layout.multi_part && gaps)
-            raise(EXIT_INPUT, "rewrite it first: oiiotool IN.exr -o OUT.exr",
-                  "%s: the tiles do not follow each other; they cannot be copied",
-                  stream.fileName());
-        first = std::min(first, offsets.front());
+                  stream.fileName(), i, there, layout.parts[i].chunk_count);
     }
     return first;
 }
@@ -393,7 +539,60 @@ uint64_t check_tables(input_stream &stream, const file_layout &layout, bool ever
 
 void check_chunks(input_stream &stream, const file_layout &layout)
 {
-    check_tables(stream, layout, true);
+    for (size_t i = 0; i < layout.parts.size(); i++) {
+        const part_layout &part = layout.parts[i];
+        const std::vector<uint64_t> offsets = read_table(stream, layout, i);
+        /* Tiles of a lone part are copied from wherever the stream is, in the order of the file. */
+        const bool in_file_order = part.tiled && !layout.multi_part;
+        std::vector<std::pair<uint64_t, uint64_t>> spans;
+        each_place(layout, i, [&](size_t k, const chunk &place) {
+            chunk c;
+            if (!read_chunk(stream, layout, part, offsets[k], c))
+                raise(EXIT_INPUT, damaged_hint, "%s: damaged: chunk %zu of part %zu is not whole",
+                      stream.fileName(), k, i);
+            if (!same_place(c, place))
+                raise(EXIT_INPUT, damaged_hint,
+                      "%s: damaged: chunk %zu of part %zu says that it belongs elsewhere",
+                      stream.fileName(), k, i);
+            if (in_file_order)
+                spans.emplace_back(c.begin, c.end);
+        });
+        std::sort(spans.begin(), spans.end());
+        for (size_t k = 1; k < spans.size(); k++) {
+            if (spans[k].first != spans[k - 1].second)
+                raise(EXIT_INPUT, "rewrite it first: oiiotool IN.exr -o OUT.exr",
+                      "%s: the tiles do not follow each other; they cannot be copied",
+                      stream.fileName());
+        }
+    }
+}
+
+void check_same_chunks(input_stream &a, const file_layout &a_layout, input_stream &b,
+                       const file_layout &b_layout, size_t part)
+{
+    const std::vector<uint64_t> from = read_table(a, a_layout, part);
+    const std::vector<uint64_t> to = read_table(b, b_layout, part);
+    std::vector<char> bytes, copy;
+    bool same = from.size() == to.size();
+    for (size_t k = 0; same && k < from.size(); k++) {
+        chunk c, d;
+        same = read_chunk(a, a_layout, a_layout.parts[part], from[k], c) &&
+               read_chunk(b, b_layout, b_layout.parts[part], to[k], d);
+        /* What follows the part number, which a lone part does not have. */
+        const uint64_t skip_c = a_layout.multi_part ? 4 : 0, skip_d = b_layout.multi_part ? 4 : 0;
+        same = same && c.end - c.begin - skip_c == d.end - d.begin - skip_d;
+        if (!same)
+            break;
+        bytes.resize(size_t(c.end - c.begin - skip_c));
+        copy.resize(bytes.size());
+        a.seekg(c.begin + skip_c);
+        a.read_all(bytes.data(), bytes.size());
+        b.seekg(d.begin + skip_d);
+        b.read_all(copy.data(), copy.size());
+        same = bytes == copy;
+    }
+    if (!same)
+        raise(EXIT_OUTPUT, nullptr, "%s: part %zu was not copied as it is", b.fileName(), part);
 }
 
 file_layout read_layout(input_stream &stream)
@@ -430,7 +629,7 @@ file_layout read_layout(input_stream &stream)
                   stream.fileName(), i, room, count);
         room -= count;
     }
-    layout.first_chunk = check_tables(stream, layout, false);
+    layout.first_chunk = check_tables(stream, layout);
     stream.seekg(0);
     return layout;
 }

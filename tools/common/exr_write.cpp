@@ -62,6 +62,12 @@ public:
         e.error = error_;
         throw e;
     }
+    /* What is written so far can be read at this path. */
+    const char *written()
+    {
+        flush();
+        return file_.temp;
+    }
     void commit()
     {
         flush();
@@ -222,37 +228,45 @@ void check_names(const char *path, const std::vector<Imf::Header> &headers)
     }
 }
 
-/* The other file whose attributes a new part takes: often the one that is copied anyway. */
-std::unique_ptr<Imf::Header> attributes_of(const exr_new_part &part, const char *copy_from,
-                                           const input_file *source)
+/* The header whose attributes a new part takes. */
+std::unique_ptr<Imf::Header> attributes_of(const exr_new_part &part)
 {
-    std::unique_ptr<input_file> other;
-    if (!part.attributes_from)
+    const exr_info *from = part.attributes_from;
+    if (!from)
         return nullptr;
-    if (!copy_from || strcmp(part.attributes_from, copy_from) != 0)
-        source = (other = std::make_unique<input_file>(part.attributes_from)).get();
-    if (part.attributes_from_part >= source->layout.parts.size())
-        raise(EXIT_INPUT, nullptr, "%s: no part %zu", part.attributes_from,
-              part.attributes_from_part);
-    return std::make_unique<Imf::Header>(source->file.header(int(part.attributes_from_part)));
+    if (part.attributes_from_part >= from->part_count)
+        raise(EXIT_INPUT, nullptr, "%s: no part %zu", from->path, part.attributes_from_part);
+    return std::make_unique<Imf::Header>(
+        from->input->open()->header(int(part.attributes_from_part)));
 }
 
-std::vector<Imf::Header> make_headers(const char *path, const char *copy_from,
-                                      const input_file *source, const exr_new_part *parts,
-                                      size_t count)
+/* What is copied: the open file, and OpenEXR's view of it. */
+struct source_file {
+    const exr_info &info;
+    exr_input &input;
+    std::unique_ptr<Imf::MultiPartInputFile> file;
+    explicit source_file(const exr_info &from)
+        : info(from), input(*from.input), file(input.open())
+    {
+        check_chunks(input.stream, input.layout);
+    }
+};
+
+std::vector<Imf::Header> make_headers(const char *path, const source_file *source,
+                                      const exr_new_part *parts, size_t count)
 {
     std::vector<Imf::Header> headers;
     std::set<std::string> taken;
     for (size_t i = 0; i < count; i++)
         taken.insert(parts[i].name ? parts[i].name : "");
-    const size_t copies = source ? source->layout.parts.size() : 0;
+    const size_t copies = source ? source->info.part_count : 0;
     for (size_t i = 0; i < copies; i++) {
-        headers.push_back(source->file.header(int(i)));
+        headers.push_back(source->file->header(int(i)));
         if (copies + count > 1)
-            promote(headers.back(), source->layout.parts[i], taken);
+            promote(headers.back(), source->input.layout.parts[i], taken);
     }
     for (size_t i = 0; i < count; i++) {
-        const auto from = attributes_of(parts[i], copy_from, source);
+        const auto from = attributes_of(parts[i]);
         headers.push_back(new_header(path, parts[i], from.get(),
                                      headers.empty() ? nullptr : &headers.front()));
     }
@@ -264,23 +278,23 @@ std::vector<Imf::Header> make_headers(const char *path, const char *copy_from,
 }
 
 /* Compressed chunks as they are; nothing is decoded. */
-void copy_part(input_file &source, Imf::MultiPartOutputFile &file, int i)
+void copy_part(source_file &source, Imf::MultiPartOutputFile &file, int i)
 {
-    const part_layout &layout = source.layout.parts[size_t(i)];
+    const part_layout &layout = source.input.layout.parts[size_t(i)];
     /* In single-part files OpenEXR copies tiles from wherever the stream is, in the order of the
      * file. */
-    source.stream.seekg(source.layout.first_chunk);
+    source.input.stream.seekg(source.input.layout.first_chunk);
     if (layout.deep && layout.tiled) {
-        Imf::DeepTiledInputPart in(source.file, i);
+        Imf::DeepTiledInputPart in(*source.file, i);
         Imf::DeepTiledOutputPart(file, i).copyPixels(in);
     } else if (layout.deep) {
-        Imf::DeepScanLineInputPart in(source.file, i);
+        Imf::DeepScanLineInputPart in(*source.file, i);
         Imf::DeepScanLineOutputPart(file, i).copyPixels(in);
     } else if (layout.tiled) {
-        Imf::TiledInputPart in(source.file, i);
+        Imf::TiledInputPart in(*source.file, i);
         Imf::TiledOutputPart(file, i).copyPixels(in);
     } else {
-        Imf::InputPart in(source.file, i);
+        Imf::InputPart in(*source.file, i);
         Imf::OutputPart(file, i).copyPixels(in);
     }
 }
@@ -311,43 +325,61 @@ void convert(const exr_write &channel, size_t width, size_t first, size_t count,
     }
 }
 
-void write_part(const exr_new_part &part, Imf::MultiPartOutputFile &file, int index)
+/* Lines that are written and read back at once: a multiple of the lines per chunk of every
+ * compression. */
+constexpr size_t band_lines = 256;
+
+struct band {
+    size_t first, lines; /* of the part */
+    Imath::Box2i window;
+};
+
+template <typename F> void each_band(const exr_new_part &part, F &&f)
 {
-    /* A multiple of the lines per chunk of every compression. */
-    constexpr size_t band_lines = 256;
     const exr_box &w = part.data_window;
-    const size_t width = size_t(int64_t{w.x_max} - w.x_min + 1);
     const size_t height = size_t(int64_t{w.y_max} - w.y_min + 1);
-    std::vector<std::vector<char>> bands(part.channel_count);
-    Imf::OutputPart out(file, index);
     for (size_t first = 0; first < height; first += band_lines) {
         const size_t lines = std::min(band_lines, height - first);
         const int y = w.y_min + int(first);
-        const Imath::Box2i window({w.x_min, y}, {w.x_max, y + int(lines) - 1});
+        f(band{first, lines, {{w.x_min, y}, {w.x_max, y + int(lines) - 1}}});
+    }
+}
+
+size_t width_of(const exr_new_part &part)
+{
+    return size_t(int64_t{part.data_window.x_max} - part.data_window.x_min + 1);
+}
+
+void write_part(const exr_new_part &part, Imf::MultiPartOutputFile &file, int index)
+{
+    const size_t width = width_of(part);
+    std::vector<std::vector<char>> bands(part.channel_count);
+    Imf::OutputPart out(file, index);
+    each_band(part, [&](const band &b) {
         Imf::FrameBuffer frame;
         for (size_t i = 0; i < part.channel_count; i++) {
             const exr_write &channel = part.channels[i];
-            const void *pixels = channel.values + first * width * channel.stride;
+            const void *pixels = channel.values + b.first * width * channel.stride;
             size_t x_stride = channel.stride * sizeof(float);
             if (channel.type == EXR_HALF) {
-                convert(channel, width, first, lines, to_half, bands[i]);
+                convert(channel, width, b.first, b.lines, to_half, bands[i]);
                 x_stride = sizeof(uint16_t);
             } else if (channel.type == EXR_UINT) {
-                convert(channel, width, first, lines, to_uint, bands[i]);
+                convert(channel, width, b.first, b.lines, to_uint, bands[i]);
                 x_stride = sizeof(uint32_t);
             }
             if (channel.type != EXR_FLOAT)
                 pixels = bands[i].data();
             frame.insert(channel.channel,
-                         Imf::Slice::Make(Imf::PixelType(channel.type), pixels, window, x_stride,
+                         Imf::Slice::Make(Imf::PixelType(channel.type), pixels, b.window, x_stride,
                                           x_stride * width));
         }
         out.setFrameBuffer(frame);
-        out.writePixels(int(lines));
-    }
+        out.writePixels(int(b.lines));
+    });
 }
 
-void write_parts(output_stream &stream, const char *copy_from, input_file *source,
+void write_parts(output_stream &stream, source_file *source,
                  const std::vector<Imf::Header> &headers, const exr_new_part *parts, size_t count)
 {
     Imf::MultiPartOutputFile file(stream, headers.data(), int(headers.size()), false,
@@ -359,7 +391,7 @@ void write_parts(output_stream &stream, const char *copy_from, input_file *sourc
         } catch (const Iex::BaseExc &e) {
             stream.throw_error();
             raise(EXIT_INPUT, "render or copy the file again",
-                  "%s: damaged: cannot copy part %d: %s", copy_from, i,
+                  "%s: damaged: cannot copy part %d: %s", source->info.path, i,
                   library_message(e).c_str());
         }
     }
@@ -367,32 +399,117 @@ void write_parts(output_stream &stream, const char *copy_from, input_file *sourc
         write_part(parts[i], file, copies + int(i));
 }
 
-void write_file(const char *path, const char *copy_from, const exr_new_part *parts, size_t count,
-                bool replace)
+/* --- Reading back --- */
+
+/* Whether float values of this type come back bit for bit. */
+bool is_lossless(const char *compression, exr_pixel_type type)
 {
-    std::unique_ptr<input_file> source;
-    if (copy_from) {
-        source = std::make_unique<input_file>(copy_from);
-        check_chunks(source->stream, source->layout);
+    static const std::set<std::string> always = {"none", "rle", "zips", "zip", "piz"};
+    return always.count(compression) || (type != EXR_FLOAT && strcmp(compression, "pxr24") == 0);
+}
+
+/* The bits that a value has in the file. */
+uint32_t stored_bits(exr_pixel_type type, float value)
+{
+    uint32_t bits;
+    if (type == EXR_HALF)
+        return to_half(value);
+    if (type == EXR_UINT)
+        return to_uint(value);
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+void check_band(const exr_new_part &part, const exr_write &channel, const band &b,
+                const std::vector<char> &pixels, const char *path)
+{
+    const size_t width = width_of(part), bytes = channel.type == EXR_HALF ? 2 : 4;
+    if (!is_lossless(part.compression, channel.type))
+        return;
+    for (size_t i = 0; i < width * b.lines; i++) {
+        uint32_t bits = 0; /* of a half the first two bytes: the format's machines are little-endian */
+        memcpy(&bits, &pixels[i * bytes], bytes);
+        const float value = channel.values[(b.first * width + i) * channel.stride];
+        if (bits != stored_bits(channel.type, value))
+            raise(EXIT_OUTPUT, nullptr, "%s: pixels of channel '%s' did not come back as written",
+                  path, channel.channel);
     }
-    const std::vector<Imf::Header> headers =
-        make_headers(path, copy_from, source.get(), parts, count);
+}
+
+void check_part(const exr_new_part &part, Imf::MultiPartInputFile &file, int index,
+                const char *path)
+{
+    const size_t width = width_of(part);
+    std::vector<std::vector<char>> pixels(part.channel_count);
+    Imf::InputPart in(file, index);
+    each_band(part, [&](const band &b) {
+        Imf::FrameBuffer frame;
+        for (size_t i = 0; i < part.channel_count; i++) {
+            const exr_write &channel = part.channels[i];
+            const size_t bytes = channel.type == EXR_HALF ? 2 : 4;
+            pixels[i].assign(width * b.lines * bytes, 0);
+            frame.insert(channel.channel,
+                         Imf::Slice::Make(Imf::PixelType(channel.type), pixels[i].data(), b.window,
+                                          bytes, bytes * width));
+        }
+        in.setFrameBuffer(frame);
+        in.readPixels(b.window.min.y, b.window.max.y);
+        for (size_t i = 0; i < part.channel_count; i++)
+            check_band(part, part.channels[i], b, pixels[i], path);
+    });
+}
+
+/* Before anybody sees the file: it opens, its copies are those of the source, and its new parts
+ * decode. */
+void check_written(const char *path, const char *written, source_file *source,
+                   const exr_new_part *parts, size_t count)
+{
+    exr_input back(written, path);
+    const auto file = back.open();
+    const size_t copies = source ? source->info.part_count : 0;
+    if (back.layout.parts.size() != copies + count)
+        raise(EXIT_OUTPUT, nullptr, "%s: has %zu parts when read back, want %zu", path,
+              back.layout.parts.size(), copies + count);
+    check_chunks(back.stream, back.layout);
+    for (size_t i = 0; i < copies; i++)
+        check_same_chunks(source->input.stream, source->input.layout, back.stream, back.layout, i);
+    for (size_t i = 0; i < count; i++)
+        check_part(parts[i], *file, int(copies + i), path);
+}
+
+void write_file(const char *path, const exr_info *copy_from, const exr_new_part *parts,
+                size_t count, bool replace)
+{
+    std::unique_ptr<source_file> source;
+    if (copy_from)
+        source = std::make_unique<source_file>(*copy_from);
+    const std::vector<Imf::Header> headers = make_headers(path, source.get(), parts, count);
     output_stream stream(path, replace);
     try {
-        write_parts(stream, copy_from, source.get(), headers, parts, count);
+        write_parts(stream, source.get(), headers, parts, count);
     } catch (const tool_exception &) {
         throw;
     } catch (const Iex::BaseExc &) {
         stream.throw_error(); /* OpenEXR's wrapping of it has lost the reason */
         throw;
     }
+    const char *written = stream.written();
+    try {
+        check_written(path, written, source.get(), parts, count);
+    } catch (const tool_exception &e) {
+        raise(EXIT_OUTPUT, "the disk or its memory may be at fault: nothing was left behind",
+              "%s: what was written cannot be read back: %s", path, e.error.message);
+    }
+    if (source)
+        source->input.stream.check_unchanged();
     stream.commit();
 }
 
 } // namespace
 
-bool exr_write_file(const char *path, const char *copy_from, const struct exr_new_part *parts,
-                    size_t count, bool replace, struct tool_error *err)
+bool exr_write_file(const char *path, const struct exr_info *copy_from,
+                    const struct exr_new_part *parts, size_t count, bool replace,
+                    struct tool_error *err)
 {
     set_limits();
     return at_border(err, EXIT_OUTPUT, path, "cannot write",

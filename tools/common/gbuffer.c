@@ -139,7 +139,7 @@ static float *read_vector(const struct exr_info *info, const struct gbuffer *g,
         if (role->channels[i])
             reads[count++] = (struct exr_read){role->channels[i]->name, values + i, 4};
     float *aligned = values;
-    if (!exr_read_channels(info->path, role->part, reads, count, err)) {
+    if (!exr_read_channels(info, role->part, reads, count, err)) {
         aligned = NULL;
     } else if (!same_box(box, &g->data_window)) {
         aligned = allocate(gbuffer_texels(g), 4, info->path, err);
@@ -158,7 +158,7 @@ static bool read_depth(const struct exr_info *info, struct gbuffer *g, struct to
     const struct role *role = &g->roles.kind[ROLE_DEPTH];
     g->depth = allocate(gbuffer_texels(g), 1, info->path, err);
     const struct exr_read read = {role->channels[0]->name, g->depth, 1};
-    return g->depth && exr_read_channels(info->path, role->part, &read, 1, err);
+    return g->depth && exr_read_channels(info, role->part, &read, 1, err);
 }
 
 static bool read_color(const struct exr_info *info, struct gbuffer *g, struct tool_error *err)

@@ -116,7 +116,7 @@ static bool read_reference(struct gpu *gpu, struct loaded_frame *l, struct tool_
              fail(err, EXIT_MEMORY, "%s: out of memory", info.path);
     }
     const struct exr_read read = {channel, l->reference_values, 1};
-    ok = ok && exr_read_channels(info.path, part, &read, 1, err);
+    ok = ok && exr_read_channels(&info, part, &read, 1, err);
     for (size_t row = 0; ok && row < g->height; row++)
         memcpy(values + (row + l->placement.top) * extent.width + l->placement.left,
                l->reference_values + row * g->width, g->width * sizeof *values);

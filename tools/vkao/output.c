@@ -162,7 +162,7 @@ static bool fill_part(const struct options *o, const struct frame_source *source
         .channel_count = fill_channels(o, view, storage->channels),
         .strings = storage->strings,
         .string_count = STRINGS,
-        .attributes_from = source->info.path,
+        .attributes_from = &source->info,
         .attributes_from_part = g->roles.kind[ROLE_DEPTH].part,
     };
     return true;
@@ -179,8 +179,8 @@ static bool write_exr(const struct options *o, const struct plan_frame *frame,
         fail(err, EXIT_MEMORY, "%s: out of memory", frame->output);
     for (size_t i = 0; ok && i < source->view_count; i++)
         ok = fill_part(o, source, &views[i], device, &storage[i], &parts[i], err);
-    ok = ok && exr_write_file(frame->output, o->mode == OUTPUT_APPEND ? frame->input : NULL, parts,
-                              source->view_count, o->overwrite != 0, err);
+    ok = ok && exr_write_file(frame->output, o->mode == OUTPUT_APPEND ? &source->info : NULL,
+                              parts, source->view_count, o->overwrite != 0, err);
     for (size_t i = 0; storage && i < source->view_count; i++)
         free(storage[i].params);
     free(storage);
