@@ -22,6 +22,7 @@ except ImportError as missing:
     sys.exit(77)
 
 OK, SOME_FRAMES, USAGE, INPUT, CHANNELS, DEVICE, OUTPUT = range(7)
+MEMORY = 33
 INTERRUPTED, TERMINATED = 130, 143
 
 # Of one run; generous, because sanitizers and loaded machines are slow, but a hang must end.

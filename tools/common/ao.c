@@ -188,6 +188,18 @@ static bool fit_context(struct ao_session *session, const struct ao_job *job,
     return session->ctx != NULL;
 }
 
+uint64_t ao_job_texel_bytes(bool has_normals, bool has_color, bool bent_normals)
+{
+    /* Images on the device, and results; the library's scratch, with room for the margins of half
+     * resolution; what an image passes through on its way to or from the device. */
+    const uint64_t vector = 4 * sizeof(float), normals = has_normals ? vector : 0;
+    const uint64_t color = has_color ? vector : 0, bent = bent_normals ? vector : 0;
+    const uint64_t images = 2 * sizeof(float) + normals + 2 * color + bent;
+    const uint64_t results = sizeof(float) + color + bent;
+    const uint64_t scratch = bent_normals ? 24 : 8;
+    return images + results + scratch + (normals || color || bent ? vector : sizeof(float));
+}
+
 static bool upload(struct ao_session *session, enum job_image which, const float *data,
                    uint64_t texels, struct tool_error *err)
 {
@@ -258,8 +270,8 @@ static float *download(struct ao_session *session, enum job_image which, uint64_
     return NULL;
 }
 
-bool ao_run(struct ao_session *session, const struct ao_job *job, struct ao_result *result,
-            struct tool_error *err)
+static bool run(struct ao_session *session, const struct ao_job *job, struct ao_result *result,
+                struct tool_error *err)
 {
     uint64_t texels = (uint64_t)job->width * job->height;
     *result = (struct ao_result){0};
@@ -281,9 +293,16 @@ bool ao_run(struct ao_session *session, const struct ao_job *job, struct ao_resu
         result->output = download(session, IMAGE_OUTPUT, texels, err);
     if (result->ao && job->bent_normals)
         result->bent = download(session, IMAGE_BENT, texels, err);
-    if (result->ao && (result->output || !job->color) && (result->bent || !job->bent_normals))
+    return result->ao && (result->output || !job->color) && (result->bent || !job->bent_normals);
+}
+
+bool ao_run(struct ao_session *session, const struct ao_job *job, struct ao_result *result,
+            struct tool_error *err)
+{
+    if (run(session, job, result, err))
         return true;
     ao_result_free(result);
+    drop_frame(session);
     return false;
 }
 

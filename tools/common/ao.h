@@ -29,6 +29,9 @@ struct ao_result {
     double gpu_ms; /* device time of all stages, by timestamps; of the whole submit where the queue has none */
 };
 
+/* Memory that a job takes per texel beside its own images, on host and device together. */
+uint64_t ao_job_texel_bytes(bool has_normals, bool has_color, bool bent_normals);
+
 /* A session keeps device objects from one frame to the next: create once, run per frame of the same or of another
  * size. method_mask 0: pipelines are compiled for the settings of the job at hand, anew if they change. Else: general
  * ones of the methods in the mask, for sessions that try many settings. */
@@ -36,7 +39,9 @@ struct ao_session;
 struct ao_session *ao_session_create(struct gpu *gpu, uint32_t method_mask, struct tool_error *err);
 void ao_session_destroy(struct ao_session *session);
 
-/* result's arrays are malloc'ed; ao_result_free frees them. On failure *result is empty. */
+/* result's arrays are malloc'ed; ao_result_free frees them. On failure *result is empty, and the
+ * session is as good as new unless err->ends_run. Errors: EXIT_DEVICE, EXIT_MEMORY; EXIT_CHANNELS if
+ * the library refuses view or parameters, whose reason it prints. */
 bool ao_run(struct ao_session *session, const struct ao_job *job, struct ao_result *result, struct tool_error *err);
 void ao_result_free(struct ao_result *result);
 

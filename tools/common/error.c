@@ -3,6 +3,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 bool fail(struct tool_error *err, enum exit_code code, const char *format, ...)
 {
@@ -24,5 +25,16 @@ bool fail_hint(struct tool_error *err, const char *format, ...)
         vsnprintf(err->hint, sizeof err->hint, format, args);
         va_end(args);
     }
+    return false;
+}
+
+bool fail_of(struct tool_error *err, const char *path)
+{
+    char message[sizeof err->message];
+    if (strncmp(err->message, path, strlen(path)) == 0)
+        return false;
+    memcpy(message, err->message, sizeof message);
+    /* A long path leaves less of the message: the message ends with what matters least. */
+    snprintf(err->message, sizeof err->message, "%.500s: %.500s", path, message);
     return false;
 }

@@ -25,6 +25,7 @@ enum exit_code {
 
 struct tool_error {
     int code;           /* enum exit_code; EXIT_OK while nothing went wrong */
+    bool ends_run;      /* no other file could do better: there is no device, or it is lost */
     char message[1024]; /* 'FILE: what is wrong', no newline */
     char hint[1024];    /* what to do about it; empty if there is nothing useful to say */
 };
@@ -40,6 +41,8 @@ struct tool_error {
 bool fail(struct tool_error *err, enum exit_code code, const char *format, ...) TOOL_PRINTF(3, 4);
 /* Adds the remedy to an error that has none yet; returns false. */
 bool fail_hint(struct tool_error *err, const char *format, ...) TOOL_PRINTF(2, 3);
+/* Puts 'PATH: ' in front of an error whose message does not begin so; returns false. */
+bool fail_of(struct tool_error *err, const char *path);
 
 #ifdef __cplusplus
 }

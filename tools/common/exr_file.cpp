@@ -18,6 +18,7 @@
 #include <ImfVecAttribute.h>
 #include <OpenEXRConfig.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -155,6 +156,12 @@ void fill_attributes(const Imf::Header &header, exr_part &part)
     }
 }
 
+/* threads: of OpenEXR. A chunk is in memory as stored, decoded, and once more while it is decoded. */
+uint64_t decode_bytes(const part_layout &layout, int threads)
+{
+    return layout.deep ? 0 : 3 * 2 * uint64_t(std::max(threads, 1)) * uint64_t(layout.chunk_bytes);
+}
+
 void fill_part(const Imf::Header &header, const part_layout &layout, exr_part &part)
 {
     const auto *view = header.findTypedAttribute<Imf::StringAttribute>("view");
@@ -181,6 +188,7 @@ void read_info(const char *path, exr_info *info)
     for (const part_layout &layout : parts) {
         const int i = int(info->part_count++);
         fill_part(file->header(i), layout, info->parts[i]);
+        info->parts[i].decode_bytes = decode_bytes(layout, info->input->useful_threads());
     }
 }
 

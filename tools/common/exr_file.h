@@ -54,6 +54,7 @@ struct exr_part {
     char **multi_view; /* single-part stereo: first is the default view */
     size_t multi_view_count;
     bool deep;
+    uint64_t decode_bytes; /* memory that reading pixels takes, beside that for the values */
 };
 
 /* A file, open. Whoever reads or copies it later sees what was there when it was opened, even if the

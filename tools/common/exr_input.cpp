@@ -236,15 +236,6 @@ const char *find_difference(const Imf::Header &header, const part_layout &part)
           what);
 }
 
-/* Each thread of OpenEXR takes buffers for two chunks: no more of them than chunks to decode. */
-int useful_threads(const file_layout &layout)
-{
-    int64_t most = 1;
-    for (const part_layout &part : layout.parts)
-        most = std::max(most, part.chunk_count);
-    return int(std::min(int64_t{Imf::globalThreadCount()}, most));
-}
-
 } // namespace
 
 } // namespace exr
@@ -252,6 +243,14 @@ int useful_threads(const file_layout &layout)
 exr_input::exr_input(const char *path, const char *shown)
     : stream(path, shown), layout(exr::read_layout(stream))
 {
+}
+
+int exr_input::useful_threads() const
+{
+    int64_t most = 1;
+    for (const exr::part_layout &part : layout.parts)
+        most = std::max(most, part.chunk_count);
+    return int(std::min(int64_t{exr::Imf::globalThreadCount()}, most));
 }
 
 /* No reconstruction: OpenEXR would search an unfinished file for chunks, and we would show an image
@@ -263,7 +262,7 @@ std::unique_ptr<exr::Imf::MultiPartInputFile> exr_input::open()
         stream.check_unchanged();
         stream.seekg(0);
         auto file =
-            std::make_unique<Imf::MultiPartInputFile>(stream, useful_threads(layout), false);
+            std::make_unique<Imf::MultiPartInputFile>(stream, useful_threads(), false);
         stream.check_unchanged();
         if (file->parts() != int(layout.parts.size()))
             disagree(stream, 0, "number of parts");

@@ -56,7 +56,7 @@ bool at_border(tool_error *err, exit_code code, const char *path, const char *wh
     } catch (const std::exception &e) {
         fail(err, code, "%s: %s: %s", path, what, library_message(e).c_str());
     } catch (...) {
-        fail(err, EXIT_BUG, "%s: %s: unknown exception", path, what);
+        fail(err, code, "%s: %s: unknown exception", path, what);
     }
     return false;
 }
@@ -143,6 +143,8 @@ struct exr_input {
      * it understands differently from the walk is an error: sizes that come from the layout then
      * hold for what OpenEXR does. */
     std::unique_ptr<exr::Imf::MultiPartInputFile> open();
+    /* Of OpenEXR. Each takes buffers for two chunks: no more of them than chunks to decode. */
+    int useful_threads() const;
 };
 
 namespace exr {

@@ -2,6 +2,7 @@
 #include "gbuffer.h"
 
 #include "gbuffer_internal.h"
+#include "placement.h"
 #include "text.h"
 
 #include <math.h>
@@ -173,6 +174,48 @@ static bool read_color(const struct exr_info *info, struct gbuffer *g, struct to
     return true;
 }
 
+static uint64_t box_texels(const struct exr_box *box)
+{
+    return (uint64_t)((int64_t)box->x_max - box->x_min + 1) *
+           (uint64_t)((int64_t)box->y_max - box->y_min + 1);
+}
+
+/* Bytes per texel of a role with four components, and what reading it takes for a while: the decoder
+ * and, if its window is another, an image of that. */
+static void add_vector(const struct exr_info *info, const struct gbuffer *g,
+                       const struct role *role, uint64_t *texel_bytes, uint64_t *for_a_while)
+{
+    const struct exr_part *part = &info->parts[role->part];
+    const bool same = same_box(&part->data_window, &g->data_window);
+    const uint64_t bytes =
+        part->decode_bytes + (same ? 0 : box_texels(&part->data_window) * 4 * sizeof(float));
+    *texel_bytes += 4 * sizeof(float);
+    *for_a_while = bytes > *for_a_while ? bytes : *for_a_while;
+}
+
+/* Sizes are at most 2^30 texels of less than 2^10 bytes: nothing here overflows. */
+static bool check_budget(const struct exr_info *info, const struct gbuffer_options *options,
+                         const struct gbuffer *g, struct tool_error *err)
+{
+    const struct role *normal = &g->roles.kind[ROLE_NORMAL], *color = &g->roles.kind[ROLE_COLOR];
+    const struct placement placement = placement_of(&g->data_window, &g->display_window);
+    const uint64_t work_texels = ((uint64_t)g->width + placement.left) * (g->height + placement.top);
+    uint64_t texel_bytes = sizeof(float),
+             for_a_while = info->parts[g->roles.kind[ROLE_DEPTH].part].decode_bytes;
+    if (!budget_allows_pixels(&options->budget, info->path, g->width, g->height, err))
+        return false;
+    if (normal->found)
+        add_vector(info, g, normal, &texel_bytes, &for_a_while);
+    if (options->want_color)
+        add_vector(info, g, color, &texel_bytes, &for_a_while);
+    const uint64_t work =
+        work_texels * (options->work_texel_bytes +
+                       (normal->found ? options->work_normals_texel_bytes : 0));
+    const uint64_t bytes = options->held_bytes + work_texels * texel_bytes +
+                           (for_a_while > work ? for_a_while : work);
+    return budget_allows_memory(&options->budget, info->path, g->width, g->height, bytes, err);
+}
+
 /* Everything that the header alone decides. */
 static bool resolve(const struct exr_info *info, const struct gbuffer_options *options,
                     const struct camera *camera_file, struct gbuffer *g, struct tool_error *err)
@@ -201,7 +244,8 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
         return fail(err, EXIT_CHANNELS, "%s: no colour found, which --mode comp needs", info->path);
     }
     return check_role(info, depth, err) && check_role(info, &g->roles.kind[ROLE_NORMAL], err) &&
-           (!options->want_color || check_role(info, &g->roles.kind[ROLE_COLOR], err));
+           (!options->want_color || check_role(info, &g->roles.kind[ROLE_COLOR], err)) &&
+           check_budget(info, options, g, err);
 }
 
 bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *options,

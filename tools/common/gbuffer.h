@@ -6,6 +6,7 @@
 #ifndef VKAO_TOOLS_GBUFFER_H_
 #define VKAO_TOOLS_GBUFFER_H_
 
+#include "budget.h"
 #include "camera.h"
 #include "error.h"
 #include "exr_file.h"
@@ -25,6 +26,11 @@ struct gbuffer_options {
     enum normal_space normal_space;
     enum normal_encoding normal_encoding;
     bool want_color; /* colour is an error if it is missing, and is not read otherwise */
+    struct budget budget;
+    /* What the caller will take per texel, counted against the budget: in any case, and more if there
+     * are normals. */
+    uint64_t work_texel_bytes, work_normals_texel_bytes;
+    uint64_t held_bytes;       /* what he holds already, likewise */
 };
 
 struct gbuffer {
@@ -50,7 +56,8 @@ struct gbuffer {
     vkao_view view;
 };
 
-/* camera_file may be NULL. Errors: EXIT_INPUT, EXIT_CHANNELS, EXIT_MEMORY; *gbuffer is then empty
+/* camera_file may be NULL. Errors: EXIT_INPUT, EXIT_CHANNELS, EXIT_MEMORY (also if the budget is too
+ * small, which is asked before pixels are read); *gbuffer is then empty
  * but for what was resolved: roles, camera and windows, for `vkao inspect`. */
 bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *options,
                   const struct camera *camera_file, struct report *report, struct gbuffer *gbuffer,

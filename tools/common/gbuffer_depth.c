@@ -1,15 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 #include "gbuffer_internal.h"
 
-#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
-/* What renderers write where there is nothing: Falcor, Cycles, Arnold, clip ranges. No scene
- * measures exactly this. */
+/* No scene measures more or less than this, in whatever unit. Within, squares are finite and not 0. */
+static const double least_z = 1e-18, largest_z = 1e18;
+
+/* What renderers write where there is nothing: Falcor, Cycles, clip ranges. No scene measures exactly
+ * this. Arnold's is beyond the largest. */
 static bool is_sentinel(float z)
 {
-    static const float values[] = {1e8f, 1e10f, 1e12f, 1e20f, 1e30f, FLT_MAX};
+    static const float values[] = {1e8f, 1e10f, 1e12f};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++)
         if (!(z < values[i]) && !(z > values[i]))
             return true;
@@ -18,7 +20,7 @@ static bool is_sentinel(float z)
 
 static bool is_valid(float z)
 {
-    return isfinite(z) && z > 0 && !is_sentinel(z);
+    return (double)z >= least_z && (double)z <= largest_z && !is_sentinel(z);
 }
 
 /* The median of the values as stored, without what is certainly background. */
@@ -121,6 +123,10 @@ static bool measure(struct gbuffer *g)
         if (!gbuffer_is_foreground(g, i))
             continue;
         double z = view_z(g, i);
+        if (!(z >= least_z && z <= largest_z)) {
+            g->depth[i] = g->background_depth;
+            continue;
+        }
         if (foreground++ == 0)
             g->min_z = g->max_z = z;
         g->min_z = z < g->min_z ? z : g->min_z;
@@ -167,9 +173,26 @@ static bool check_planes(const struct gbuffer *g, const char *path, struct tool_
         return fail(err, EXIT_CHANNELS, "%s: device depth needs both planes", path);
     }
     bool infinite = isinf(n) || isinf(f);
-    if (!(n < f || n > f) || (infinite && (g->camera.type == CAMERA_ORTHOGRAPHIC)))
+    if (!(n < f || n > f) || fmin(n, f) < least_z || (!infinite && fmax(n, f) > largest_z) || (infinite && (g->camera.type == CAMERA_ORTHOGRAPHIC)))
         return fail(err, EXIT_CHANNELS, "%s: planes at %g and %g give no projection", path, n, f);
     return true;
+}
+
+/* The library wants a matrix of finite numbers that can be inverted; a camera's file may say
+ * anything. */
+static bool check_projection(const struct gbuffer *g, const char *path, struct tool_error *err)
+{
+    const float *m = g->view.projection;
+    const bool ortho = g->camera.type == CAMERA_ORTHOGRAPHIC;
+    bool good = isnormal(m[0]) && isnormal(m[5]) && isnormal(1.0f / m[0]) && isnormal(1.0f / m[5]) &&
+                isnormal(ortho ? m[10] : m[14]);
+    for (int i = 0; i < 16; i++)
+        good = good && fabs((double)m[i]) <= largest_z;
+    if (good)
+        return true;
+    fail_hint(err, "say what the camera is: --fov, --ortho or --camera FILE.json");
+    return fail(err, EXIT_CHANNELS, "%s: the camera (%s) gives no projection that can be computed",
+                path, g->camera.source[0] ? g->camera.source : "assumed");
 }
 
 static void warn_about_depth(const struct gbuffer *g, const char *path, struct report *report)
@@ -222,6 +245,8 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *opti
         planes = enclosing_planes(g);
         camera_project(&g->camera, &planes, &g->display_window, &g->data_window, &g->view);
     }
+    if (!check_projection(g, path, err))
+        return false;
     if (g->roles.kind[ROLE_DEPTH].channels[0]->type == EXR_HALF && median > 0)
         g->depth_step = ldexp(1.0, (int)floor(log2(median)) - 10);
     warn_about_depth(g, path, report);

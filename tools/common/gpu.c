@@ -13,6 +13,7 @@ static const char validation_layer[] = "VK_LAYER_KHRONOS_validation";
 static bool vk_failed(struct tool_error *err, const char *call, VkResult result)
 {
     bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    err->ends_run = err->ends_run || result == VK_ERROR_DEVICE_LOST;
     return fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "%s failed with VkResult %d", call,
                 (int)result);
 }
@@ -239,6 +240,13 @@ static bool create_device(struct gpu *gpu, const struct gpu_options *options,
         return fail(err, EXIT_DEVICE, "%s has no compute queue", gpu->properties.deviceName);
     gpu->timestamp_bits = families[gpu->queue_family].timestampValidBits;
     vkGetPhysicalDeviceMemoryProperties(gpu->physical_device, &gpu->memory);
+    VkPhysicalDeviceMaintenance3Properties limits = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MAINTENANCE_3_PROPERTIES};
+    vkGetPhysicalDeviceProperties2(
+        gpu->physical_device,
+        &(VkPhysicalDeviceProperties2){.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                       .pNext = &limits});
+    gpu->max_allocation = limits.maxMemoryAllocationSize;
     vkao_add_required_features(&gpu->features);
     VkPhysicalDevice16BitStorageFeatures storage = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_16BIT_STORAGE_FEATURES};
@@ -386,7 +394,7 @@ bool gpu_library_failed(struct tool_error *err, const char *call, vkao_result re
     if (result == VKAO_ERROR_OUT_OF_HOST_MEMORY || result == VKAO_ERROR_OUT_OF_DEVICE_MEMORY)
         code = EXIT_MEMORY;
     else if (result == VKAO_ERROR_INVALID_ARGUMENT)
-        code = EXIT_BUG; /* options were checked before: the tool built something wrong */
+        code = EXIT_CHANNELS; /* options were checked before: it is what the file says */
     return fail(err, code, "%s: %s", call, vkao_result_string(result));
 }
 

@@ -26,6 +26,7 @@ struct gpu {
     VkDebugUtilsMessengerEXT messenger;
     VkPhysicalDeviceProperties properties;
     VkPhysicalDeviceMemoryProperties memory;
+    VkDeviceSize max_allocation; /* maxMemoryAllocationSize */
     VkPhysicalDeviceFeatures features; /* as enabled */
     VkBool32 storage_16bit;            /* storageBuffer16BitAccess is enabled */
     uint32_t validation_messages;      /* warnings and errors of the validation layers so far */
@@ -70,6 +71,8 @@ struct gpu_image {
     VkExtent2D extent;
 };
 
+/* Errors: EXIT_DEVICE, naming the limit, for what the device says beforehand that it cannot hold;
+ * EXIT_MEMORY. */
 bool gpu_image_create(struct gpu *gpu, VkFormat format, VkExtent2D extent, VkImageUsageFlags usage,
                       struct gpu_image *image, struct tool_error *err);
 void gpu_image_destroy(struct gpu *gpu, struct gpu_image *image);

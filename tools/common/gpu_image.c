@@ -3,6 +3,7 @@
  * Images, transfers and command buffers of gpu.h. */
 #include "gpu.h"
 
+#include <inttypes.h>
 #include <string.h>
 #include <vulkan/vulkan.h>
 
@@ -11,14 +12,25 @@ static bool vk_ok(struct tool_error *err, const char *call, VkResult result)
     if (result == VK_SUCCESS)
         return true;
     bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
+    err->ends_run = err->ends_run || result == VK_ERROR_DEVICE_LOST;
     return fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "%s failed with VkResult %d", call,
                 (int)result);
+}
+
+static bool fail_limit(const struct gpu *gpu, const char *limit, uint64_t has, uint64_t wanted,
+                       struct tool_error *err)
+{
+    fail_hint(err, "crop or scale the image, or choose another device with --device");
+    return fail(err, EXIT_DEVICE, "%s of %s is %" PRIu64 ", less than the %" PRIu64 " wanted",
+                limit, gpu->properties.deviceName, has, wanted);
 }
 
 bool gpu_allocate(struct gpu *gpu, const VkMemoryRequirements *need, VkMemoryPropertyFlags flags,
                   VkDeviceMemory *memory, struct tool_error *err)
 {
     uint32_t type = 0;
+    if (need->size > gpu->max_allocation)
+        return fail_limit(gpu, "maxMemoryAllocationSize", gpu->max_allocation, need->size, err);
     while (type < gpu->memory.memoryTypeCount &&
            (!(need->memoryTypeBits >> type & 1u) ||
             (gpu->memory.memoryTypes[type].propertyFlags & flags) != flags))
@@ -122,27 +134,46 @@ static bool to_general(struct gpu *gpu, struct gpu_image *image, struct tool_err
     return gpu_submit(gpu, cmd, err);
 }
 
+static bool check_image_limits(const struct gpu *gpu, const VkImageCreateInfo *info,
+                               struct tool_error *err)
+{
+    VkImageFormatProperties can;
+    const uint32_t longest =
+        info->extent.width > info->extent.height ? info->extent.width : info->extent.height;
+    const uint32_t most = gpu->properties.limits.maxImageDimension2D;
+    const uint64_t bytes =
+        (uint64_t)info->extent.width * info->extent.height * gpu_format_bytes(info->format);
+    if (longest > most)
+        return fail_limit(gpu, "maxImageDimension2D", most, longest, err);
+    VkResult result = vkGetPhysicalDeviceImageFormatProperties(
+        gpu->physical_device, info->format, info->imageType, info->tiling, info->usage, 0, &can);
+    if (result != VK_SUCCESS)
+        return vk_ok(err, "vkGetPhysicalDeviceImageFormatProperties", result);
+    return bytes <= can.maxResourceSize ||
+           fail_limit(gpu, "maxResourceSize", can.maxResourceSize, bytes, err);
+}
+
 bool gpu_image_create(struct gpu *gpu, VkFormat format, VkExtent2D extent, VkImageUsageFlags usage,
                       struct gpu_image *image, struct tool_error *err)
 {
     VkMemoryRequirements need;
+    const VkImageCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .imageType = VK_IMAGE_TYPE_2D,
+        .format = format,
+        .extent = {extent.width, extent.height, 1},
+        .mipLevels = 1,
+        .arrayLayers = 1,
+        .samples = VK_SAMPLE_COUNT_1_BIT,
+        .tiling = VK_IMAGE_TILING_OPTIMAL,
+        .usage = usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+        .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
+        .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
+    };
     *image = (struct gpu_image){.format = format, .extent = extent};
-    VkResult result = vkCreateImage(
-        gpu->device,
-        &(VkImageCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-            .imageType = VK_IMAGE_TYPE_2D,
-            .format = format,
-            .extent = {extent.width, extent.height, 1},
-            .mipLevels = 1,
-            .arrayLayers = 1,
-            .samples = VK_SAMPLE_COUNT_1_BIT,
-            .tiling = VK_IMAGE_TILING_OPTIMAL,
-            .usage = usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-            .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
-            .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
-        },
-        NULL, &image->image);
+    if (!check_image_limits(gpu, &info, err))
+        return false;
+    VkResult result = vkCreateImage(gpu->device, &info, NULL, &image->image);
     if (result != VK_SUCCESS) {
         image->image = VK_NULL_HANDLE;
         return vk_ok(err, "vkCreateImage", result);

@@ -8,14 +8,14 @@
 #include <stdlib.h>
 
 struct sink {
-    struct atomic_file file;
+    struct atomic_file *file;
     struct tool_error *err;
 };
 
 static void write_bytes(png_structp png, png_bytep data, size_t bytes)
 {
     struct sink *sink = png_get_io_ptr(png);
-    if (!atomic_file_write(&sink->file, data, bytes, sink->err))
+    if (!atomic_file_write(sink->file, data, bytes, sink->err))
         png_error(png, "write");
 }
 
@@ -27,7 +27,7 @@ static void flush_nothing(png_structp png)
 static void on_error(png_structp png, png_const_charp message)
 {
     struct sink *sink = png_get_error_ptr(png);
-    fail(sink->err, EXIT_OUTPUT, "%s: cannot write PNG: %s", sink->file.path, message);
+    fail(sink->err, EXIT_OUTPUT, "%s: cannot write PNG: %s", sink->file->path, message);
     png_longjmp(png, 1);
 }
 
@@ -54,26 +54,33 @@ static bool encode(struct sink *sink, png_structp png, png_infop info, uint32_t 
     return true;
 }
 
-bool png_file_write(const char *path, uint32_t width, uint32_t height, unsigned channels,
-                    const uint8_t *pixels, bool replace, struct tool_error *err)
+bool png_file_prepare(struct atomic_file *file, const char *path, uint32_t width, uint32_t height,
+                      unsigned channels, const uint8_t *pixels, bool replace,
+                      struct tool_error *err)
 {
-    struct sink *sink = calloc(1, sizeof *sink);
-    if (!sink)
-        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
-    sink->err = err;
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, sink, on_error, on_warning);
+    struct sink sink = {file, err};
+    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &sink, on_error, on_warning);
     png_infop info = png ? png_create_info_struct(png) : NULL;
     bool ok = false;
     if (!info) {
         fail(err, EXIT_MEMORY, "%s: out of memory", path);
-    } else if (atomic_file_open(&sink->file, path, replace, err)) {
-        ok = encode(sink, png, info, width, height, channels, pixels);
-        if (ok)
-            ok = atomic_file_commit(&sink->file, err);
-        else
-            atomic_file_abort(&sink->file);
+    } else if (atomic_file_open(file, path, replace, err)) {
+        ok = encode(&sink, png, info, width, height, channels, pixels);
+        if (!ok)
+            atomic_file_abort(file);
     }
     png_destroy_write_struct(&png, &info);
-    free(sink);
+    return ok;
+}
+
+bool png_file_write(const char *path, uint32_t width, uint32_t height, unsigned channels,
+                    const uint8_t *pixels, bool replace, struct tool_error *err)
+{
+    struct atomic_file *file = calloc(1, sizeof *file);
+    if (!file)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    bool ok = png_file_prepare(file, path, width, height, channels, pixels, replace, err) &&
+              atomic_file_commit(file, err);
+    free(file);
     return ok;
 }

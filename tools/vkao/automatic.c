@@ -11,7 +11,7 @@ float automatic_radius(const struct gbuffer *gbuffer)
         return 1.0f;
     snprintf(digits, sizeof digits, "%.2g", gbuffer->median_z * 0.05);
     float radius = strtof(digits, NULL);
-    return radius > 1e-18f ? radius : 1e-18f;
+    return radius > 1e-18f ? radius : 1e-18f; /* its square must not be 0 */
 }
 
 float automatic_bias(const struct gbuffer *gbuffer, float radius, float bias)

@@ -95,7 +95,7 @@ void options_help(struct text *text);
 
 /* Values of apply. */
 option_apply apply_flag, apply_text, apply_word, apply_float, apply_double, apply_uint,
-    apply_radius, apply_bias, apply_blur, apply_normal_power, apply_tint, apply_fov, apply_normal, apply_compression,
-    apply_verbose, apply_quiet;
+    apply_count, apply_bytes, apply_radius, apply_bias, apply_blur, apply_normal_power, apply_tint,
+    apply_fov, apply_normal, apply_compression, apply_verbose, apply_quiet;
 
 #endif

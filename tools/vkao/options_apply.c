@@ -110,6 +110,23 @@ bool apply_uint(struct options *options, const struct option_row *row, const cha
     return true;
 }
 
+bool apply_count(struct options *options, const struct option_row *row, const char *argument,
+                 struct tool_error *err)
+{
+    int64_t value;
+    if (!text_to_integer(argument, &value) || !in_range(&row->range, (double)value))
+        return fail_range(row, argument, true, err);
+    *(uint64_t *)member(options, row) = (uint64_t)value;
+    return true;
+}
+
+bool apply_bytes(struct options *options, const struct option_row *row, const char *argument,
+                 struct tool_error *err)
+{
+    return budget_parse_bytes(argument, member(options, row)) ||
+           fail(err, EXIT_USAGE, "--%s is %s, want bytes, as 800M or 4G", row->name, argument);
+}
+
 bool apply_radius(struct options *options, const struct option_row *row, const char *argument,
                   struct tool_error *err)
 {

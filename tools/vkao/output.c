@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum { NAME_BYTES = 512, STRINGS = 3 };
 
@@ -206,8 +207,9 @@ static float to_srgb(float linear)
     return linear <= 0.0031308f ? linear * 12.92f : 1.055f * powf(linear, 1.0f / 2.4f) - 0.055f;
 }
 
-static bool write_preview(const struct options *o, const char *path,
-                          const struct rendered_view *view, struct tool_error *err)
+static bool prepare_preview(const struct options *o, const char *path,
+                            const struct rendered_view *view, struct atomic_file *file,
+                            struct tool_error *err)
 {
     bool grey = o->mode != OUTPUT_COMP;
     size_t texels = (size_t)view->gbuffer.width * view->gbuffer.height, bytes;
@@ -222,27 +224,60 @@ static bool write_preview(const struct options *o, const char *path,
         for (size_t c = 0; !grey && c < 3; c++)
             pixels[i * 3 + c] = to_byte(to_srgb(view->result.output[i * 4 + c]));
     }
-    bool ok = png_file_write(path, view->gbuffer.width, view->gbuffer.height, grey ? 1 : 3, pixels,
-                             o->overwrite != 0, err);
+    bool ok = png_file_prepare(file, path, view->gbuffer.width, view->gbuffer.height,
+                               grey ? 1 : 3, pixels, o->overwrite != 0, err);
     free(pixels);
     return ok;
 }
 
-bool output_write(const struct options *options, const struct plan_frame *frame,
-                  const struct frame_source *source, const struct rendered_view *views,
-                  const char *device, struct tool_error *err)
+static bool prepare_previews(const struct options *o, const struct plan_frame *frame,
+                             const struct frame_source *source, const struct rendered_view *views,
+                             struct atomic_file *files, struct tool_error *err)
 {
-    if (!write_exr(options, frame, source, views, device, err))
-        return false;
-    for (size_t i = 0; frame->preview && i < source->view_count; i++) {
+    for (size_t i = 0; i < source->view_count; i++) {
         struct text path = {0};
         preview_path(frame->preview, views[i].name, source->view_count, &path);
         bool ok = path.data && !path.out_of_memory
-                      ? write_preview(options, path.data, &views[i], err)
+                      ? prepare_preview(o, path.data, &views[i], &files[i], err)
                       : fail(err, EXIT_MEMORY, "%s: out of memory", frame->preview);
         text_free(&path);
         if (!ok)
             return false;
     }
     return true;
+}
+
+/* What is left to fail when all is written: a rename. Then nothing may stay that the next run would
+ * stop at. */
+static bool commit_previews(const struct options *o, const struct plan_frame *frame,
+                            struct atomic_file *files, size_t count, struct tool_error *err)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (atomic_file_commit(&files[i], err))
+            continue;
+        for (size_t done = 0; !o->overwrite && done < i; done++)
+            unlink(files[done].target);
+        if (!o->overwrite)
+            unlink(frame->output);
+        return false;
+    }
+    return true;
+}
+
+bool output_write(const struct options *options, const struct plan_frame *frame,
+                  const struct frame_source *source, const struct rendered_view *views,
+                  const char *device, struct tool_error *err)
+{
+    if (!frame->preview)
+        return write_exr(options, frame, source, views, device, err);
+    struct atomic_file *files = calloc(source->view_count, sizeof *files);
+    if (!files)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", frame->preview);
+    bool ok = prepare_previews(options, frame, source, views, files, err) &&
+              write_exr(options, frame, source, views, device, err) &&
+              commit_previews(options, frame, files, source->view_count, err);
+    for (size_t i = 0; i < source->view_count; i++)
+        atomic_file_abort(&files[i]);
+    free(files);
+    return ok;
 }

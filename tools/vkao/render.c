@@ -172,6 +172,7 @@ struct opening {
     const struct frame_source *source;
     const struct view *view;
     struct gbuffer *gbuffer;
+    uint64_t held_bytes;
     double read_ms;
     bool is_read, is_started;
     struct tool_error read_err, start_err;
@@ -186,7 +187,12 @@ static void open_part(void *data, uint32_t part)
         o->is_started = session_start(o->session, &o->start_err);
         return;
     }
-    const struct gbuffer_options options = view_options(o->session->options, o->view);
+    struct gbuffer_options options = view_options(o->session->options, o->view);
+    const bool bent = o->session->options->bent_normals;
+    options.work_texel_bytes = ao_job_texel_bytes(false, options.want_color, bent);
+    options.work_normals_texel_bytes =
+        ao_job_texel_bytes(true, options.want_color, bent) - options.work_texel_bytes;
+    options.held_bytes = o->held_bytes;
     const double start = now_ms();
     o->is_read = gbuffer_load(&o->source->info, &options, o->view->camera, o->session->report,
                               o->gbuffer, &o->read_err);
@@ -194,10 +200,17 @@ static void open_part(void *data, uint32_t part)
 }
 
 static bool open_view(struct session *s, const struct frame_source *source, const struct view *view,
-                      struct gbuffer *g, struct times *times, struct tool_error *err)
+                      uint64_t held_bytes, struct gbuffer *g, struct times *times,
+                      struct tool_error *err)
 {
     struct opening o = {
-        .session = s, .source = source, .view = view, .gbuffer = g, .is_started = s->ao != NULL};
+        .session = s,
+        .source = source,
+        .view = view,
+        .gbuffer = g,
+        .held_bytes = held_bytes,
+        .is_started = s->ao != NULL,
+    };
     const uint32_t parts = o.is_started ? 1 : OPENING_PARTS; /* the device, the last, but once */
     if (s->options->validation) {
         /* Its layers are set up through the environment, which threads must not see change. */
@@ -207,18 +220,33 @@ static bool open_view(struct session *s, const struct frame_source *source, cons
         parallel_run(NULL, parts, open_part, &o);
     }
     times->read += o.read_ms;
+    o.start_err.ends_run = !o.is_started;
     if (!o.is_read || !o.is_started)
         *err = o.is_read ? o.start_err : o.read_err;
     return o.is_read && o.is_started;
 }
 
+/* What the views of a frame keep until they are written. */
+static uint64_t held_by(const struct rendered_view *views, size_t count)
+{
+    uint64_t bytes = 0;
+    for (size_t i = 0; i < count; i++) {
+        const struct ao_result *r = &views[i].result;
+        const uint64_t vectors = (views[i].gbuffer.color ? UINT64_C(1) : 0) +
+                                 (r->output ? UINT64_C(1) : 0) + (r->bent ? UINT64_C(1) : 0);
+        bytes += (uint64_t)views[i].gbuffer.width * views[i].gbuffer.height * sizeof(float) *
+                 (1 + 4 * vectors);
+    }
+    return bytes;
+}
+
 static bool render_view(struct session *s, const struct frame_source *source,
-                        const struct view *view, struct rendered_view *out, struct times *times,
-                        struct tool_error *err)
+                        const struct view *view, uint64_t held_bytes, struct rendered_view *out,
+                        struct times *times, struct tool_error *err)
 {
     struct gbuffer *g = &out->gbuffer;
     out->name = view->name;
-    if (!open_view(s, source, view, g, times, err))
+    if (!open_view(s, source, view, held_bytes, g, times, err))
         return false;
     out->ssao = s->options->ssao;
     out->ssao.radius = choose_radius(s, g);
@@ -246,7 +274,8 @@ static bool render_frame(struct session *s, const struct plan_frame *frame, stru
               output_check_names(s->options, frame, &source, err);
     times.read = now_ms() - start;
     for (size_t i = 0; ok && i < source.view_count; i++)
-        ok = render_view(s, &source, &source.views[i], &views[i], &times, err);
+        ok = render_view(s, &source, &source.views[i], held_by(views, i), &views[i], &times, err) ||
+             fail_of(err, frame->input);
     start = now_ms();
     char device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
     device_name(s, device, sizeof device);
@@ -272,12 +301,6 @@ static void hint_at_frames(const struct plan *plan, const struct plan_frame *fra
                   options->input);
 }
 
-/* Errors that the next frame would meet again. */
-static bool is_fatal(int code)
-{
-    return code == EXIT_DEVICE || code == EXIT_MEMORY || code == EXIT_BUG;
-}
-
 static int render_plan(struct session *s, const struct plan *plan)
 {
     size_t failed = 0;
@@ -291,7 +314,7 @@ static int render_plan(struct session *s, const struct plan *plan)
             continue;
         hint_at_frames(plan, frame, s->options, &err);
         report_error(&err);
-        if (!s->options->continue_on_error || is_fatal(err.code))
+        if (!s->options->continue_on_error || err.ends_run)
             return err.code;
         failed++;
     }

@@ -12,9 +12,23 @@ static bool inside(const struct exr_box *data, const struct exr_box *display)
            data->x_max <= display->x_max && data->y_max <= display->y_max;
 }
 
-/* Replaces *image by a copy with zeros on the left and on top. */
+/* The noise repeats after 4 columns, and after 820 rows all but: 820 steps of 1/g, g being the plastic
+ * number, are 619 turns less .0003. At half resolution a texel is two. */
+enum { NOISE_COLUMNS = 2 * 4, NOISE_ROWS = 2 * 820 };
+
+struct placement placement_of(const struct exr_box *data, const struct exr_box *display)
+{
+    if (!inside(data, display))
+        return (struct placement){0, 0};
+    return (struct placement){
+        .left = (uint32_t)(((int64_t)data->x_min - display->x_min) % NOISE_COLUMNS),
+        .top = (uint32_t)(((int64_t)data->y_min - display->y_min) % NOISE_ROWS),
+    };
+}
+
+/* Replaces *image by a copy with the value on the left and on top. */
 static bool pad(float **image, const struct gbuffer *g, const struct placement *p,
-                size_t components, struct tool_error *err)
+                size_t components, float value, struct tool_error *err)
 {
     size_t width = (size_t)g->width + p->left, height = (size_t)g->height + p->top, texels, count;
     if (!*image)
@@ -24,6 +38,8 @@ static bool pad(float **image, const struct gbuffer *g, const struct placement *
         padded = calloc(count, sizeof *padded);
     if (!padded)
         return fail(err, EXIT_MEMORY, "out of memory for %zu x %zu texels", width, height);
+    for (size_t i = 0; value > 0 && i < count; i++)
+        padded[i] = value;
     for (size_t row = 0; row < g->height; row++)
         memcpy(padded + ((row + p->top) * width + p->left) * components,
                *image + row * g->width * components, g->width * components * sizeof *padded);
@@ -45,19 +61,18 @@ static void crop(float *image, const struct gbuffer *g, const struct placement *
 bool placement_expand(struct gbuffer *gbuffer, struct placement *placement, struct tool_error *err)
 {
     struct gbuffer *g = gbuffer;
-    *placement = (struct placement){0};
-    if (!inside(&g->data_window, &g->display_window))
-        return true;
-    placement->left = (uint32_t)(g->data_window.x_min - g->display_window.x_min);
-    placement->top = (uint32_t)(g->data_window.y_min - g->display_window.y_min);
+    *placement = placement_of(&g->data_window, &g->display_window);
     if (placement->left == 0 && placement->top == 0)
         return true;
-    if (!pad(&g->depth, g, placement, 1, err) || !pad(&g->normals, g, placement, 4, err) ||
-        !pad(&g->color, g, placement, 4, err))
+    if (!pad(&g->depth, g, placement, 1, g->background_depth, err) ||
+        !pad(&g->normals, g, placement, 4, 0.0f, err) ||
+        !pad(&g->color, g, placement, 4, 0.0f, err))
         return false;
+    /* Half resolution wants to begin at even texels: a column and a row of background do no harm. */
+    const uint32_t odd_x = placement->left % 2, odd_y = placement->top % 2;
     g->view.valid = (VkRect2D){
-        .offset = {(int32_t)placement->left, (int32_t)placement->top},
-        .extent = {g->width, g->height},
+        .offset = {(int32_t)(placement->left - odd_x), (int32_t)(placement->top - odd_y)},
+        .extent = {g->width + odd_x, g->height + odd_y},
     };
     g->view.viewport.offset.x += (int32_t)placement->left;
     g->view.viewport.offset.y += (int32_t)placement->top;

@@ -9,13 +9,15 @@
 #include "error.h"
 #include "gbuffer.h"
 
-/* Texels that were added on the left and on top. */
+/* Texels that are added on the left and on top. */
 struct placement {
     uint32_t left, top;
 };
 
-/* Pads the images of a data window that lies inside its display window; others stay, with a
- * placement of 0, 0. gbuffer->width and height stay those of the data window; the job is larger by
+/* That of a data window inside its display window; 0, 0 for others. Less than the place in the
+ * display, where that is far off: the noise repeats. */
+struct placement placement_of(const struct exr_box *data, const struct exr_box *display);
+/* Pads the images. gbuffer->width and height stay those of the data window; the job is larger by
  * the placement. */
 bool placement_expand(struct gbuffer *gbuffer, struct placement *placement, struct tool_error *err);
 /* Takes the padding off the results, and off the colour. */
