@@ -18,6 +18,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -127,6 +128,9 @@ file_layout read_layout(input_stream &stream);
 /* Checks that every chunk lies inside the file and is the one that its place in the table wants.
  * OpenEXR does neither before it makes raw copies. Tiles must also lie as it expects them. */
 void check_chunks(input_stream &stream, const file_layout &layout);
+/* Checks that the chunks of the largest level of a flat part decode to as many bytes as they have
+ * pixels. OpenEXR 3.1 takes what is missing from memory that it never wrote. */
+void check_decoded(input_stream &stream, const file_layout &layout, size_t part);
 /* Checks that part `part` of both files has the same chunks, byte for byte. Both passed
  * check_chunks. */
 void check_same_chunks(input_stream &a, const file_layout &a_layout, input_stream &b,
@@ -139,6 +143,7 @@ struct exr_input {
     explicit exr_input(const char *path, const char *shown = nullptr);
     exr::input_stream stream;
     exr::file_layout layout;
+    std::set<size_t> decoded; /* parts that passed check_decoded */
     /* OpenEXR's view of the file, made anew: a part of one cannot be both read and copied. Whatever
      * it understands differently from the walk is an error: sizes that come from the layout then
      * hold for what OpenEXR does. */

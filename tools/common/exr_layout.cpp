@@ -5,6 +5,9 @@
  * missing. */
 #include "exr_internal.h"
 
+#include <IlmThreadPool.h>
+#include <zlib.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cinttypes>
@@ -419,6 +422,7 @@ part_layout read_part(input_stream &stream, const attributes &all, uint32_t vers
 struct chunk {
     int32_t part, x, y, level_x, level_y; /* y: the first line; the rest is 0 without tiles */
     uint64_t begin, end;
+    uint64_t bytes; /* of them without what stands in front */
 };
 
 /* False if there is no whole chunk at the offset. */
@@ -455,6 +459,7 @@ bool read_chunk(input_stream &stream, const file_layout &layout, const part_layo
     }
     c.begin = offset;
     c.end = offset + leader + bytes;
+    c.bytes = bytes;
     return true;
 }
 
@@ -467,13 +472,13 @@ template <typename F> void each_place(const file_layout &layout, size_t index, F
     const int64_t lines = compressions[part.compression].lines;
     size_t k = 0;
     for (int64_t i = 0; !part.tiled && i < part.chunk_count; i++)
-        f(k++, chunk{number, 0, int32_t(part.data.y_min + i * lines), 0, 0, 0, 0});
+        f(k++, chunk{number, 0, int32_t(part.data.y_min + i * lines), 0, 0, 0, 0, 0});
     if (!part.tiled)
         return;
     for (const tile_level &level : tile_levels(part)) {
         for (int64_t y = 0; y < level.rows; y++) {
             for (int64_t x = 0; x < level.columns; x++)
-                f(k++, chunk{number, int32_t(x), int32_t(y), level.x, level.y, 0, 0});
+                f(k++, chunk{number, int32_t(x), int32_t(y), level.x, level.y, 0, 0, 0});
         }
     }
 }
@@ -535,7 +540,119 @@ uint64_t check_tables(input_stream &stream, const file_layout &layout)
     return first;
 }
 
+/* Multiples of step from first to last. */
+int64_t count_multiples(int64_t first, int64_t last, int64_t step)
+{
+    const auto below = [step](int64_t x) { return x >= 0 ? x / step : -divide_up(-x, step); };
+    return below(last) - below(first - 1);
+}
+
+/* What the pixels of a chunk of level 0 take when decoded. */
+int64_t decoded_bytes(const part_layout &part, const chunk &place)
+{
+    const window &w = part.data;
+    const int64_t x = w.x_min + place.x * part.tile_width;
+    const int64_t y = part.tiled ? w.y_min + place.y * part.tile_height : place.y;
+    const int64_t lines = part.tiled ? part.tile_height : compressions[part.compression].lines;
+    const int64_t x_end = part.tiled ? std::min(x + part.tile_width - 1, w.x_max) : w.x_max;
+    const int64_t y_end = std::min(y + lines - 1, w.y_max);
+    int64_t bytes = 0;
+    for (const channel_layout &c : part.channels)
+        bytes += count_multiples(x, x_end, c.x_sampling) * count_multiples(y, y_end, c.y_sampling) *
+                 (c.type == EXR_HALF ? 2 : 4);
+    return bytes;
+}
+
+int64_t count_inflated(const std::vector<char> &data)
+{
+    unsigned char scratch[32768];
+    z_stream z = {};
+    if (inflateInit(&z) != Z_OK)
+        return -1;
+    z.next_in = reinterpret_cast<unsigned char *>(const_cast<char *>(data.data()));
+    z.avail_in = unsigned(data.size());
+    int result = Z_OK;
+    while (result == Z_OK) {
+        z.next_out = scratch;
+        z.avail_out = sizeof scratch;
+        result = inflate(&z, Z_NO_FLUSH);
+    }
+    const int64_t count = result == Z_STREAM_END ? int64_t(z.total_out) : -1;
+    inflateEnd(&z);
+    return count;
+}
+
+/* A negative count is followed by as many bytes, another by one byte for count + 1. */
+int64_t count_runs(const std::vector<char> &data)
+{
+    int64_t count = 0;
+    for (size_t i = 0; i < data.size();) {
+        const int run = static_cast<signed char>(data[i]);
+        count += run < 0 ? -run : run + 1;
+        i += run < 0 ? size_t(1 - run) : 2;
+    }
+    return count;
+}
+
+struct count_task : IlmThread::Task {
+    count_task(IlmThread::TaskGroup *group, std::vector<char> bytes, bool runs, int64_t &to)
+        : Task(group), data(std::move(bytes)), is_runs(runs), count(to)
+    {
+    }
+    void execute() override { count = is_runs ? count_runs(data) : count_inflated(data); }
+    std::vector<char> data;
+    bool is_runs;
+    int64_t &count;
+};
+
 } // namespace
+
+/* OpenEXR leaves what is missing as it was in its buffers: other pixels, or whatever else was in that
+ * memory. The decoders that are not counted here find out themselves, but for no bytes at all. */
+void check_decoded(input_stream &stream, const file_layout &layout, size_t index)
+{
+    constexpr size_t most_at_once = 256; /* chunks in memory, as they are in the file */
+    enum { none, rle, zips, zip };
+    const part_layout &part = layout.parts[index];
+    const std::vector<uint64_t> offsets = read_table(stream, layout, index);
+    std::vector<std::pair<size_t, chunk>> places;
+    each_place(layout, index, [&](size_t k, const chunk &place) {
+        if (place.level_x == 0 && place.level_y == 0)
+            places.emplace_back(k, place);
+    });
+    for (size_t first = 0; first < places.size(); first += most_at_once) {
+        const size_t count = std::min(most_at_once, places.size() - first);
+        std::vector<int64_t> counts(count, -1), wants(count);
+        {
+            IlmThread::TaskGroup group; /* waits at its end */
+            for (size_t i = 0; i < count; i++) {
+                const auto &[k, place] = places[first + i];
+                chunk c;
+                wants[i] = decoded_bytes(part, place);
+                if (!read_chunk(stream, layout, part, offsets[k], c) || !same_place(c, place))
+                    continue;
+                counts[i] = int64_t(c.bytes);
+                /* As they are, if coding would have made them more. */
+                if (counts[i] >= wants[i] || counts[i] == 0 || part.compression == none)
+                    continue;
+                counts[i] = wants[i];
+                if (part.compression > zip)
+                    continue;
+                std::vector<char> data(size_t(c.bytes));
+                stream.seekg(c.end - c.bytes);
+                stream.read_all(data.data(), data.size());
+                IlmThread::ThreadPool::addGlobalTask(new count_task(
+                    &group, std::move(data), part.compression == rle, counts[i]));
+            }
+        }
+        for (size_t i = 0; i < count; i++) {
+            if (counts[i] < wants[i])
+                raise(EXIT_INPUT, damaged_hint,
+                      "%s: damaged: chunk %zu of part %zu does not hold the pixels that it should",
+                      stream.fileName(), places[first + i].first, index);
+        }
+    }
+}
 
 void check_chunks(input_stream &stream, const file_layout &layout)
 {
