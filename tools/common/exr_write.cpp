@@ -107,13 +107,23 @@ Imath::Box2i from_box(const exr_box &b)
     return {{b.x_min, b.y_min}, {b.x_max, b.y_max}};
 }
 
+/* By hand: erase of 3.1 leaks the attribute, which is as long as the file says. */
+Imf::Header without(const Imf::Header &header, const char *name)
+{
+    Imf::Header left;
+    for (auto i = header.begin(); i != header.end(); ++i) {
+        if (strcmp(i.name(), name) != 0)
+            left.insert(i.name(), i.attribute());
+    }
+    return left;
+}
+
 void insert(Imf::Header &header, const char *name, const Imf::Attribute &attribute)
 {
-    /* insert refuses to change the type of an attribute, and erase of 3.1 leaks it: so only if it
-     * must be. */
+    /* insert refuses to change the type of an attribute. */
     const auto old = header.find(name);
     if (old != header.end() && strcmp(old.attribute().typeName(), attribute.typeName()) != 0)
-        header.erase(name);
+        header = without(header, name);
     header.insert(name, attribute);
 }
 
@@ -202,7 +212,7 @@ void promote(Imf::Header &header, const part_layout &layout, const std::set<std:
 {
     header.setType(layout.type);
     if (!layout.tiled)
-        header.erase("tiles"); /* stray ones make OpenEXR take the part for a tiled one */
+        header = without(header, "tiles"); /* stray ones make OpenEXR take the part for a tiled one */
     if (header.hasName() && !header.name().empty())
         return;
     const Imf::ChannelList &channels = header.channels();
