@@ -170,6 +170,17 @@ void camera_project(const struct camera *camera, const struct camera_planes *pla
     memcpy(view->normal_to_view, identity, sizeof identity);
 }
 
+bool camera_can_project(const vkao_view *view)
+{
+    const float *m = view->projection;
+    const bool perspective = m[11] < 0.0f;
+    for (int i = 0; i < 16; i++)
+        if (!(fabsf(m[i]) <= 1e18f)) /* squares must be finite, and a NaN is no number */
+            return false;
+    return isnormal(m[0]) && isnormal(m[5]) && isnormal(1.0f / m[0]) && isnormal(1.0f / m[5]) &&
+           isnormal(perspective ? m[14] : m[10]);
+}
+
 void camera_normal_to_view(const struct camera *camera, float matrix[9])
 {
     for (int row = 0; row < 3; row++)

@@ -178,21 +178,16 @@ static bool check_planes(const struct gbuffer *g, const char *path, struct tool_
     return true;
 }
 
-/* The library wants a matrix of finite numbers that can be inverted; a camera's file may say
- * anything. */
-static bool check_projection(const struct gbuffer *g, const char *path, struct tool_error *err)
+static bool fail_projection(const struct gbuffer *g, const char *path,
+                            const struct camera_planes *planes, struct tool_error *err)
 {
-    const float *m = g->view.projection;
-    const bool ortho = g->camera.type == CAMERA_ORTHOGRAPHIC;
-    bool good = isnormal(m[0]) && isnormal(m[5]) && isnormal(1.0f / m[0]) && isnormal(1.0f / m[5]) &&
-                isnormal(ortho ? m[10] : m[14]);
-    for (int i = 0; i < 16; i++)
-        good = good && fabs((double)m[i]) <= largest_z;
-    if (good)
-        return true;
-    fail_hint(err, "say what the camera is: --fov, --ortho or --camera FILE.json");
-    return fail(err, EXIT_CHANNELS, "%s: the camera (%s) gives no projection that can be computed",
-                path, g->camera.source[0] ? g->camera.source : "assumed");
+    fail_hint(err, "--fov or --ortho, and --near and --far, take the place of the header's");
+    return fail(err, EXIT_CHANNELS,
+                "%s: the camera (%s) gives no usable projection: half sizes %g and %g, shift %g "
+                "and %g, planes at %g and %g",
+                path, g->camera.source[0] ? g->camera.source : "assumed", g->camera.half_width,
+                g->camera.half_height, g->camera.shift_x, g->camera.shift_y, planes->near_plane,
+                planes->far_plane);
 }
 
 static void warn_about_depth(const struct gbuffer *g, const char *path, struct report *report)
@@ -245,8 +240,8 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *opti
         planes = enclosing_planes(g);
         camera_project(&g->camera, &planes, &g->display_window, &g->data_window, &g->view);
     }
-    if (!check_projection(g, path, err))
-        return false;
+    if (!camera_can_project(&g->view))
+        return fail_projection(g, path, &planes, err);
     if (g->roles.kind[ROLE_DEPTH].channels[0]->type == EXR_HALF && median > 0)
         g->depth_step = ldexp(1.0, (int)floor(log2(median)) - 10);
     warn_about_depth(g, path, report);

@@ -93,11 +93,12 @@ static void decode(struct gbuffer *g)
 {
     for (size_t i = 0; i < gbuffer_texels(g); i++) {
         float *n = g->normals + i * 4;
-        if (!finite3(n))
-            n[0] = n[1] = n[2] = 0;
-        else if (g->normal_encoding == NORMAL_ENCODING_UNSIGNED && length3(n) > 0)
+        if (g->normal_encoding == NORMAL_ENCODING_UNSIGNED && length3(n) > 0)
             for (int c = 0; c < 3; c++)
                 n[c] = 2.0f * n[c] - 1.0f;
+        /* Afterwards: twice a large number may be none. */
+        if (!finite3(n))
+            n[0] = n[1] = n[2] = 0;
     }
 }
 
