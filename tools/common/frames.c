@@ -206,8 +206,10 @@ static size_t token_length(const char *p, int *digits)
     }
     if (*p == '%') {
         size_t number = strspn(p + 1, "0123456789");
+        if (number > 2 || p[1 + number] != 'd')
+            return 0;
         *digits = number ? atoi(p + 1) : 1;
-        return number <= 2 && p[1 + number] == 'd' ? number + 2 : 0;
+        return number + 2;
     }
     if (p[0] == '$' && p[1] == 'F') {
         *digits = isdigit((unsigned char)p[2]) ? p[2] - '0' : 1;
@@ -283,10 +285,15 @@ char *frame_pattern_path(const struct frame_pattern *pattern, int64_t number)
 /* The number in name if it is prefix, number, suffix and nothing else. */
 static bool match_name(const char *name, const char *prefix, const char *suffix, int64_t *number)
 {
-    if (!text_starts_with(name, prefix))
+    const size_t before = strlen(prefix), behind = strlen(suffix), length = strlen(name);
+    char digits[MAX_DIGITS + 2]; /* with a sign; longer ones are no number */
+    if (length <= before + behind || length - before - behind >= sizeof digits ||
+        !text_starts_with(name, prefix) || !text_ends_with(name, suffix))
         return false;
-    const char *p = name + strlen(prefix);
-    return read_number(&p, number) && strcmp(p, suffix) == 0;
+    /* Not as far as there are digits: those at the beginning of the suffix are not the number's. */
+    snprintf(digits, sizeof digits, "%.*s", (int)(length - before - behind), name + before);
+    const char *p = digits;
+    return read_number(&p, number) && !*p;
 }
 
 static int compare_frames(const void *a, const void *b)
