@@ -1,0 +1,110 @@
+/* SPDX-License-Identifier: MIT */
+#include "fuzz_view.h"
+
+#include "fake_vulkan.h"
+#include "fuzz.h"
+#include "gbuffer_internal.h"
+
+#include <math.h>
+#include <stdio.h>
+
+static struct fake_vulkan fake;
+static vkao_context *context;
+static char last_error[1024];
+
+static void keep_error(void *user_data, vkao_log_level level, const char *message)
+{
+    (void)user_data;
+    if (level == VKAO_LOG_ERROR)
+        snprintf(last_error, sizeof last_error, "%s", message);
+}
+
+/* Once: the pipelines of all methods are many calls, even where each does nothing. */
+static void create_context(void)
+{
+    VkPhysicalDeviceFeatures features = {0};
+    fake_init(&fake);
+    fake.max_dimension = UINT16_MAX;
+    fake.max_texels = fake.max_buffer = UINT32_MAX;
+    vkao_add_required_features(&features);
+    const vkao_context_info info = {
+        .struct_size = sizeof info,
+        .instance = fake_instance(&fake),
+        .physical_device = fake_physical_device(&fake),
+        .device = fake_device(&fake),
+        .get_instance_proc_addr = fake_get_instance_proc_addr,
+        .get_device_proc_addr = fake_get_device_proc_addr,
+        .enabled_features = &features,
+        .log = keep_error,
+    };
+    if (vkao_context_create(&info, &context) != VKAO_SUCCESS)
+        fuzz_broken(__FILE__, __LINE__, "vkao_context_create", "%s", last_error);
+}
+
+static vkao_image image_of(VkFormat format)
+{
+    return (vkao_image){fake_caller_view(&fake), VK_IMAGE_LAYOUT_GENERAL, format};
+}
+
+void fuzz_check_job(const struct fuzz_job *job)
+{
+    const vkao_ssao_params ssao = vkao_ssao_params_default();
+    const vkao_blur_params blur = vkao_blur_params_default();
+    const vkao_composite_params composite = vkao_composite_params_default();
+    if (!context)
+        create_context();
+    const size_t objects = fake.object_count;
+    vkao_images images = vkao_images_default();
+    images.depth = image_of(VK_FORMAT_R32_SFLOAT);
+    images.normals = image_of(VK_FORMAT_R32G32B32A32_SFLOAT);
+    images.ao = image_of(VK_FORMAT_R32_SFLOAT);
+    images.color = images.output = image_of(VK_FORMAT_R32G32B32A32_SFLOAT);
+    if (job->bent_normals)
+        images.bent_normals = image_of(VK_FORMAT_R32G32B32A32_SFLOAT);
+    const vkao_frame_info info = {
+        .struct_size = sizeof info,
+        .stages = VKAO_STAGE_ALL,
+        .extent = {job->width, job->height},
+        .images = &images,
+        .half_resolution = job->half_resolution,
+    };
+    vkao_frame *frame;
+    last_error[0] = '\0';
+    vkao_result result = vkao_frame_create(context, &info, &frame);
+    FUZZ_CHECK(result == VKAO_SUCCESS, "%ux%u: %s", job->width, job->height, last_error);
+    result = vkao_cmd_all(frame, fake_command_buffer(&fake), job->view,
+                          job->ssao ? job->ssao : &ssao, job->blur ? job->blur : &blur,
+                          job->composite ? job->composite : &composite);
+    FUZZ_CHECK(result == VKAO_SUCCESS, "%ux%u: %s", job->width, job->height, last_error);
+    vkao_frame_destroy(frame);
+    FUZZ_CHECK(!fake.error[0], "%s", fake.error);
+    /* The fake forgets nothing by itself. */
+    fake_forget_calls(&fake);
+    fake.object_count = objects;
+}
+
+static void check_depth(const struct gbuffer *g)
+{
+    for (size_t i = 0; i < gbuffer_texels(g); i++)
+        FUZZ_CHECK(isfinite(g->depth[i]) && g->depth[i] >= 0, "depth %zu is %g", i,
+                   (double)g->depth[i]);
+    FUZZ_CHECK(isfinite(g->min_z) && isfinite(g->max_z) && g->min_z >= 0 &&
+                   g->min_z <= g->median_z && g->median_z <= g->max_z,
+               "view z %g, %g, %g", g->min_z, g->median_z, g->max_z);
+}
+
+void fuzz_check_gbuffer(const struct gbuffer *g)
+{
+    FUZZ_CHECK(g->width > 0 && g->height > 0 && g->depth, "%ux%u", g->width, g->height);
+    FUZZ_CHECK(g->depth_type != DEPTH_AUTO, "no depth type");
+    check_depth(g);
+    FUZZ_CHECK(g->background_share >= 0 && g->background_share <= 1 && g->invalid_share >= 0 &&
+                   g->invalid_share <= 1,
+               "shares %g, %g", g->background_share, g->invalid_share);
+    FUZZ_CHECK(g->depth_step >= 0 && isfinite(g->depth_step), "depth step %g", g->depth_step);
+    for (size_t i = 0; g->normals && i < gbuffer_texels(g) * 4; i++)
+        FUZZ_CHECK(i % 4 == 3 || isfinite(g->normals[i]), "normal component %zu is %g", i,
+                   (double)g->normals[i]);
+    FUZZ_CHECK((g->view.normal_encoding == VKAO_NORMALS_FROM_DEPTH) == !g->normals,
+               "normal encoding %d", (int)g->view.normal_encoding);
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the tools make of an input is never what the library refuses: that would be exit status 70. */
+#ifndef VKAO_TESTS_FUZZ_VIEW_H_
+#define VKAO_TESTS_FUZZ_VIEW_H_
+
+#include "gbuffer.h"
+#include "vkao.h"
+
+struct fuzz_job {
+    uint32_t width, height;
+    bool half_resolution, bent_normals;
+    const vkao_view *view;
+    const vkao_ssao_params *ssao; /* NULL = defaults, as the two below */
+    const vkao_blur_params *blur;
+    const vkao_composite_params *composite;
+};
+/* Breaks a promise unless the library records all stages of the job, over a driver that computes
+ * nothing. */
+void fuzz_check_job(const struct fuzz_job *job);
+
+/* What gbuffer.h promises of a loaded one. */
+void fuzz_check_gbuffer(const struct gbuffer *gbuffer);
+
+#endif
