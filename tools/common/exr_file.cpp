@@ -218,6 +218,7 @@ void read_channels(const exr_info *info, size_t index, const exr_read *reads, si
         raise(EXIT_INPUT, hint.c_str(), "%s: deep data (part %zu '%s') is not supported", path,
               index, layout.type.c_str());
     }
+    in.stream.check_unchanged();
     if (!in.decoded.count(index))
         check_decoded(in.stream, in.layout, index);
     in.decoded.insert(index);
