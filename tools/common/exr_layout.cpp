@@ -228,6 +228,7 @@ void read_channels(input_stream &stream, const attributes &all, part_layout &par
     const attribute &a = seek_required(stream, all, "channels", "chlist", -1);
     const uint64_t end = a.offset + uint64_t(a.bytes);
     bool terminated = false;
+    std::set<std::string> names;
     while (!terminated && stream.tellg() < end) {
         channel_layout c = {read_name(stream, "a channel name"), 0, 0, 0};
         terminated = c.name.empty();
@@ -239,6 +240,9 @@ void read_channels(input_stream &stream, const attributes &all, part_layout &par
         c.y_sampling = stream.get_i32();
         if (c.type < 0 || c.type > 2 || c.x_sampling < 1 || c.y_sampling < 1)
             raise(EXIT_INPUT, damaged_hint, "%s: damaged header: channel '%s' is invalid",
+                  stream.fileName(), printable(c.name).c_str());
+        if (!names.insert(c.name).second)
+            raise(EXIT_INPUT, damaged_hint, "%s: damaged header: channel '%s' occurs twice",
                   stream.fileName(), printable(c.name).c_str());
         const int64_t bytes = c.type == EXR_HALF ? 2 : 4;
         part.pixel_bytes += bytes;
