@@ -33,17 +33,38 @@ static bool same_layer(const struct channel_name *a, const struct channel_name *
     return a->bare == b->bare && strcmp(a->layer, b->layer) == 0;
 }
 
+/* The first of the channels that begin with these bytes, which stand together: files may have
+ * thousands of channels, and to compare each with each takes minutes then. */
+static size_t first_with_prefix(const struct exr_part *part, const char *prefix, size_t length)
+{
+    size_t low = 0, high = part->channel_count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (strncmp(part->channels[middle].name, prefix, length) < 0)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
 /* The sibling of a channel with another component; the same case of letters is preferred. */
 static const struct exr_channel *sibling(const struct search *s, size_t part_index,
                                          const struct channel_name *name, const char *component)
 {
     const struct exr_part *part = &s->info->parts[part_index];
     const struct exr_channel *found = NULL;
-    for (size_t i = 0; i < part->channel_count; i++) {
+    /* Also where the view stands behind the layer. */
+    const size_t prefix = name->bare ? 0 : strlen(name->layer);
+    for (size_t i = first_with_prefix(part, name->layer, prefix); i < part->channel_count; i++) {
         struct channel_name other;
-        if (!channel_name_read(part, part->channels[i].name, s->view, s->info->part_count > 1,
-                               &other) ||
-            !same_layer(name, &other) || !text_equal_nocase(other.component, component))
+        const char *channel = part->channels[i].name, *dot = strrchr(channel, '.');
+        if (strncmp(channel, name->layer, prefix) != 0)
+            break;
+        if (!text_equal_nocase(dot ? dot + 1 : channel, component))
+            continue;
+        if (!channel_name_read(part, channel, s->view, s->info->part_count > 1, &other) ||
+            !same_layer(name, &other))
             continue;
         if (!found || strcmp(other.component, component) == 0)
             found = &part->channels[i];
