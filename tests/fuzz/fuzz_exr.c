@@ -177,7 +177,7 @@ static float *read_part(const struct exr_info *info, size_t part, bool at_end)
 
 static void load(const struct exr_info *info, const struct gbuffer_options *options)
 {
-    enum { MOST_PADDED = 1 << 20 };
+    enum { MOST_PADDING = 1 << 16 };
     struct report report = {.verbosity = REPORT_QUIET};
     struct tool_error err = {0};
     struct gbuffer g;
@@ -189,25 +189,27 @@ static void load(const struct exr_info *info, const struct gbuffer_options *opti
     }
     fuzz_check_gbuffer(&g);
     FUZZ_CHECK(!options->want_color || g.color, "no colour");
-    const struct exr_box *display = &g.display_window;
-    const int64_t padded_width = (int64_t)g.data_window.x_max - display->x_min + 1;
-    const int64_t padded_height = (int64_t)g.data_window.y_max - display->y_min + 1;
-    if (padded_width < MOST_PADDED && padded_height < MOST_PADDED &&
-        padded_width * padded_height < MOST_PADDED) {
-        FUZZ_CHECK(placement_expand(&g, &placement, &err), "%s", err.message);
-        vkao_ssao_params ssao = vkao_ssao_params_default();
-        ssao.radius = automatic_radius(&g);
-        ssao.bias = automatic_bias(&g, ssao.radius, ssao.bias);
-        const bool odd = (placement.left | placement.top) & 1;
-        for (int half = 0; half < (odd ? 1 : 2); half++)
-            fuzz_check_job(&(struct fuzz_job){
-                .width = g.width + placement.left,
-                .height = g.height + placement.top,
-                .half_resolution = half,
-                .view = &g.view,
-                .ssao = &ssao,
-            });
-    }
+    const uint64_t texels = (uint64_t)g.width * g.height;
+    const uint64_t bytes = texels * (4 + (g.normals ? 16 : 0) + (g.color ? 16 : 0));
+    const struct budget *budget = &options->budget;
+    FUZZ_CHECK(!budget->pixels || texels <= budget->pixels, "%llu pixels",
+               (unsigned long long)texels);
+    FUZZ_CHECK(!budget->memory || bytes <= budget->memory, "%llu bytes",
+               (unsigned long long)bytes);
+    FUZZ_CHECK(placement_expand(&g, &placement, &err), "%s", err.message);
+    FUZZ_CHECK(placement.left < MOST_PADDING && placement.top < MOST_PADDING, "padded by %ux%u",
+               placement.left, placement.top);
+    vkao_ssao_params ssao = vkao_ssao_params_default();
+    ssao.radius = automatic_radius(&g);
+    ssao.bias = automatic_bias(&g, ssao.radius, ssao.bias);
+    for (int half = 0; half < 2; half++)
+        fuzz_check_job(&(struct fuzz_job){
+            .width = g.width + placement.left,
+            .height = g.height + placement.top,
+            .half_resolution = half,
+            .view = &g.view,
+            .ssao = &ssao,
+        });
     gbuffer_free(&g);
 }
 
@@ -230,6 +232,13 @@ static void load_with_options(struct fuzz_input *in, const struct exr_info *info
         options.camera.far_plane = camera & 8 ? 1000 : INFINITY;
     if (camera & 16)
         options.camera.ortho_width = 10;
+    /* Often more than enough, sometimes not. */
+    const uint32_t budget = fuzz_u8(in);
+    if (budget & 1)
+        options.budget.memory = UINT64_C(1) << budget / 8;
+    if (budget & 2)
+        options.budget.pixels = UINT64_C(1) << budget / 8;
+    options.work_texel_bytes = budget & 4 ? 100 : 0;
     load(info, &options);
 }
 

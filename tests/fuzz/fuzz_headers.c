@@ -246,14 +246,13 @@ static void check_view(struct fuzz_input *in, const struct exr_info *info, const
         request.no_normals = true;
         FUZZ_CHECK(resolve(info, &request, &roles), "resolved with normals, but not without");
     }
-    for (int kind = 0; kind < ROLE_KINDS; kind++) {
-        char *name = fuzz_flag(in) ? any_name(in) : NULL;
-        request.name[kind] = name;
-        request.no_normals = fuzz_flag(in);
-        (void)resolve(info, &request, &roles);
-        request.name[kind] = NULL;
-        free(name);
-    }
+    char *names[ROLE_KINDS];
+    for (int kind = 0; kind < ROLE_KINDS; kind++)
+        request.name[kind] = names[kind] = fuzz_below(in, 3) ? NULL : any_name(in);
+    request.no_normals = fuzz_flag(in);
+    (void)resolve(info, &request, &roles);
+    for (int kind = 0; kind < ROLE_KINDS; kind++)
+        free(names[kind]);
 }
 
 /* The header's windows are those of a camera, whatever they are; the numbers must be usable. */
