@@ -190,7 +190,7 @@ static void load(const struct exr_info *info, const struct gbuffer_options *opti
     fuzz_check_gbuffer(&g);
     FUZZ_CHECK(!options->want_color || g.color, "no colour");
     const uint64_t texels = (uint64_t)g.width * g.height;
-    const uint64_t bytes = texels * (4 + (g.normals ? 16 : 0) + (g.color ? 16 : 0));
+    const uint64_t bytes = texels * (4u + (g.normals ? 16u : 0u) + (g.color ? 16u : 0u));
     const struct budget *budget = &options->budget;
     FUZZ_CHECK(!budget->pixels || texels <= budget->pixels, "%llu pixels",
                (unsigned long long)texels);
