@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-static_assert(sizeof(struct vkao_composite_block) == 116, "as shaders/composite.comp lays it out");
+static_assert(sizeof(struct vkao_composite_block) == 128, "as shaders/composite.comp lays it out");
 static_assert(VKAO_GLSL_COMPOSITE_MULTIPLY == (int)VKAO_COMPOSITE_MULTIPLY &&
                   VKAO_GLSL_COMPOSITE_INDIRECT == (int)VKAO_COMPOSITE_INDIRECT &&
                   VKAO_GLSL_COMPOSITE_AO_ONLY == (int)VKAO_COMPOSITE_AO_ONLY &&
@@ -29,6 +29,7 @@ void record_composite(const vkao_frame *frame, VkCommandBuffer cmd,
         .flags = recording_flags(&grid, frame_flags(frame), NULL, NULL),
         .stride = frame->scratch.buffer.stride,
     };
+    memcpy(block.inverse_unproject, grid.inverse_unproject, sizeof block.inverse_unproject);
     memcpy(block.unproject, grid.unproject, sizeof block.unproject);
     copy_normal_rows(view, block.normal_x, block.normal_y, block.normal_z);
     rect_pack(grid.valid, block.valid);

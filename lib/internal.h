@@ -87,7 +87,7 @@ void record_composite(const vkao_frame *frame, VkCommandBuffer cmd,
 
 /* The view on the grid that SSAO and BLUR run on. */
 struct view_constants frame_grid(const vkao_frame *frame, const struct view_constants *view);
-/* Rows of normal_to_view into the first three components of three rows of a block. */
+/* Rows of normal_to_view, without what it scales by, into the first three components of three rows of a block. */
 void copy_normal_rows(const struct view_constants *view, float x[4], float y[4], float z[4]);
 bool frame_has_bent_normals(const vkao_frame *frame);
 

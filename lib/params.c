@@ -104,6 +104,9 @@ vkao_result ssao_params_check(const vkao_context *ctx, const struct vkao_logger 
     out->slice_count = out->slice_count ? out->slice_count : standard.slice_count;
     out->step_count = out->step_count ? out->step_count : standard.step_count;
     out->thickness = out->thickness > 0.0f ? out->thickness : standard.thickness;
+    /* Beyond that all depth is near, or all far: nothing changes but that squares are floats. */
+    if (result == VKAO_SUCCESS)
+        out->radius = fminf(fmaxf(out->radius, (float)VKAO_NEAREST_Z), (float)VKAO_FARTHEST_Z);
     return result;
 }
 
@@ -121,8 +124,12 @@ vkao_result blur_params_check(const struct vkao_logger *log, const vkao_blur_par
         result = check_uint(log, "blur.radius", out->radius, 0, 16);
     if (result == VKAO_SUCCESS)
         result = check_uint(log, "blur.reserved", out->reserved, 0, 0);
-    return result == VKAO_SUCCESS ? check_floats(log, out, ranges, sizeof ranges / sizeof ranges[0])
-                                  : result;
+    if (result == VKAO_SUCCESS)
+        result = check_floats(log, out, ranges, sizeof ranges / sizeof ranges[0]);
+    /* Devices may take denormal numbers for 0, and no power of 0 is that. */
+    if (result == VKAO_SUCCESS)
+        out->power = fmaxf(out->power, 1e-30f);
+    return result;
 }
 
 /* What a composite reads must have been given. */
@@ -186,6 +193,7 @@ vkao_result composite_params_check(const vkao_frame *frame, const vkao_composite
         result = check_floats(log, out, ranges, sizeof ranges / sizeof ranges[0]);
     if (result != VKAO_SUCCESS)
         return result;
-    out->debug_distance = out->debug_distance > 0.0f ? out->debug_distance : 100.0f;
+    out->debug_distance =
+        out->debug_distance > 0.0f ? fmaxf(out->debug_distance, (float)VKAO_NEAREST_Z) : 100.0f;
     return composite_slots_check(frame, out);
 }

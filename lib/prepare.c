@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "internal.h"
 
+#include <math.h>
 #include <string.h>
 
 static_assert(sizeof(struct vkao_prepare_block) == 44, "as shaders/prepare.comp lays it out");
@@ -58,7 +59,7 @@ void record_prepare(const vkao_frame *frame, VkCommandBuffer cmd, const struct v
     const struct view_constants grid = frame_grid(frame, view);
     struct vkao_prepare_block block = {
         .linearize = {view->linearize[0], view->linearize[1]},
-        .far_z = view->far_z,
+        .far_z = fminf(view->far_z, (float)VKAO_FARTHEST_Z),
         .flags = recording_flags(&grid, 0, NULL, NULL),
         .stride = frame->scratch.buffer.stride,
     };

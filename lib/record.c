@@ -3,7 +3,7 @@
  * What the stages share when they record, and the whole line in one call. */
 #include "internal.h"
 
-#include <string.h>
+#include <math.h>
 
 vkao_result frame_view_check(const vkao_frame *frame, VkCommandBuffer cmd, const char *call,
                              vkao_stage_flags stages, const vkao_view *view,
@@ -47,11 +47,26 @@ struct view_constants frame_grid(const vkao_frame *frame, const struct view_cons
     return frame->half_resolution ? view_halve(view) : *view;
 }
 
+/* What to divide by so that the matrix makes unit vectors of unit vectors: 1 for what floats make of a rotation. */
+static double normal_scale(const float rows[3][3])
+{
+    double largest = 0.0, sum = 0.0;
+    for (int i = 0; i < 9; ++i)
+        largest = fmax(largest, fabs((double)rows[i / 3][i % 3]));
+    for (int i = 0; largest > 0.0 && i < 9; ++i)
+        sum += pow((double)rows[i / 3][i % 3] / largest, 2.0);
+    const double scale = sqrt(sum / 3.0) * largest;
+    return fabs(scale - 1.0) < 1e-3 || !(scale > 0.0) ? 1.0 : scale;
+}
+
 void copy_normal_rows(const struct view_constants *view, float x[4], float y[4], float z[4])
 {
-    memcpy(x, view->normal_rows[0], sizeof view->normal_rows[0]);
-    memcpy(y, view->normal_rows[1], sizeof view->normal_rows[1]);
-    memcpy(z, view->normal_rows[2], sizeof view->normal_rows[2]);
+    const double scale = normal_scale(view->normal_rows);
+    for (int column = 0; column < 3; ++column) {
+        x[column] = (float)((double)view->normal_rows[0][column] / scale);
+        y[column] = (float)((double)view->normal_rows[1][column] / scale);
+        z[column] = (float)((double)view->normal_rows[2][column] / scale);
+    }
 }
 
 bool frame_has_bent_normals(const vkao_frame *frame)

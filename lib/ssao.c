@@ -68,8 +68,7 @@ void record_ssao(const vkao_frame *frame, VkCommandBuffer cmd, const struct view
         .thickness_slope = thickness * (float)VKAO_THICKNESS_SLOPE,
         .stride = frame->scratch.buffer.stride,
     };
-    block.inverse_unproject[0] = 1.0f / grid.unproject[0];
-    block.inverse_unproject[1] = 1.0f / grid.unproject[1];
+    memcpy(block.inverse_unproject, grid.inverse_unproject, sizeof block.inverse_unproject);
     memcpy(block.unproject, grid.unproject, sizeof block.unproject);
     copy_normal_rows(view, block.normal_x, block.normal_y, block.normal_z);
     rect_pack(grid.valid, block.valid);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "internal.h"
 
+#include <math.h>
 #include <string.h>
 
 static_assert(sizeof(struct vkao_upsample_block) == 120, "as shaders/upsample.comp lays it out");
@@ -14,7 +15,7 @@ void record_upsample(const vkao_frame *frame, VkCommandBuffer cmd,
         .normal_y[3] = params->normal_power,
         .normal_z[3] = view->reference_z,
         .linearize = {view->linearize[0], view->linearize[1]},
-        .far_z = view->far_z,
+        .far_z = fminf(view->far_z, (float)VKAO_FARTHEST_Z),
         .intensity = params->intensity,
         .power = params->power,
         .flags = recording_flags(view, frame_flags(frame), NULL, params),

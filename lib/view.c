@@ -125,6 +125,25 @@ static vkao_result resolve_rects(const struct vkao_logger *log, const vkao_view 
     return result == VKAO_SUCCESS ? resolve_rect(log, "rect", view->rect, *valid, rect) : result;
 }
 
+/* What a texel spans, and where the viewport lies, in the range that squares leave floats. */
+static vkao_result check_unproject(const struct vkao_logger *log, const struct projection *p,
+                                   const struct view_constants *view)
+{
+    const double least = 1e-15, most = 1e15;
+    const double scale[2] = {p->x_scale, p->y_scale};
+    for (int i = 0; i < 2; ++i) {
+        const double size = fabs((double)view->unproject[i]),
+                     offset = fabs((double)view->unproject[2 + i]);
+        if (!(size >= least && size <= most && offset <= most))
+            return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                               "view.projection[%d] is %g: a texel spans %g scene units%s, want "
+                               "%g..%g, and the image no more",
+                               i * 5, scale[i], size, p->orthographic ? "" : " at distance 1",
+                               least, most);
+    }
+    return VKAO_SUCCESS;
+}
+
 static void read_unproject(const struct projection *p, const vkao_view *view,
                            struct view_constants *out)
 {
@@ -143,6 +162,8 @@ static void read_unproject(const struct projection *p, const vkao_view *view,
     out->unproject[1] = (float)(2.0 / vh / p->y_scale);
     out->unproject[2] = (float)(((0.5 - vx) * 2.0 / vw - 1.0 - x_offset) / p->x_scale);
     out->unproject[3] = (float)(((0.5 - vy) * 2.0 / vh - 1.0 - y_offset) / p->y_scale);
+    out->inverse_unproject[0] = (float)(p->x_scale * vw / 2.0);
+    out->inverse_unproject[1] = (float)(p->y_scale * vh / 2.0);
     out->reference_z = p->orthographic ? (float)fabs(2.0 / p->x_scale) : 0.0f;
 }
 
@@ -261,7 +282,7 @@ vkao_result view_constants_init(const struct vkao_logger *log, const vkao_view *
             out->normal_rows[row][column] = row == 2 ? v * (float)p.forward : v;
         }
     }
-    return VKAO_SUCCESS;
+    return check_unproject(log, &p, out);
 }
 
 struct view_constants view_halve(const struct view_constants *view)
@@ -270,6 +291,8 @@ struct view_constants view_halve(const struct view_constants *view)
     half.grid_shift = 1;
     half.unproject[0] *= 2.0f;
     half.unproject[1] *= 2.0f;
+    half.inverse_unproject[0] *= 0.5f;
+    half.inverse_unproject[1] *= 0.5f;
     half.valid = (struct vkao_rect){view->valid.x0 / 2, view->valid.y0 / 2,
                                     (view->valid.x1 + 1) / 2, (view->valid.y1 + 1) / 2};
     /* upsample.comp reads from one half-resolution texel before to two behind. */

@@ -18,6 +18,7 @@ struct view_constants {
     uint32_t depth_encoding;
     float unproject
         [4]; /* view xy = texel * [0..1] + [2..3], times z in perspective; texel centres are integers */
+    float inverse_unproject[2]; /* 1 / unproject[0..1] */
     float linearize[2];      /* see vkao_prepare_block */
     float far_depth;         /* device depth of the far plane */
     float far_z;             /* view z of the far plane, FLT_MAX if infinite or not to be tested */

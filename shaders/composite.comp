@@ -8,7 +8,9 @@
  * Specular occlusion, either from AO and roughness r (Lagarde and de Rousiers, 'Moving Frostbite to PBR', 2014),
  *     saturate((n.v + ao)^exp2(-16 r - 1) - 1 + ao),
  * or from the cone around the bent normal that AO opens, cut by the cone of the specular lobe (Oat and Sander,
- * 'Ambient Aperture Lighting', 2007). */
+ * 'Ambient Aperture Lighting', 2007).
+ *
+ * What light is multiplied by is finite whatever the images hold; the light itself is the caller's. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -26,6 +28,12 @@ layout(binding = VKAO_BINDING_BENT_READ) uniform texture2D bent_image;
 layout(binding = VKAO_BINDING_OUTPUT) uniform writeonly image2D output_image;
 #define VKAO_UNPROJECT
 #include "view.glsl"
+
+/* Shares: AO, reflectance, roughness. What is no number is the second. */
+float share(float v, float otherwise)
+{
+    return is_sane(v) ? clamp(v, 0.0, 1.0) : otherwise;
+}
 
 vec3 multi_bounce(float ao, vec3 albedo)
 {
@@ -69,7 +77,7 @@ vec4 lit(ivec2 texel, vec3 factor, float ao)
         rgb += texelFetch(direct_image, texel, 0).rgb;
     if (params.specular_occlusion != VKAO_GLSL_SPECULAR_NONE) {
         vec4 specular = texelFetch(specular_image, texel, 0);
-        rgb += specular.rgb * mix(1.0, specular_occlusion(texel, ao, specular.a), params.tint.w);
+        rgb += specular.rgb * mix(1.0, specular_occlusion(texel, ao, share(specular.a, 1.0)), params.tint.w);
     }
     return vec4(rgb, color.a);
 }
@@ -79,10 +87,13 @@ void main()
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(params.rect.x);
     if (any(greaterThanEqual(texel, unpack_texel(params.rect.y))))
         return;
-    float ao = texelFetch(ao_image, texel, 0).x;
+    float ao = share(texelFetch(ao_image, texel, 0).x, 1.0);
     vec3 open = vec3(mix(1.0, ao, params.tint.w));
-    if (params.multi_bounce != 0u)
-        open = mix(vec3(1.0), multi_bounce(ao, texelFetch(albedo_image, texel, 0).rgb), params.tint.w);
+    if (params.multi_bounce != 0u) {
+        vec3 albedo = texelFetch(albedo_image, texel, 0).rgb;
+        albedo = vec3(share(albedo.r, 0.0), share(albedo.g, 0.0), share(albedo.b, 0.0));
+        open = mix(vec3(1.0), multi_bounce(ao, albedo), params.tint.w);
+    }
     vec3 factor = mix(params.tint.rgb, vec3(1.0), open);
     vec4 result = vec4(factor, 1.0);
     if (params.mode != VKAO_GLSL_COMPOSITE_AO_ONLY)

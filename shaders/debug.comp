@@ -31,21 +31,29 @@ float noisy_ao(ivec2 texel)
     return texelFetch(noisy_image, texel, 0).x;
 }
 
+/* Octahedral codes of background look like those of (0, 0, 1). */
+vec3 bent_normal(ivec2 texel, float z)
+{
+    vec3 code = texelFetch(bent_image, texel, 0).xyz, n = decode_direction(code, bent_encoding());
+    bool none = z <= 0.0 && bent_encoding() >= VKAO_GLSL_NORMALS_OCT_SNORM && n.z > 0.9999;
+    return none ? vec3(0.0) : to_view(n);
+}
+
 vec4 debug_view(ivec2 texel)
 {
     ivec2 at = texel >> grid_shift();
     float z = load_view_z(at);
     if (params.mode == VKAO_GLSL_COMPOSITE_VIEW_Z)
-        return vec4(vec3(z / params.normal_x.w), 1.0);
+        return vec4(vec3(min(z / params.normal_x.w, 65504.0)), 1.0); /* what a 16-bit float holds */
     if (params.mode == VKAO_GLSL_COMPOSITE_NOISY_AO)
         return vec4(vec3(z > 0.0 ? noisy_ao(at) : 1.0), 1.0);
     vec3 n = vec3(0.0);
     if (z > 0.0 && params.mode == VKAO_GLSL_COMPOSITE_NORMALS)
         n = lane3(view_normals(at, view_positions(at, real(z))), 0);
     if (params.mode == VKAO_GLSL_COMPOSITE_BENT_NORMALS)
-        n = to_view(decode_direction(texelFetch(bent_image, texel, 0).xyz, bent_encoding()));
+        n = bent_normal(texel, z);
     n.z = -n.z; /* towards the eye is what pictures of normals show as blue */
-    return vec4(n * 0.5 + 0.5, 1.0);
+    return vec4(clamp(n * 0.5 + 0.5, 0.0, 1.0), 1.0);
 }
 
 void main()

@@ -31,7 +31,7 @@ float view_z_from_depth(ivec2 texel)
         z = depth * inversesqrt(1.0 + dot(xy, xy));
     }
     /* Comparisons with NaN are false, so NaN is background too. */
-    return z > 0.0 && z < params.far_z ? z : 0.0;
+    return z > VKAO_NEAREST_Z && z < params.far_z ? z : 0.0;
 }
 
 #endif

@@ -11,7 +11,7 @@ layout(binding = VKAO_BINDING_BENT_WRITE) uniform writeonly image2D bent_out;
 
 vec2 encode_octahedral(vec3 n)
 {
-    vec2 e = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    vec2 e = n.xy / max(abs(n.x) + abs(n.y) + abs(n.z), 1.0e-30);
     vec2 side = vec2(e.x >= 0.0 ? 1.0 : -1.0, e.y >= 0.0 ? 1.0 : -1.0);
     return n.z >= 0.0 ? e : (1.0 - abs(e.yx)) * side;
 }
@@ -33,10 +33,11 @@ float final_ao(float visibility, bool background)
 }
 
 /* result.w: visibility; result.xyz: mean visible direction in view space, of any length; that of background is zero, as
- * its normal is. */
+ * its normal is, which octahedral codes know as (0, 0, 1). */
 void finish(ivec2 texel, vec4 result, bool background)
 {
-    imageStore(ao_out, texel, vec4(final_ao(result.w, background)));
+    /* An ao_noisy of the caller's may hold anything. */
+    imageStore(ao_out, texel, vec4(final_ao(is_sane(result.w) ? result.w : 1.0, background)));
     if (BENT_NORMALS) {
         vec3 n = params.normal_x.xyz * result.x + params.normal_y.xyz * result.y + params.normal_z.xyz * result.z;
         float length2 = dot(n, n);

@@ -43,6 +43,12 @@ uint staged_format()
     return (flags() >> VKAO_FLAG_STAGED_SHIFT) & 7u;
 }
 
+/* Is it a number, and not absurdly large? By its bits: compilers may assume of floats that they are numbers. */
+bool is_sane(float v)
+{
+    return (floatBitsToUint(v) & 0x7fffffffu) < floatBitsToUint(VKAO_LARGEST_RESULT);
+}
+
 /* texel << grid_shift() is the image's. */
 uint grid_shift()
 {

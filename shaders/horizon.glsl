@@ -42,9 +42,13 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
     s.per_texel = inversesqrt(s.step.x * s.step.x + s.step.y * s.step.y);
     s.center_z = position.z;
     s.scale = orthographic() ? real(1.0) : 1.0 / position.z;
-    real along = d.x * to_eye.x + d.y * to_eye.y, inverse_o = inversesqrt(1.0 - along * along);
+    real along = d.x * to_eye.x + d.y * to_eye.y;
+    /* As long as what is left of d without its share along V; 1 - along^2 is nothing at the edge of a field of view of
+     * nearly 180 degrees. */
+    Real3 across = Real3(d.y * to_eye.z, -d.x * to_eye.z, d.x * to_eye.y - d.y * to_eye.x);
+    real inverse_o = inversesqrt(dot3(across, across));
     s.outward = times(Real3(d.x - along * to_eye.x, d.y - along * to_eye.y, -along * to_eye.z), inverse_o);
-    Real3 across = times(Real3(d.y * to_eye.z, -d.x * to_eye.z, d.x * to_eye.y - d.y * to_eye.x), inverse_o);
+    across = times(across, inverse_o);
     real off = dot3(normal, across), facing = dot3(normal, to_eye), out_n = dot3(normal, s.outward);
     /* A sample's texel lies off the slice by rounding. It is moved into it along the tangent plane, which keeps its
      * height over that plane, so that a tilted wall still lies flat in the slice. */

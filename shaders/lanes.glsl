@@ -58,6 +58,12 @@ bvec2 above(real a, real b)
 {
     return greaterThan(a, b);
 }
+
+/* v, or where it is no number or absurdly large, what stands in for it. */
+real sane(real v, real otherwise)
+{
+    return mix(otherwise, v, lessThan(floatBitsToInt(v) & 0x7fffffff, ivec2(floatBitsToInt(VKAO_LARGEST_RESULT))));
+}
 #else
 #define real float
 #define reals vec2
@@ -106,6 +112,11 @@ real choose(real no, real yes, bool which)
 bool above(real a, real b)
 {
     return a > b;
+}
+
+real sane(real v, real otherwise)
+{
+    return (floatBitsToInt(v) & 0x7fffffff) < floatBitsToInt(VKAO_LARGEST_RESULT) ? v : otherwise;
 }
 #endif
 

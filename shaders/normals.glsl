@@ -97,19 +97,19 @@ Real3 normal_from_depth(ivec2 texel, Real3 center, bool careful)
 {
     Neighbour beside = neighbour_in(texel, ivec2(1, 0), center.z, careful);
     Neighbour below = neighbour_in(texel, ivec2(0, 1), center.z, careful);
-    real dx = beside.side * (beside.z - center.z), dy = below.side * (below.z - center.z);
-    real u = real(params.unproject.x), v = real(params.unproject.y);
-    if (!orthographic()) {
-        u *= beside.z;
-        v *= below.z;
-    }
-    Real3 n = Real3(dx * v, dy * u, -u * v);
+    /* Slopes of depth over what a texel is wide there: the cross product without its length, whose square leaves the
+     * range of floats in scenes that are small or large or seen through a keyhole. */
+    reals slope = reals(beside.side * (beside.z - center.z), below.side * (below.z - center.z));
+    slope *= reals(real(params.inverse_unproject.x), real(params.inverse_unproject.y));
+    if (!orthographic())
+        slope /= reals(beside.z, below.z);
+    slope = lesser(greater(slope, reals(-VKAO_STEEPEST_FACET)), reals(VKAO_STEEPEST_FACET));
+    Real3 n = Real3(first_side(slope), other_side(slope), real(-1.0));
     if (!orthographic()) {
         Real3 sight = view_positions(texel, real(1.0));
         n.z -= sight.x * n.x + sight.y * n.y;
     }
-    float to_eye = params.unproject.x * params.unproject.y > 0.0 ? 1.0 : -1.0;
-    return times(n, to_eye * inversesqrt(dot3(n, n)));
+    return times(n, inversesqrt(dot3(n, n)));
 }
 
 /* Unit vectors that face the eye, of texels of the grid. A stored normal that points away is turned if the back of its

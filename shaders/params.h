@@ -102,6 +102,13 @@
 #define VKAO_STAGED_FLOAT16 3
 #define VKAO_STAGED_FLOAT32 4
 
+/* View z outside this range is background: what squares of lengths, in radii and at any field of view, would take out of
+ * the range of floats. far_z is at most the second. */
+#define VKAO_NEAREST_Z 1.0e-15
+#define VKAO_FARTHEST_Z 1.0e15
+/* Visibility and mean directions are smaller; what is not, or is no number, is not theirs. */
+#define VKAO_LARGEST_RESULT 2048.0
+
 /* Texels of zeros around view z, so that taps outside read background without a test. */
 #define VKAO_VIEW_Z_BORDER 1
 
@@ -172,6 +179,8 @@
 /* Cosine to the eye at which tangent planes stop getting steeper in slices: less than that of the last texels that a
  * wall of 80 degrees has before its horizon. */
 #define VKAO_STEEPEST 0.002
+/* Slope, in view space, at which normals that depth gives stop: their squares are floats at any field of view. */
+#define VKAO_STEEPEST_FACET 1.0e9
 
 /* Rectangles are half open and packed two 16-bit texel coordinates to a word, x low: [0] = min, [1] = max.
  * unproject: view xy = texel * unproject.xy + unproject.zw, times view z in perspective. Texel centres are integers
@@ -275,6 +284,8 @@ struct vkao_composite_block {
     VKAO_UINT(multi_bounce);
     VKAO_UINT(specular_occlusion);
     VKAO_UINT(stride); /* texels in a row of buffers */
+    VKAO_UINT(reserved);
+    VKAO_VEC2(inverse_unproject); /* 1 / unproject.xy */
 };
 
 #endif

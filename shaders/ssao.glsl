@@ -156,11 +156,12 @@ void main()
 #endif
     Real3 position = view_positions(texel, z);
     Visibility v = visibility(texel, position, view_normals(texel, position));
-    v.open = choose(real(1.0), v.open, above(z, real(0.0)));
+    /* Where numbers fail, by a radius of 1e-9 of the distance for one, nothing is known to occlude. */
+    v.open = sane(choose(real(1.0), v.open, above(z, real(0.0))), real(1.0));
     if (BENT_NORMALS) {
-        v.bent.x = choose(real(0.0), v.bent.x, above(z, real(0.0)));
-        v.bent.y = choose(real(0.0), v.bent.y, above(z, real(0.0)));
-        v.bent.z = choose(real(0.0), v.bent.z, above(z, real(0.0)));
+        v.bent.x = sane(choose(real(0.0), v.bent.x, above(z, real(0.0))), real(0.0));
+        v.bent.y = sane(choose(real(0.0), v.bent.y, above(z, real(0.0))), real(0.0));
+        v.bent.z = sane(choose(real(0.0), v.bent.z, above(z, real(0.0))), real(0.0));
     }
     if (all(lessThan(texel, unpack_texel(params.rect.y))))
         store_noisy(texel, v);

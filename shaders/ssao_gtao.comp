@@ -34,7 +34,8 @@ reals horizon_cosines(Slice s, ivec2 texel, real jitter)
         slice_points(s, offset, z, x, y);
         reals d2 = x * x + y * y;
         reals weight = mix(reals(0.0), falloff_weight(d2), greaterThan(z, reals(0.0)));
-        horizon = greater(horizon, low + weight * (y * inversesqrt(d2) - open));
+        /* In this order, as what is no number must not stay: greater() then gives the second. */
+        horizon = greater(low + weight * (y * inversesqrt(d2) - open), horizon);
         if (++t >= step_count())
             break;
     }

@@ -4,8 +4,10 @@
 #ifndef VKAO_SURFACE_GLSL_
 #define VKAO_SURFACE_GLSL_
 
-/* What stands for the z of background: no slope leads there, and it is off any surface. */
-const float BACKGROUND_Z = 1.0e30;
+/* What stands for the z of background: no slope leads there, and it is so far off any surface that the square of the
+ * distance times the least edge_stop is no float: background weighs exactly nothing, in the blur and in upsampling.
+ * What it holds is often not even written. */
+const float BACKGROUND_Z = 1.0e38;
 
 float surface_z(float z)
 {
@@ -32,7 +34,7 @@ float off_surface(float z, float slope, float tap_z, float tap_slope, float k)
 /* 1 / the distance off the continued slope at which a tap counts nothing; never 0, so that background never counts. */
 float edge_stop(float z, float sharpness, float reference_z)
 {
-    return max(sharpness / (reference_z > 0.0 ? reference_z : z), 1.0e-20);
+    return max(sharpness / (reference_z > 0.0 ? reference_z : z), 1.0e-18);
 }
 
 /* What tap k counts on a flat surface. Falling to 0 over 4 texels, or over 2 of a small blur, it makes the blur the mean

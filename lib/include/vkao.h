@@ -5,7 +5,10 @@
  * The library never creates a device, submits, waits, maps memory or calls a Vulkan function it was not
  * handed. vkao_cmd_* functions allocate nothing. There is no global state: contexts are independent.
  *
- * Ambient occlusion is stored as visibility in [0,1]: 1 = open, 0 = fully occluded. Lengths are scene units
+ * Ambient occlusion is stored as visibility in [0,1]: 1 = open, 0 = fully occluded. Before the blur it is an
+ * estimate that may lie on both sides of that, in ao_noisy and in the ao of frames without BLUR; it is right as a
+ * mean. Nothing that vkao writes is NaN or infinite, whatever depth, normals and ao_noisy hold; colours are the
+ * caller's, see vkao_composite_mode. Lengths are scene units
  * of the projection matrix unless a name says texels. Matrices are column-major, m[column * 4 + row], as in
  * GLSL. Texel (0,0) is the image's first; NDC (-1,-1) is the corner of that texel in a full-image viewport,
  * as when Vulkan rasterises with a positive viewport height.
@@ -238,7 +241,8 @@ typedef struct vkao_images {
     vkao_image direct;   /* direct light, required by VKAO_COMPOSITE_INDIRECT only; as color */
     vkao_image output;   /* storage-capable colour format; may be color's image if both are GENERAL */
     /* Mean unoccluded direction, written by BLUR after GTAO, VBAO or RAYMARCH, in the space of the normals and the
-     * encoding view.bent_encoding; zero on background. Input if only COMPOSITE. ao_noisy must then be unused. */
+     * encoding view.bent_encoding; zero on background, for which octahedral encodings have no code but that of
+     * (0,0,1): both components as 0. Input if only COMPOSITE. ao_noisy must then be unused. */
     vkao_image bent_normals;
     vkao_image albedo;   /* diffuse reflectance in rgb, for composite.multi_bounce; as color */
     vkao_image specular; /* indirect specular light in rgb, roughness in alpha, for composite.specular; as color */
@@ -325,7 +329,7 @@ typedef enum vkao_view_axis {
 } vkao_view_axis;
 
 /* Texels at or beyond the far plane, not in front of the camera, or not finite are background: AO = 1, and
- * they occlude nothing. */
+ * they occlude nothing. So are those nearer than 1e-15 or farther than 1e15 scene units. */
 struct vkao_view {
     uint32_t struct_size;
     vkao_depth_encoding depth_encoding;
@@ -340,9 +344,10 @@ struct vkao_view {
     /* Texels to write, inside valid. 0x0 = valid. Use it to split work; the parts add up to the whole. */
     VkRect2D rect;
     /* View space to Vulkan clip space, unjittered. Perspective or orthographic, off-centre, y-flipped, either
-     * hand, reversed or infinite depth are all read off the matrix. Finite, no shear, no rotation. */
+     * hand, reversed or infinite depth are all read off the matrix. Finite, no shear, no rotation; a texel spans
+     * 1e-15 to 1e15 scene units, in perspective at distance 1. */
     float projection[16];
-    /* Rotation of stored normals into view space, m[column * 3 + row]. Identity if they are view-space.
+    /* Rotation of stored normals into view space, m[column * 3 + row]. Identity if they are view-space. May scale.
      * Normals need not be unit length. One that faces away from the eye is turned round if it is the back of its
      * surface that is seen. If not, as where interpolation over a mesh has carried it past the outline, or if it is
      * shorter than 0.5 or not finite, the one that the neighbours' depths give takes its place. */
@@ -451,7 +456,9 @@ static inline vkao_blur_params vkao_blur_params_default(void)
     return p;
 }
 
-/* Alpha is color's in MULTIPLY and INDIRECT. */
+/* Alpha is color's in MULTIPLY and INDIRECT. What light is multiplied by is always finite and in [0,1], also where albedo,
+ * roughness or normals are not; a NaN or infinity of color, direct or specular itself passes through, as does a sum beyond
+ * the range of output's format. */
 typedef enum vkao_composite_mode {
     VKAO_COMPOSITE_MULTIPLY = 0, /* rgb = color * mix(tint, 1, a), a = mix(1, ao, strength) */
     VKAO_COMPOSITE_INDIRECT = 1, /* rgb = direct + color * mix(tint, 1, a): AO on indirect light only */
