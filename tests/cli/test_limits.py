@@ -135,8 +135,8 @@ def failed_frames_end_no_sequence(scratch):
                             (4, 'truncated'), (5, 'no depth')):
         matches(message, '\n'.join(e for e in errors if f'in.{number}.exr: ' in e), f'frame {number}')
     matches('4 of 6 frames failed', result.stderr, 'the summary')
-    equal(scratch.bytes('ao.1.exr'), scratch.bytes('ao.6.exr').replace(b'in.6.exr', b'in.1.exr'),
-          'frames around the failed ones')
+    check((read_ao(scratch.path('ao.1.exr')) == read_ao(scratch.path('ao.6.exr'))).all(),
+          'frames around the failed ones differ')
 
 
 @cases([('5', DEVICE, TOO_LONG), ('3', INPUT, None)])
