@@ -125,6 +125,21 @@ bool is_string_vector(input_stream &stream, const attribute &a)
     return stream.tellg() == end;
 }
 
+/* Whether names with 16 bytes behind each, and an empty one, do. */
+bool is_channel_list(input_stream &stream, const attribute &a)
+{
+    const uint64_t end = a.offset + uint64_t(a.bytes);
+    stream.seekg(a.offset);
+    while (stream.tellg() < end) {
+        if (read_name(stream, "a channel name").empty())
+            return stream.tellg() == end;
+        if (stream.tellg() > end || end - stream.tellg() < 16)
+            return false;
+        stream.seekg(stream.tellg() + 16);
+    }
+    return false;
+}
+
 bool is_preview(input_stream &stream, const attribute &a)
 {
     if (a.bytes < 8)
@@ -149,6 +164,8 @@ void check_natural_size(input_stream &stream, const std::string &name, const att
         valid = a.bytes >= 4;
     else if (a.type == "stringvector")
         valid = is_string_vector(stream, a);
+    else if (a.type == "chlist")
+        valid = is_channel_list(stream, a);
     else if (a.type == "preview")
         valid = is_preview(stream, a);
     if (!valid)
@@ -181,7 +198,7 @@ attributes read_attributes(input_stream &stream, std::string name)
 }
 
 /* Goes to the value of an attribute that every file has; bytes < 0: any size. */
-const attribute &seek_required(input_stream &stream, const attributes &all, const char *name,
+void seek_required(input_stream &stream, const attributes &all, const char *name,
                                const char *type, int64_t bytes)
 {
     const auto found = all.find(name);
@@ -192,7 +209,6 @@ const attribute &seek_required(input_stream &stream, const attributes &all, cons
         raise(EXIT_INPUT, damaged_hint, "%s: damaged header: attribute '%s' is not a valid %s",
               stream.fileName(), name, type);
     stream.seekg(found->second.offset);
-    return found->second;
 }
 
 std::string read_string(input_stream &stream, const attributes &all, const char *name)
@@ -225,15 +241,12 @@ void read_compression(input_stream &stream, const attributes &all, part_layout &
 
 void read_channels(input_stream &stream, const attributes &all, part_layout &part)
 {
-    const attribute &a = seek_required(stream, all, "channels", "chlist", -1);
-    const uint64_t end = a.offset + uint64_t(a.bytes);
-    bool terminated = false;
+    seek_required(stream, all, "channels", "chlist", -1);
     std::set<std::string> names;
-    while (!terminated && stream.tellg() < end) {
+    for (;;) {
         channel_layout c = {read_name(stream, "a channel name"), 0, 0, 0};
-        terminated = c.name.empty();
-        if (terminated)
-            continue;
+        if (c.name.empty())
+            break; /* it ends in the attribute: is_channel_list */
         c.type = stream.get_i32();
         stream.get_i32(); /* pLinear and three reserved bytes */
         c.x_sampling = stream.get_i32();
@@ -250,10 +263,6 @@ void read_channels(input_stream &stream, const attributes &all, part_layout &par
                             divide_up(part.data.height(), c.y_sampling) * bytes;
         part.channels.push_back(c);
     }
-    if (!terminated || stream.tellg() != end)
-        raise(EXIT_INPUT, damaged_hint, "%s: damaged header: the list of channels does not end "
-                                        "where it says",
-              stream.fileName());
     if (part.channels.empty())
         raise(EXIT_INPUT, damaged_hint, "%s: damaged header: a part without channels",
               stream.fileName());
