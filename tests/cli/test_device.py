@@ -9,7 +9,7 @@ import collections
 import os
 import sys
 
-from cli import DEVICE, MEMORY, OK, Failed, case, check, equal, main, write_exr
+from cli import DEVICE, MEMORY, OK, SOME_FRAMES, Failed, case, check, equal, main, write_exr
 from scene import FOV, Scene
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'support'))
@@ -85,6 +85,28 @@ def failing_calls_of_a_render_have_their_code_and_leave_nothing(scratch):
 @case
 def failing_calls_of_devices_have_their_code(scratch):
     sweep(scratch, 'devices')
+
+
+@case
+def a_lost_device_ends_a_sequence_and_a_full_one_does_not(scratch):
+    """With --continue-on-error: the next frame finds no device, but it may find memory."""
+    for n in (1, 2):
+        write_exr(scratch.path(f'in.{n}.exr'), {'Z': SCENE.depth()})
+    command = ('in.%d.exr', '-o', 'out.%d.exr', '--fov', FOV, '--device', 'cpu',
+               '--continue-on-error')
+    for call, result, code, outputs in (
+            ('vkQueueSubmit', faults.DEVICE_LOST, DEVICE, []),
+            ('vkQueueWaitIdle', faults.DEVICE_LOST, DEVICE, []),
+            ('vkAllocateMemory', faults.OUT_OF_DEVICE_MEMORY, SOME_FRAMES, ['out.2.exr']),
+            ('vkCreateImage', faults.OUT_OF_HOST_MEMORY, SOME_FRAMES, ['out.2.exr'])):
+        env = {**os.environ, **faults.environment(LAYER, scratch.path('layer'),
+                                                  fault=(call, 1, result))}
+        done = scratch.run(*command, env=faults.without_leaks(env), timeout=60)
+        equal(done.code, code, f'exit code after {call} of {done}\n')
+        check('vkao: in.1.exr: ' in done.stderr, f'the message does not name the file: {done}')
+        equal([f for f in scratch.files() if f.startswith('out')], outputs, 'outputs')
+        for name in outputs:
+            os.remove(scratch.path(name))
 
 
 if __name__ == '__main__':
