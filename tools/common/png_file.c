@@ -10,7 +10,22 @@
 struct sink {
     struct atomic_file *file;
     struct tool_error *err;
+    bool out_of_memory; /* which libpng reports as any other error */
 };
+
+static png_voidp allocate(png_structp png, png_alloc_size_t bytes)
+{
+    struct sink *sink = png_get_mem_ptr(png);
+    void *memory = malloc(bytes);
+    sink->out_of_memory = sink->out_of_memory || !memory;
+    return memory;
+}
+
+static void release(png_structp png, png_voidp memory)
+{
+    (void)png;
+    free(memory);
+}
 
 static void write_bytes(png_structp png, png_bytep data, size_t bytes)
 {
@@ -27,7 +42,8 @@ static void flush_nothing(png_structp png)
 static void on_error(png_structp png, png_const_charp message)
 {
     struct sink *sink = png_get_error_ptr(png);
-    fail(sink->err, EXIT_OUTPUT, "%s: cannot write PNG: %s", sink->file->path, message);
+    fail(sink->err, sink->out_of_memory ? EXIT_MEMORY : EXIT_OUTPUT, "%s: cannot write PNG: %s",
+         sink->file->path, message);
     png_longjmp(png, 1);
 }
 
@@ -58,8 +74,9 @@ bool png_file_prepare(struct atomic_file *file, const char *path, uint32_t width
                       unsigned channels, const uint8_t *pixels, bool replace,
                       struct tool_error *err)
 {
-    struct sink sink = {file, err};
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &sink, on_error, on_warning);
+    struct sink sink = {.file = file, .err = err};
+    png_structp png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &sink, on_error, on_warning,
+                                                &sink, allocate, release);
     png_infop info = png ? png_create_info_struct(png) : NULL;
     bool ok = false;
     if (!info) {
