@@ -31,14 +31,6 @@ float noisy_ao(ivec2 texel)
     return texelFetch(noisy_image, texel, 0).x;
 }
 
-/* Octahedral codes of background look like those of (0, 0, 1). */
-vec3 bent_normal(ivec2 texel, float z)
-{
-    vec3 code = texelFetch(bent_image, texel, 0).xyz, n = decode_direction(code, bent_encoding());
-    bool none = z <= 0.0 && bent_encoding() >= VKAO_GLSL_NORMALS_OCT_SNORM && n.z > 0.9999;
-    return none ? vec3(0.0) : to_view(n);
-}
-
 vec4 debug_view(ivec2 texel)
 {
     ivec2 at = texel >> grid_shift();
@@ -51,7 +43,7 @@ vec4 debug_view(ivec2 texel)
     if (z > 0.0 && params.mode == VKAO_GLSL_COMPOSITE_NORMALS)
         n = lane3(view_normals(at, view_positions(at, real(z))), 0);
     if (params.mode == VKAO_GLSL_COMPOSITE_BENT_NORMALS)
-        n = bent_normal(texel, z);
+        n = to_view(decode_direction(texelFetch(bent_image, texel, 0).xyz, bent_encoding()));
     n.z = -n.z; /* towards the eye is what pictures of normals show as blue */
     return vec4(clamp(n * 0.5 + 0.5, 0.0, 1.0), 1.0);
 }
