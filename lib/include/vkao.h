@@ -456,9 +456,9 @@ static inline vkao_blur_params vkao_blur_params_default(void)
     return p;
 }
 
-/* Alpha is color's in MULTIPLY and INDIRECT. What light is multiplied by is always finite and in [0,1], also where albedo,
- * roughness or normals are not; a NaN or infinity of color, direct or specular itself passes through, as does a sum beyond
- * the range of output's format. */
+/* Alpha is color's in MULTIPLY and INDIRECT. What light is multiplied by is always finite and in [0,1], also where
+ * albedo, roughness or normals are not; a NaN or infinity of color, direct or specular itself passes through, as does
+ * a sum beyond the range of output's format. */
 typedef enum vkao_composite_mode {
     VKAO_COMPOSITE_MULTIPLY = 0, /* rgb = color * mix(tint, 1, a), a = mix(1, ao, strength) */
     VKAO_COMPOSITE_INDIRECT = 1, /* rgb = direct + color * mix(tint, 1, a): AO on indirect light only */

@@ -16,7 +16,7 @@ from scene import FOV, RADIUS, Scene
 VIEW = ('--fov', FOV, '--radius', RADIUS)
 MEGA = 1 << 20
 # Of a run that computes next to nothing: the driver and its compiler. Sanitizers triple it.
-BASE = 400 * MEGA
+BASE = 800 * MEGA
 # Beyond what lavapipe's maxImageDimension2D allows, 16384.
 TOO_LONG = 20000
 
