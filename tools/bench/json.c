@@ -2,9 +2,11 @@
 #include "json.h"
 
 #include "atomic_file.h"
+#include "json_text.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 void json_add_number(cJSON *object, const char *name, double value)
@@ -26,9 +28,9 @@ static bool write_file(const char *path, const char *content, struct tool_error 
     return false;
 }
 
-bool json_write(const char *path, cJSON *root, struct tool_error *err)
+bool json_write(const char *path, cJSON *root, unsigned begun, struct tool_error *err)
 {
-    char *json = cJSON_Print(root);
+    char *json = json_text(root, true, begun);
     bool ok = true;
     cJSON_Delete(root);
     if (!json)
@@ -37,6 +39,6 @@ bool json_write(const char *path, cJSON *root, struct tool_error *err)
         puts(json); /* whether it arrived shows when main flushes */
     else
         ok = write_file(path, json, err);
-    cJSON_free(json);
+    free(json);
     return ok;
 }

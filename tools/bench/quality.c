@@ -323,10 +323,10 @@ static bool put_out(const struct bench *b, struct tool_error *err)
     if (o->markdown)
         quality_markdown(&b->quality, &text);
     bool ok = !text.out_of_memory || fail(err, EXIT_MEMORY, "out of memory");
-    if (ok)
-        fputs(text.data, stdout);
+    ok = ok && report_text(text.data, err);
     text_free(&text);
-    ok = ok && (!o->json || json_write(o->json, quality_json(&b->quality), err));
+    const unsigned begun = json_begin();
+    ok = ok && (!o->json || json_write(o->json, quality_json(&b->quality), begun, err));
     return ok && (!o->plot || quality_plot(&b->quality, o->plot, err));
 }
 

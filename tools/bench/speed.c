@@ -353,13 +353,14 @@ static bool put_out(const struct bench *b, struct tool_error *err)
     if (text.out_of_memory)
         ok = fail(err, EXIT_MEMORY, "out of memory");
     if (ok && text.data)
-        fputs(text.data, stdout);
+        ok = report_text(text.data, err);
     text_free(&text);
+    const unsigned begun = json_begin();
     if (ok && o->json)
         ok = json_write(o->json,
                         o->start ? speed_start_json(b->starts, b->configs.count, o->runs)
                                  : speed_json(&b->speed, &b->vs),
-                        err);
+                        begun, err);
     if (ok && o->plot)
         ok = (o->scaling ? speed_scaling_plot : speed_plot)(&b->speed, o->plot, err);
     return ok;

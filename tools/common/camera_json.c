@@ -4,10 +4,11 @@
  * "world_to_view": [[...] x 4]}, or {"views": {"left": {...}, "right": {...}}}. */
 #include "camera.h"
 
+#include "json_text.h"
+#include "read_file.h"
 #include "text.h"
 
 #include <cjson/cJSON.h>
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -164,7 +165,10 @@ bool camera_set_parse(const char *json, const char *path, struct camera_set *set
 {
     *set = (struct camera_set){0};
     const char *end = NULL;
+    const unsigned begun = json_begin();
     cJSON *root = cJSON_ParseWithOpts(json, &end, true);
+    if (!root && !json_is_whole(begun))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     if (!root) {
         int line = 1;
         for (const char *p = json; end && p < end; p++)
@@ -181,22 +185,10 @@ bool camera_set_parse(const char *json, const char *path, struct camera_set *set
 
 bool camera_set_read(const char *path, struct camera_set *set, struct tool_error *err)
 {
-    enum { MAX_BYTES = 1 << 20 };
+    enum { MOST_BYTES = 1 << 20 };
     *set = (struct camera_set){0};
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return fail(err, EXIT_INPUT, "%s: cannot open: %s", path, strerror(errno));
-    char *json = malloc(MAX_BYTES + 1);
-    if (!json) {
-        fclose(file);
-        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
-    }
-    size_t length = fread(json, 1, MAX_BYTES + 1, file);
-    bool bad = ferror(file) || length > MAX_BYTES;
-    fclose(file);
-    json[bad ? 0 : length] = '\0';
-    bool ok = bad ? fail(err, EXIT_INPUT, "%s: cannot read, or larger than 1 MiB", path)
-                  : camera_set_parse(json, path, set, err);
+    char *json = read_file(path, MOST_BYTES, err);
+    bool ok = json && camera_set_parse(json, path, set, err);
     free(json);
     return ok;
 }

@@ -32,34 +32,14 @@ void raise(exit_code code, const char *hint, const char *format, ...)
     throw e;
 }
 
-/* The bytes of the UTF-8 sequence at i, 0 if there is none. */
-static size_t utf8_length(const std::string &text, size_t i)
+std::string excerpt(const std::string &text)
 {
-    const uint8_t lead = uint8_t(text[i]);
-    const size_t length = lead < 0x80                   ? 1
-                          : lead >= 0xc2 && lead < 0xe0 ? 2
-                          : lead >= 0xe0 && lead < 0xf0 ? 3
-                          : lead >= 0xf0 && lead < 0xf5 ? 4
-                                                        : 0;
-    if (length > text.size() - i)
-        return 0;
-    for (size_t k = 1; k < length; k++) {
-        if ((uint8_t(text[i + k]) & 0xc0) != 0x80)
-            return 0;
-    }
-    return length;
-}
-
-std::string printable(const std::string &text)
-{
-    std::string clean;
-    for (size_t i = 0; i < text.size() && clean.size() < 255;) {
-        const size_t length = utf8_length(text, i);
-        const bool control = uint8_t(text[i]) < 32 || text[i] == 127;
-        clean += length && !control ? text.substr(i, length) : "?";
-        i += length ? length : 1;
-    }
-    return clean;
+    size_t length = 255;
+    if (text.size() <= length)
+        return text;
+    for (int i = 0; i < 3 && (uint8_t(text[length]) & 0xc0) == 0x80; i++)
+        length--; /* not in the middle of a character */
+    return text.substr(0, length);
 }
 
 std::string library_message(const std::exception &error)
@@ -70,7 +50,7 @@ std::string library_message(const std::exception &error)
         text.erase(0, name_end + 3);
     while (!text.empty() && (text.back() == '.' || text.back() == '\n' || text.back() == ' '))
         text.pop_back();
-    return printable(text);
+    return excerpt(text);
 }
 
 input_stream::input_stream(const char *path, const char *shown)

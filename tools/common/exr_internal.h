@@ -35,8 +35,8 @@ struct tool_exception : std::exception {
 [[noreturn]] void raise(exit_code code, const char *hint, const char *format, ...)
     TOOL_PRINTF(3, 4);
 
-/* Text from a file or of OpenEXR, fit for one line on a terminal. */
-std::string printable(const std::string &text);
+/* Text from a file or of OpenEXR, short enough for one line; report.c escapes it. */
+std::string excerpt(const std::string &text);
 /* What OpenEXR said, without the file name it likes to begin with and the full stop. */
 std::string library_message(const std::exception &error);
 

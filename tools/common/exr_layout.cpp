@@ -154,7 +154,7 @@ void check_natural_size(input_stream &stream, const std::string &name, const att
     if (!valid)
         raise(EXIT_INPUT, damaged_hint,
               "%s: damaged header: attribute '%s' of %" PRId64 " bytes is not a valid %s",
-              stream.fileName(), printable(name).c_str(), a.bytes, printable(a.type).c_str());
+              stream.fileName(), excerpt(name).c_str(), a.bytes, excerpt(a.type).c_str());
 }
 
 /* name is that of the first attribute, already read. */
@@ -170,10 +170,10 @@ attributes read_attributes(input_stream &stream, std::string name)
             raise(EXIT_INPUT, damaged_hint,
                   "%s: truncated or damaged: attribute '%s' claims %" PRId64
                   " bytes of the %" PRIu64 " left",
-                  stream.fileName(), printable(name).c_str(), a.bytes, stream.size() - a.offset);
+                  stream.fileName(), excerpt(name).c_str(), a.bytes, stream.size() - a.offset);
         if (!found.emplace(name, a).second)
             raise(EXIT_INPUT, damaged_hint, "%s: damaged header: attribute '%s' occurs twice",
-                  stream.fileName(), printable(name).c_str());
+                  stream.fileName(), excerpt(name).c_str());
         check_natural_size(stream, name, a);
         stream.seekg(a.offset + uint64_t(a.bytes));
     }
@@ -240,10 +240,10 @@ void read_channels(input_stream &stream, const attributes &all, part_layout &par
         c.y_sampling = stream.get_i32();
         if (c.type < 0 || c.type > 2 || c.x_sampling < 1 || c.y_sampling < 1)
             raise(EXIT_INPUT, damaged_hint, "%s: damaged header: channel '%s' is invalid",
-                  stream.fileName(), printable(c.name).c_str());
+                  stream.fileName(), excerpt(c.name).c_str());
         if (!names.insert(c.name).second)
             raise(EXIT_INPUT, damaged_hint, "%s: damaged header: channel '%s' occurs twice",
-                  stream.fileName(), printable(c.name).c_str());
+                  stream.fileName(), excerpt(c.name).c_str());
         const int64_t bytes = c.type == EXR_HALF ? 2 : 4;
         part.pixel_bytes += bytes;
         part.level_bytes += divide_up(part.data.width(), c.x_sampling) *
@@ -401,7 +401,7 @@ part_layout read_part(input_stream &stream, const attributes &all, uint32_t vers
     if (!part.tiled && !part.deep && part.type != "scanlineimage")
         raise(EXIT_INPUT, "convert it with a newer OpenEXR",
               "%s: part '%s' has the unknown type '%s'", stream.fileName(),
-              printable(part.name).c_str(), printable(part.type).c_str());
+              excerpt(part.name).c_str(), excerpt(part.type).c_str());
     read_compression(stream, all, part);
     read_windows(stream, all, part);
     read_channels(stream, all, part);

@@ -234,7 +234,7 @@ void check_names(const char *path, const std::vector<Imf::Header> &headers)
         if (!names.insert(header.name()).second)
             raise(EXIT_OUTPUT, "choose another name for the new part",
                   "%s: there would be two parts named '%s'", path,
-                  printable(header.name()).c_str());
+                  excerpt(header.name()).c_str());
     }
 }
 

@@ -1,18 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 #include "report.h"
 
+#include "text.h"
+
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
-/* Names in files are anybody's: none of them may steer the terminal. */
+enum { LINE_BYTES = 2048 };
+
+/* On the stack, since memory may be what has run out. */
 static void print_line(const char *before, const char *label, const char *text)
 {
-    char line[2200];
-    snprintf(line, sizeof line, "%s%s%s", before, label, text);
-    for (char *p = line; *p; p++)
-        if ((unsigned char)*p < ' ' || *p == 0x7f)
-            *p = '?';
+    char line[4 * LINE_BYTES + 64];
+    size_t length = (size_t)snprintf(line, 64, "%s%s", before, label);
+    text_printable(line + length, sizeof line - length, text);
     fprintf(stderr, "%s\n", line);
 }
 
@@ -20,7 +22,7 @@ static void print_line(const char *before, const char *label, const char *text)
 static void say(const char *label, const char *format, va_list args) TOOL_PRINTF(2, 0);
 static void say(const char *label, const char *format, va_list args)
 {
-    char line[2048];
+    char line[LINE_BYTES];
     vsnprintf(line, sizeof line, format, args);
     print_line("vkao: ", label, line);
 }
@@ -65,4 +67,23 @@ void report_detail(const struct report *report, const char *format, ...)
     va_start(args, format);
     say("", format, args);
     va_end(args);
+}
+
+bool report_text(const char *text, struct tool_error *err)
+{
+    struct text line = {0}, clean = {0};
+    while (*text) {
+        const size_t length = strcspn(text, "\n");
+        line.length = 0;
+        text_add(&line, "%.*s", (int)length, text);
+        text_add_printable(&clean, line.data ? line.data : "");
+        text_add(&clean, "%s", text[length] ? "\n" : "");
+        text += length + (text[length] != '\0');
+    }
+    const bool ok = !line.out_of_memory && !clean.out_of_memory;
+    if (ok && clean.data)
+        fputs(clean.data, stdout);
+    text_free(&line);
+    text_free(&clean);
+    return ok || fail(err, EXIT_MEMORY, "out of memory");
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the tools say on stderr: one line each, `vkao: ` in front, a remedy indented below. */
+ * What the tools say on stderr: one line each, `vkao: ` in front, a remedy indented below. Names in
+ * files are anybody's: whatever goes out here is escaped as text_printable says. */
 #ifndef VKAO_TOOLS_REPORT_H_
 #define VKAO_TOOLS_REPORT_H_
 
@@ -26,5 +27,7 @@ void report_warn(struct report *report, const char *key, const char *format, ...
 void report_note(const struct report *report, const char *format, ...) TOOL_PRINTF(2, 3);
 /* Details, with -v. */
 void report_detail(const struct report *report, const char *format, ...) TOOL_PRINTF(2, 3);
+/* Finished text on stdout, its lines escaped. */
+bool report_text(const char *text, struct tool_error *err);
 
 #endif

@@ -49,6 +49,123 @@ void text_free(struct text *text)
     *text = (struct text){0};
 }
 
+/* --- What a terminal may see --- */
+
+enum {
+    ESCAPE_BYTES = 4, /* \xNN, and the longest character */
+    JSON_BYTES = 8    /* what stands for a byte, at most */
+};
+
+/* The character at string and its bytes; 0 if there is none that UTF-8 allows (RFC 3629). */
+static size_t utf8_character(const char *string, uint32_t *character)
+{
+    static const uint32_t least[] = {0, 0, 0x80, 0x800, 0x10000}; /* by length: no longer forms */
+    const unsigned char *s = (const unsigned char *)string;
+    const size_t length = s[0] < 0x80             ? 1
+                          : (s[0] & 0xe0) == 0xc0 ? 2
+                          : (s[0] & 0xf0) == 0xe0 ? 3
+                          : (s[0] & 0xf8) == 0xf0 ? 4
+                                                  : 0;
+    uint32_t c = length == 1 ? s[0] : s[0] & (0x7fu >> length);
+    for (size_t i = 1; i < length; i++) {
+        if ((s[i] & 0xc0) != 0x80)
+            return 0; /* also at the end of the string */
+        c = c << 6 | (s[i] & 0x3f);
+    }
+    if (length == 0 || c < least[length] || c > 0x10ffff || (c >= 0xd800 && c <= 0xdfff))
+        return 0;
+    *character = c;
+    return length;
+}
+
+static bool steers_terminals(uint32_t c)
+{
+    return c < 0x20 || (c >= 0x7f && c <= 0x9f) || c == 0x2028 || c == 0x2029 ||
+           (c >= 0x202a && c <= 0x202e) || (c >= 0x2066 && c <= 0x2069);
+}
+
+/* What follows the backslash of an escape. */
+static bool is_escape_tail(const char *s)
+{
+    return s[0] == 'x' && isxdigit((unsigned char)s[1]) && isxdigit((unsigned char)s[2]);
+}
+
+/* One step: takes *string on, and writes what stands for it. Returns the bytes written. */
+static size_t printable_step(const char **string, char out[ESCAPE_BYTES + 1])
+{
+    uint32_t c = 0;
+    const char *s = *string;
+    size_t length = utf8_character(s, &c);
+    if (length > 0 && !steers_terminals(c) && !(c == '\\' && is_escape_tail(s + 1))) {
+        memcpy(out, s, length);
+        *string += length;
+        return length;
+    }
+    snprintf(out, ESCAPE_BYTES + 1, "\\x%02x", (unsigned)(unsigned char)s[0]);
+    *string += 1;
+    return ESCAPE_BYTES;
+}
+
+size_t text_printable(char *out, size_t size, const char *string)
+{
+    size_t wanted = 0, written = 0;
+    while (*string) {
+        char step[ESCAPE_BYTES + 1];
+        size_t bytes = printable_step(&string, step);
+        if (wanted == written && written + bytes < size) {
+            memcpy(out + written, step, bytes);
+            written += bytes;
+        }
+        wanted += bytes;
+    }
+    if (size > 0)
+        out[written] = '\0';
+    return wanted;
+}
+
+void text_add_printable(struct text *text, const char *string)
+{
+    const size_t length = text_printable(NULL, 0, string);
+    if (text->out_of_memory || !text_reserve(text, length)) {
+        text->out_of_memory = true;
+        return;
+    }
+    text_printable(text->data + text->length, length + 1, string);
+    text->length += length;
+}
+
+void text_add_json(struct text *text, const char *json)
+{
+    if (text->out_of_memory || strlen(json) > SIZE_MAX / JSON_BYTES - 1 ||
+        !text_reserve(text, strlen(json) * JSON_BYTES)) {
+        text->out_of_memory = true;
+        return;
+    }
+    char *out = text->data + text->length;
+    while (*json) {
+        uint32_t c = 0;
+        size_t length = utf8_character(json, &c);
+        if (length == 0) {
+            out += snprintf(out, JSON_BYTES, "\\\\x%02x", (unsigned)(unsigned char)*json);
+            length = 1;
+        } else if (c >= 0x7f && steers_terminals(c)) { /* below, strings have none */
+            out += snprintf(out, JSON_BYTES, "\\u%04x", (unsigned)c);
+        } else {
+            /* Both characters of an escape, so that the second begins none. */
+            length = c == '\\' && json[1] ? 2 : length;
+            memcpy(out, json, length);
+            out += length;
+            if (c == '\\' && json[1] == '\\' && is_escape_tail(json + 2))
+                out += snprintf(out, JSON_BYTES, "x5c");
+        }
+        json += length;
+    }
+    *out = '\0';
+    text->length = (size_t)(out - text->data);
+}
+
+/* --- Words and numbers --- */
+
 char *text_copy(const char *string, size_t length)
 {
     char *copy = malloc(length + 1);

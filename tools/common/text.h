@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Strings that grow, numbers read strictly, and the distance between two words. */
+ * Strings that grow, what a terminal may see of them, numbers read strictly, and the distance
+ * between two words. */
 #ifndef VKAO_TOOLS_TEXT_H_
 #define VKAO_TOOLS_TEXT_H_
 
@@ -20,6 +21,18 @@ struct text {
 
 void text_add(struct text *text, const char *format, ...) TOOL_PRINTF(2, 3);
 void text_free(struct text *text);
+
+/* A string from anywhere as one line that cannot steer a terminal. Legal UTF-8 stays. Control
+ * characters (C0, DEL, C1), changes of direction (U+202A to E, U+2066 to 9), line and paragraph
+ * separators, and bytes that are no UTF-8 become \xNN, byte by byte. A backslash that would look
+ * like such an escape becomes \x5c, so that no two strings look alike: escape once, where the
+ * string goes out. Like snprintf it returns the bytes wanted and cuts, though never in a character
+ * or an escape. */
+size_t text_printable(char *out, size_t size, const char *string);
+void text_add_printable(struct text *text, const char *string);
+/* JSON as cJSON prints it, whose strings may hold any bytes: what a terminal must not see becomes
+ * \uNNNN and so stays what it was; a byte that is no UTF-8 becomes the characters \xNN. */
+void text_add_json(struct text *text, const char *json);
 
 char *text_copy(const char *string, size_t length); /* NULL if memory runs out */
 bool text_equal_nocase(const char *a, const char *b);

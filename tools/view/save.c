@@ -169,7 +169,8 @@ bool viewer_save(struct viewer *viewer, struct tool_error *err)
               write_script(v, names, command.data, unsaid.data, err);
     if (ok) {
         viewer_say(v, "saved %s, .exr and .png:\n%s", names->script, command.data);
-        printf("%s\n", command.data);
+        ok = report_text(command.data, err);
+        printf("\n");
         fflush(stdout);
     }
     free(names);

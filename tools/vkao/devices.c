@@ -2,8 +2,8 @@
 #include "commands.h"
 
 #include "gpu.h"
+#include "json_text.h"
 
-#include <cjson/cJSON.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -17,15 +17,17 @@ static void print_text(const struct gpu_device_list *list)
 {
     for (uint32_t i = 0; i < list->count; i++) {
         const VkPhysicalDeviceProperties *p = &list->properties[i];
-        char api[32];
+        char api[32], name[4 * VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
         version_text(p->apiVersion, api);
-        printf("%u  %s  (%s, Vulkan %s%s)\n", i, p->deviceName, gpu_device_type_name(p->deviceType),
-               api, p->apiVersion < VKAO_MIN_API_VERSION ? ", too old" : "");
+        text_printable(name, sizeof name, p->deviceName);
+        printf("%u  %s  (%s, Vulkan %s%s)\n", i, name, gpu_device_type_name(p->deviceType), api,
+               p->apiVersion < VKAO_MIN_API_VERSION ? ", too old" : "");
     }
 }
 
 static bool print_json(const struct gpu_device_list *list)
 {
+    const unsigned begun = json_begin();
     cJSON *root = cJSON_CreateObject(), *devices = cJSON_AddArrayToObject(root, "devices");
     for (uint32_t i = 0; i < list->count; i++) {
         const VkPhysicalDeviceProperties *p = &list->properties[i];
@@ -39,7 +41,7 @@ static bool print_json(const struct gpu_device_list *list)
         cJSON_AddBoolToObject(device, "usable", p->apiVersion >= VKAO_MIN_API_VERSION);
         cJSON_AddItemToArray(devices, device);
     }
-    char *text = cJSON_Print(root);
+    char *text = json_text(root, true, begun);
     cJSON_Delete(root);
     if (!text)
         return false;

@@ -3,10 +3,10 @@
  * Facts are collected as JSON, once; the text is printed from it. */
 #include "commands.h"
 
+#include "json_text.h"
 #include "plan.h"
 #include "views.h"
 
-#include <cjson/cJSON.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -104,8 +104,10 @@ static void add_conventions(cJSON *object, const struct gbuffer *g)
         cJSON_AddStringToObject(entry, "normal_encoding", normal_encoding_name(g->normal_encoding));
 }
 
+/* NULL if memory ran out; whatever else is wrong becomes the problem. */
 static cJSON *describe_view(const struct options *options, const struct frame_source *source,
-                            const struct view *view, struct report *report)
+                            const struct view *view, struct report *report,
+                            struct tool_error *out_of_memory)
 {
     struct gbuffer_options wanted = view_options(options, view);
     struct tool_error err = {0};
@@ -124,7 +126,11 @@ static cJSON *describe_view(const struct options *options, const struct frame_so
         cJSON_AddStringToObject(object, "hint", err.hint);
     }
     gbuffer_free(&g);
-    return object;
+    if (err.code != EXIT_MEMORY)
+        return object;
+    *out_of_memory = err;
+    cJSON_Delete(object);
+    return NULL;
 }
 
 /* A file whose roles are not found is inspected all the same: that is what the command is for.
@@ -136,6 +142,7 @@ static cJSON *describe(const struct options *options, const struct plan_frame *f
     struct tool_error views_err = {0};
     if (!frame_source_read_header(frame->input, &source, err))
         return NULL;
+    const unsigned begun = json_begin();
     cJSON *root = cJSON_CreateObject();
     cJSON_AddStringToObject(root, "file", frame->input);
     cJSON *parts = cJSON_AddArrayToObject(root, "parts");
@@ -146,14 +153,22 @@ static cJSON *describe(const struct options *options, const struct plan_frame *f
         every.view = roles_view_count(&source.info) > 0 ? "all" : NULL;
     cJSON *views = cJSON_AddArrayToObject(root, "views");
     if (!frame_source_choose_views(&every, frame->camera, &source, &views_err)) {
+        if (views_err.code == EXIT_INPUT || views_err.code == EXIT_MEMORY)
+            *err = views_err; /* a camera file that cannot be read is no fact about the image */
         cJSON_AddStringToObject(root, "problem", views_err.message);
         cJSON_AddStringToObject(root, "hint", views_err.hint);
     } else {
-        for (size_t i = 0; i < source.view_count; i++)
-            cJSON_AddItemToArray(views, describe_view(options, &source, &source.views[i], report));
+        for (size_t i = 0; !err->code && i < source.view_count; i++)
+            cJSON_AddItemToArray(
+                views, describe_view(options, &source, &source.views[i], report, err));
     }
     frame_source_close(&source);
-    return root;
+    if (!err->code && json_is_whole(begun))
+        return root;
+    if (!err->code)
+        fail(err, EXIT_MEMORY, "%s: out of memory", frame->input);
+    cJSON_Delete(root);
+    return NULL;
 }
 
 /* --- Printing --- */
@@ -281,17 +296,37 @@ static void print_text(const cJSON *root)
     print_problem(root);
 }
 
-static bool print(const cJSON *root, bool json, struct tool_error *err)
+/* Every string as a terminal may see it. */
+static bool make_printable(cJSON *item)
 {
-    if (!json) {
-        print_text(root);
-        return true;
+    bool ok = true;
+    if (cJSON_IsString(item)) {
+        struct text text = {0};
+        text_add_printable(&text, item->valuestring);
+        ok = !text.out_of_memory && cJSON_SetValuestring(item, text.data);
+        text_free(&text);
     }
-    char *text = cJSON_Print(root);
+    for (cJSON *child = item->child; ok && child; child = child->next)
+        ok = make_printable(child);
+    return ok;
+}
+
+static bool print_json(const cJSON *root)
+{
+    char *text = json_text(root, true, json_begin());
     if (!text)
-        return fail(err, EXIT_MEMORY, "out of memory");
+        return false;
     puts(text);
     free(text);
+    return true;
+}
+
+static bool print(cJSON *root, bool json, struct tool_error *err)
+{
+    if (!(json ? print_json(root) : make_printable(root)))
+        return fail(err, EXIT_MEMORY, "out of memory");
+    if (!json)
+        print_text(root);
     return true;
 }
 

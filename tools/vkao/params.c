@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "output.h"
 
-#include <cjson/cJSON.h>
+#include "json_text.h"
+
 #include <stdio.h>
 
 static const char *method_name(const struct options *o)
@@ -34,6 +35,7 @@ char *output_params_json(const struct options *o, const struct rendered_view *vi
                          const char *device)
 {
     const struct gbuffer *g = &view->gbuffer;
+    const unsigned begun = json_begin();
     cJSON *root = cJSON_CreateObject();
     cJSON_AddStringToObject(root, "method", method_name(o));
     if (o->ssao.method == VKAO_SSAO_SPHERE)
@@ -64,7 +66,7 @@ char *output_params_json(const struct options *o, const struct rendered_view *vi
         cJSON_AddStringToObject(root, "normal_space", normal_space_name(g->normal_space));
     add_camera(root, &g->camera);
     cJSON_AddStringToObject(root, "device", device);
-    char *json = cJSON_PrintUnformatted(root);
+    char *json = json_text(root, false, begun);
     cJSON_Delete(root);
     return json;
 }
