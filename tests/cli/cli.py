@@ -147,9 +147,7 @@ class Result:
 
 
 def limit_file_size(size):
-    """For preexec_fn: writing beyond fails like a full disk (EFBIG, the signal is ignored)."""
-    import signal
-    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    """For preexec_fn: 'ulimit -f', here in bytes. Writing beyond would kill a careless process."""
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
 
 

@@ -4,6 +4,7 @@
 import json
 import os
 import re
+import socket
 import subprocess
 
 import numpy as np
@@ -75,6 +76,63 @@ def directory_as_input(scratch):
 def pipe_as_input_does_not_hang(scratch):
     os.mkfifo(scratch.path('in.exr'))
     scratch.fails(INPUT, r'in\.exr: cannot open: not a regular file', *RUN, timeout=20)
+
+
+def not_a_file(scratch, kind):
+    """A path that is none, and what is said of it."""
+    path = scratch.path('camera')
+    if kind == 'pipe':
+        os.mkfifo(path)
+    elif kind == 'directory':
+        os.mkdir(path)
+        return 'camera', r'camera: cannot open: Is a directory'
+    elif kind == 'socket':
+        server = socket.socket(socket.AF_UNIX)
+        server.bind(path)
+        server.close()
+        return 'camera', r'camera: cannot open: No such device'
+    elif kind == 'link to a pipe':
+        os.mkfifo(scratch.path('pipe'))
+        os.symlink('pipe', path)
+    elif kind == 'loop':
+        os.symlink('camera', path)
+        return 'camera', r'camera: cannot open: Too many levels'
+    elif kind == 'huge':
+        with open(path, 'wb') as file:
+            file.truncate(1 << 40)
+        return 'camera', r'camera: larger than \d+ bytes'
+    elif kind == 'a little large':
+        scratch.write('camera', b'{}' + b' ' * (1 << 20))
+        return 'camera', r'camera: larger than \d+ bytes'
+    elif kind == 'proc':
+        return '/proc/self/mem', r'/proc/self/mem: '
+    else:
+        return kind, rf'{kind}: cannot open: not a regular file'
+    return 'camera', r'camera: cannot open: not a regular file'
+
+
+KINDS = ['pipe', 'link to a pipe', 'directory', 'socket', 'loop', 'huge', 'a little large', 'proc',
+         '/dev/zero', '/dev/null', '/dev/tty0', '/dev/ptmx']
+
+
+@cases(KINDS)
+def camera_that_is_no_file_is_refused_at_once(scratch, kind):
+    if kind.startswith('/dev') and not os.path.exists(kind):
+        skip(f'no {kind}')
+    gbuffer(scratch)
+    path, message = not_a_file(scratch, kind)
+    for arguments in (('in.exr', '-o', 'out.exr'), ('inspect', 'in.exr')):
+        scratch.fails(INPUT, message, *arguments, '--camera', path, timeout=20)
+
+
+@cases(KINDS)
+def input_that_is_no_file_is_refused_at_once(scratch, kind):
+    if kind.startswith('/dev') and not os.path.exists(kind):
+        skip(f'no {kind}')
+    path, message = not_a_file(scratch, kind)
+    message = message.split(': larger')[0]
+    for arguments in ((path, '-o', 'out.exr'), ('inspect', path)):
+        scratch.fails(INPUT, message, *arguments, timeout=20)
 
 
 @case
@@ -340,14 +398,66 @@ def unwritable_directory(scratch):
                   'locked/out.exr', preexec_fn=unprivileged(scratch))
 
 
-@cases([('ao', ()), ('append', ('--mode', 'append')),
-        ('float', ('--pixel-type', 'float', '--compression', 'none'))])
-def full_disk_leaves_nothing(scratch, _, options):
+def noise(scratch):
     rng = np.random.default_rng(1)
     depth = (5 + rng.random((200, 200))).astype(np.float32)
     write_exr(scratch.path('in.exr'), {'Z': depth})
+
+
+WRITTEN = [('ao', ()), ('append', ('--mode', 'append')),
+           ('float', ('--pixel-type', 'float', '--compression', 'none')),
+           ('overwrite', ('--overwrite', 'always')), ('threads', ('--threads', '4'))]
+# Within the first write, in a later one, and in what closes the file.
+LIMITS = (0, 1, 500, 20000, 30000)
+
+
+@cases([(f'{name} {limit}', options, limit) for name, options in WRITTEN for limit in LIMITS])
+def file_size_limit_leaves_nothing(scratch, _, options, limit):
+    noise(scratch)
     scratch.fails(OUTPUT, r'out\.exr: cannot write: File too large', *RUN, *options,
-                  preexec_fn=lambda: limit_file_size(20000))
+                  hint='ulimit -f', preexec_fn=lambda: limit_file_size(limit))
+
+
+@case
+def file_size_limit_at_every_byte_leaves_all_or_nothing(scratch):
+    """The last limits are those that the file just fits."""
+    gbuffer(scratch)
+    scratch.render(*RUN, '--compression', 'none')
+    size = os.path.getsize(scratch.path('out.exr'))
+    for limit in (size - 1, size - 9, size // 2):
+        os.remove(scratch.path('out.exr'))
+        scratch.fails(OUTPUT, r'out\.exr: cannot write', *RUN, '--compression', 'none',
+                      preexec_fn=lambda: limit_file_size(limit))
+        scratch.render(*RUN, '--compression', 'none',
+                       preexec_fn=lambda: limit_file_size(size))
+
+
+@cases([('first byte', 0), ('middle', 0.5), ('last byte', 1)])
+def file_size_limit_leaves_no_preview(scratch, _, share):
+    grey = np.random.default_rng(1).random((200, 200)).astype(np.float32)
+    write_exr(scratch.path('in.exr'),
+              {'Z': np.full((200, 200), 5, np.float32), 'R': grey, 'G': grey, 'B': grey})
+    run = ('in.exr', '--fov', FOV, '--mode', 'comp', '--compression', 'dwab')
+    scratch.render(*run, '-o', 'whole.exr', '--preview', 'whole.png')
+    exr, png = (os.path.getsize(scratch.path('whole.' + f)) for f in ('exr', 'png'))
+    check(exr < png, f'the picture to fail on is smaller than the EXR: {png} < {exr}')
+    limit = int(exr + (png - 1 - exr) * share)
+    failed = scratch.run(*run, '-o', 'out.exr', '--preview', 'out.png',
+                         preexec_fn=lambda: limit_file_size(limit))
+    equal(failed.code, OUTPUT, f'exit code of {failed}')
+    matches(r'vkao: out\.png: cannot write: File too large', failed.stderr, 'stderr')
+    check('out.png' not in scratch.files(), 'a partial picture')
+    scratch.check_no_litter()
+
+
+@case
+def standard_output_may_have_a_size_limit(scratch):
+    gbuffer(scratch)
+    with open(scratch.path('text'), 'w', encoding='utf-8') as file:
+        run = scratch.run('inspect', 'in.exr', stdout=file,
+                          preexec_fn=lambda: limit_file_size(10))
+    equal(run.code, OUTPUT, f'exit code of {run}')
+    matches('vkao: standard output: cannot write', run.stderr, 'stderr')
 
 
 @case

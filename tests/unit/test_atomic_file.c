@@ -19,6 +19,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 static void no_temporary_is_left_when_the_disk_write_fails(void **state)
@@ -96,18 +97,36 @@ static void output_is_invisible_until_the_commit(void **state)
     assert_int_equal(files_in_directory(), 1);
 }
 
+/* In a process of its own: the exit code of one that a signal meets with two files in progress. */
+static int exit_code_of_interrupted(int number)
+{
+    int status = 0;
+    const pid_t child = fork();
+    if (child == 0) {
+        struct atomic_file a, b;
+        struct tool_error err = {0};
+        signal(number, SIG_DFL);
+        atomic_file_catch_signals();
+        if (!atomic_file_open(&a, in_directory("a"), true, &err) ||
+            !atomic_file_open(&b, in_directory("b"), false, &err) || files_in_directory() != 2)
+            _exit(1);
+        raise(number);
+        _exit(0);
+    }
+    assert_true(child > 0);
+    assert_int_equal(waitpid(child, &status, 0), child);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
 static void interruption_removes_every_pending_file(void **state)
 {
     (void)state;
-    struct atomic_file a, b;
-    struct tool_error err = {0};
-    assert_true(atomic_file_open(&a, in_directory("a"), true, &err));
-    assert_true(atomic_file_open(&b, in_directory("b"), false, &err));
-    assert_int_equal(files_in_directory(), 2);
-    atomic_file_remove_pending();
-    assert_int_equal(files_in_directory(), 0);
-    atomic_file_abort(&a);
-    atomic_file_abort(&b);
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU};
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        assert_int_equal(exit_code_of_interrupted(numbers[i]), 128 + numbers[i]);
+        assert_int_equal(files_in_directory(), 0);
+    }
+    assert_int_equal(exit_code_of_interrupted(SIGXFSZ), 0); /* an error of the write instead */
 }
 
 static void replacing_through_a_link_keeps_the_link_and_the_mode(void **state)

@@ -3,6 +3,7 @@
  * vkao-bench: how good and how fast the library is. */
 #include "commands.h"
 
+#include "atomic_file.h"
 #include "error.h"
 #include "report.h"
 #include "vkao.h"
@@ -64,6 +65,7 @@ static int run(int argc, char **argv)
 int main(int argc, char **argv)
 {
     struct tool_error err = {0};
+    atomic_file_catch_signals();
     int code = run(argc, argv);
     /* A full disk behind 'vkao-bench quality > x' shows only here. */
     if ((fflush(stdout) != 0 || ferror(stdout)) && code == EXIT_OK) {

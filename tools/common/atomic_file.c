@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -45,14 +46,27 @@ static void pending_remove(int slot)
         atomic_store(&pending[slot].state, PENDING_FREE);
 }
 
-void atomic_file_remove_pending(void)
+/* Async-signal-safe: it only calls unlink. */
+static void on_signal(int number)
 {
-    int saved_errno = errno;
     for (int i = 0; i < PENDING_MAX; i++) {
         if (atomic_load(&pending[i].state) == PENDING_ARMED)
             unlink(pending[i].path);
     }
-    errno = saved_errno;
+    _exit(128 + number);
+}
+
+void atomic_file_catch_signals(void)
+{
+    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGPIPE, SIGXCPU};
+    struct sigaction action = {.sa_handler = on_signal};
+    sigfillset(&action.sa_mask);
+    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        struct sigaction old;
+        if (sigaction(numbers[i], NULL, &old) == 0 && old.sa_handler != SIG_IGN)
+            sigaction(numbers[i], &action, NULL);
+    }
+    signal(SIGXFSZ, SIG_IGN);
 }
 
 /* "dir/" of "dir/name" and "" of "name": the length of the part up to the last slash. */
@@ -213,6 +227,9 @@ bool atomic_file_write(struct atomic_file *file, const void *data, size_t bytes,
             fail(err, EXIT_OUTPUT, "%s: cannot write: %s", file->path, strerror(error));
             if (error == ENOSPC || error == EDQUOT)
                 fail_hint(err, "free some space or choose another disk; nothing was left behind");
+            else if (error == EFBIG)
+                fail_hint(err, "'ulimit -f' or the file system limits the size of files; nothing "
+                               "was left behind");
             return false;
         }
         from += written;

@@ -42,9 +42,10 @@ bool atomic_file_commit(struct atomic_file *file, struct tool_error *err);
 /* Closes and removes the temporary file. Harmless on a zeroed, failed, committed or aborted file.
  * */
 void atomic_file_abort(struct atomic_file *file);
-/* Removes the temporary files of all threads: for a handler of SIGINT or SIGTERM that ends the
- * process next (async-signal-safe: it only calls unlink). */
-void atomic_file_remove_pending(void);
+/* For main(): signals that end the process remove the temporary files of all threads first, and its
+ * exit code is 128 + number. A limit of file sizes (ulimit -f) becomes an error of
+ * atomic_file_write. What is ignored already, as nohup and shells do, stays ignored. */
+void atomic_file_catch_signals(void);
 
 #ifdef __cplusplus
 }

@@ -5,16 +5,8 @@
 
 #include "atomic_file.h"
 
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <unistd.h>
-
-static void on_signal(int number)
-{
-    atomic_file_remove_pending();
-    _exit(128 + number);
-}
 
 static int print_version(void)
 {
@@ -50,8 +42,7 @@ int main(int argc, char **argv)
 {
     struct arguments arguments;
     struct tool_error err = {0};
-    signal(SIGINT, on_signal);
-    signal(SIGTERM, on_signal);
+    atomic_file_catch_signals();
     if (!arguments_parse(argc, argv, &arguments, &err)) {
         report_error(&err);
         return err.code;

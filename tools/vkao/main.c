@@ -3,28 +3,8 @@
 #include "commands.h"
 #include "options.h"
 
-#include <signal.h>
 #include <stdio.h>
 #include <unistd.h>
-
-static void on_signal(int number)
-{
-    atomic_file_remove_pending();
-    _exit(128 + number);
-}
-
-static void catch_signals(void)
-{
-    static const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
-    struct sigaction action = {.sa_handler = on_signal};
-    sigfillset(&action.sa_mask);
-    for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
-        struct sigaction old;
-        /* nohup and shells ignore signals on behalf of the process: leave that so. */
-        if (sigaction(numbers[i], NULL, &old) == 0 && old.sa_handler != SIG_IGN)
-            sigaction(numbers[i], &action, NULL);
-    }
-}
 
 static void print_version(void)
 {
@@ -75,7 +55,7 @@ int main(int argc, char **argv)
 {
     struct options options;
     struct tool_error err = {0};
-    catch_signals();
+    atomic_file_catch_signals();
     if (!options_parse(argc, argv, &options, &err)) {
         report_error(&err);
         return err.code;
