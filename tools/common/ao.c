@@ -41,10 +41,9 @@ static bool create_timestamps(struct ao_session *session, struct tool_error *err
                                             .queryCount = 2,
                                         },
                                         NULL, &session->timestamps);
-    if (result == VK_SUCCESS)
-        return true;
-    session->timestamps = VK_NULL_HANDLE;
-    return fail(err, EXIT_MEMORY, "vkCreateQueryPool failed with VkResult %d", (int)result);
+    if (result != VK_SUCCESS)
+        session->timestamps = VK_NULL_HANDLE;
+    return gpu_ok(err, "vkCreateQueryPool", result);
 }
 
 struct ao_session *ao_session_create(struct gpu *gpu, uint32_t method_mask, struct tool_error *err)
@@ -223,8 +222,8 @@ static bool read_timestamps(struct ao_session *session, double *ms, struct tool_
     VkResult result =
         vkGetQueryPoolResults(gpu->device, session->timestamps, 0, 2, sizeof ticks, ticks,
                               sizeof ticks[0], VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
-    if (result != VK_SUCCESS)
-        return fail(err, EXIT_DEVICE, "vkGetQueryPoolResults failed with VkResult %d", (int)result);
+    if (!gpu_ok(err, "vkGetQueryPoolResults", result))
+        return false;
     /* Masked after the subtraction: the counter may have wrapped in between. */
     *ms = (double)((ticks[1] - ticks[0]) & mask) * (double)gpu->properties.limits.timestampPeriod *
           1e-6;

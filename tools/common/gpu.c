@@ -10,8 +10,10 @@
 
 static const char validation_layer[] = "VK_LAYER_KHRONOS_validation";
 
-static bool vk_failed(struct tool_error *err, const char *call, VkResult result)
+bool gpu_ok(struct tool_error *err, const char *call, VkResult result)
 {
+    if (result == VK_SUCCESS)
+        return true;
     bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
     err->ends_run = err->ends_run || result == VK_ERROR_DEVICE_LOST;
     return fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "%s failed with VkResult %d", call,
@@ -115,8 +117,11 @@ static bool create_instance(struct gpu *gpu, const struct gpu_options *options,
             .ppEnabledExtensionNames = extensions,
         },
         NULL, &gpu->instance);
-    if (result != VK_SUCCESS) {
+    if (result != VK_SUCCESS)
         gpu->instance = VK_NULL_HANDLE;
+    if (result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY)
+        return gpu_ok(err, "vkCreateInstance", result);
+    if (result != VK_SUCCESS) {
         fail(err, EXIT_DEVICE, "no Vulkan driver could be loaded (vkCreateInstance: VkResult %d)",
              (int)result);
         return fail_hint(
@@ -129,7 +134,7 @@ static bool create_instance(struct gpu *gpu, const struct gpu_options *options,
                                                                   "vkCreateDebugUtilsMessengerEXT");
     result = create ? create(gpu->instance, &messenger, NULL, &gpu->messenger)
                     : VK_ERROR_EXTENSION_NOT_PRESENT;
-    return result == VK_SUCCESS || vk_failed(err, "vkCreateDebugUtilsMessengerEXT", result);
+    return gpu_ok(err, "vkCreateDebugUtilsMessengerEXT", result);
 }
 
 const char *gpu_device_type_name(VkPhysicalDeviceType type)
@@ -164,14 +169,18 @@ static int device_fits(const char *wanted, uint32_t i, const VkPhysicalDevicePro
 /* malloc'ed list of devices; NULL with the error set. */
 static VkPhysicalDevice *list_devices(VkInstance instance, uint32_t *count, struct tool_error *err)
 {
+    VkPhysicalDevice *devices = NULL;
     VkResult result = vkEnumeratePhysicalDevices(instance, count, NULL);
-    VkPhysicalDevice *devices =
-        result == VK_SUCCESS && *count ? calloc(*count, sizeof *devices) : NULL;
-    if (devices)
-        result = vkEnumeratePhysicalDevices(instance, count, devices);
+    if (result == VK_SUCCESS && *count) {
+        devices = calloc(*count, sizeof *devices);
+        result = devices ? vkEnumeratePhysicalDevices(instance, count, devices)
+                         : VK_ERROR_OUT_OF_HOST_MEMORY;
+    }
     if (devices && result == VK_SUCCESS && *count)
         return devices;
     free(devices);
+    if (!gpu_ok(err, "vkEnumeratePhysicalDevices", result))
+        return NULL;
     fail(err, EXIT_DEVICE, "no Vulkan device: the loader found 0 physical devices");
     fail_hint(err, "install mesa-vulkan-drivers to compute on the CPU (lavapipe), or a GPU driver");
     return NULL;
@@ -282,7 +291,7 @@ static bool create_device(struct gpu *gpu, const struct gpu_options *options,
                        NULL, &gpu->device);
     if (result != VK_SUCCESS) {
         gpu->device = VK_NULL_HANDLE;
-        return vk_failed(err, "vkCreateDevice", result);
+        return gpu_ok(err, "vkCreateDevice", result);
     }
     vkGetDeviceQueue(gpu->device, gpu->queue_family, 0, &gpu->queue);
     result = vkCreateCommandPool(gpu->device,
@@ -292,7 +301,7 @@ static bool create_device(struct gpu *gpu, const struct gpu_options *options,
                                      .queueFamilyIndex = gpu->queue_family,
                                  },
                                  NULL, &gpu->command_pool);
-    return result == VK_SUCCESS || vk_failed(err, "vkCreateCommandPool", result);
+    return gpu_ok(err, "vkCreateCommandPool", result);
 }
 
 bool gpu_create(const struct gpu_options *options, struct gpu *gpu, struct tool_error *err)

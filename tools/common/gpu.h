@@ -110,6 +110,8 @@ vkao_context *gpu_context(struct gpu *gpu, uint32_t method_mask, struct tool_err
 /* The two halves of gpu_context, for those who change something in between. */
 vkao_context_info gpu_context_info(const struct gpu *gpu, uint32_t method_mask);
 vkao_context *gpu_context_create(const vkao_context_info *info, struct tool_error *err);
+/* True if result is VK_SUCCESS; else the error of the call: EXIT_MEMORY or EXIT_DEVICE. */
+bool gpu_ok(struct tool_error *err, const char *call, VkResult result);
 /* The error of a library call that returned result. */
 bool gpu_library_failed(struct tool_error *err, const char *call, vkao_result result);
 

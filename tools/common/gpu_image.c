@@ -7,16 +7,6 @@
 #include <string.h>
 #include <vulkan/vulkan.h>
 
-static bool vk_ok(struct tool_error *err, const char *call, VkResult result)
-{
-    if (result == VK_SUCCESS)
-        return true;
-    bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    err->ends_run = err->ends_run || result == VK_ERROR_DEVICE_LOST;
-    return fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "%s failed with VkResult %d", call,
-                (int)result);
-}
-
 static bool fail_limit(const struct gpu *gpu, const char *limit, uint64_t has, uint64_t wanted,
                        struct tool_error *err)
 {
@@ -46,7 +36,7 @@ bool gpu_allocate(struct gpu *gpu, const VkMemoryRequirements *need, VkMemoryPro
                                        NULL, memory);
     if (result != VK_SUCCESS)
         *memory = VK_NULL_HANDLE;
-    return vk_ok(err, "vkAllocateMemory", result);
+    return gpu_ok(err, "vkAllocateMemory", result);
 }
 
 static bool is_depth(VkFormat format)
@@ -73,13 +63,13 @@ VkCommandBuffer gpu_begin(struct gpu *gpu, struct tool_error *err)
                                      .commandBufferCount = 1,
                                  },
                                  &cmd);
-    if (!vk_ok(err, "vkAllocateCommandBuffers", result))
+    if (!gpu_ok(err, "vkAllocateCommandBuffers", result))
         return VK_NULL_HANDLE;
     result = vkBeginCommandBuffer(cmd, &(VkCommandBufferBeginInfo){
                                            .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                            .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT,
                                        });
-    if (vk_ok(err, "vkBeginCommandBuffer", result))
+    if (gpu_ok(err, "vkBeginCommandBuffer", result))
         return cmd;
     vkFreeCommandBuffers(gpu->device, gpu->command_pool, 1, &cmd);
     return VK_NULL_HANDLE;
@@ -87,8 +77,8 @@ VkCommandBuffer gpu_begin(struct gpu *gpu, struct tool_error *err)
 
 bool gpu_submit(struct gpu *gpu, VkCommandBuffer cmd, struct tool_error *err)
 {
-    bool ok = vk_ok(err, "vkEndCommandBuffer", vkEndCommandBuffer(cmd)) &&
-              vk_ok(err, "vkQueueSubmit",
+    bool ok = gpu_ok(err, "vkEndCommandBuffer", vkEndCommandBuffer(cmd)) &&
+              gpu_ok(err, "vkQueueSubmit",
                     vkQueueSubmit(gpu->queue, 1,
                                   &(VkSubmitInfo){
                                       .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
@@ -96,7 +86,7 @@ bool gpu_submit(struct gpu *gpu, VkCommandBuffer cmd, struct tool_error *err)
                                       .pCommandBuffers = &cmd,
                                   },
                                   VK_NULL_HANDLE)) &&
-              vk_ok(err, "vkQueueWaitIdle", vkQueueWaitIdle(gpu->queue));
+              gpu_ok(err, "vkQueueWaitIdle", vkQueueWaitIdle(gpu->queue));
     vkFreeCommandBuffers(gpu->device, gpu->command_pool, 1, &cmd);
     return ok;
 }
@@ -148,7 +138,7 @@ static bool check_image_limits(const struct gpu *gpu, const VkImageCreateInfo *i
     VkResult result = vkGetPhysicalDeviceImageFormatProperties(
         gpu->physical_device, info->format, info->imageType, info->tiling, info->usage, 0, &can);
     if (result != VK_SUCCESS)
-        return vk_ok(err, "vkGetPhysicalDeviceImageFormatProperties", result);
+        return gpu_ok(err, "vkGetPhysicalDeviceImageFormatProperties", result);
     return bytes <= can.maxResourceSize ||
            fail_limit(gpu, "maxResourceSize", can.maxResourceSize, bytes, err);
 }
@@ -176,11 +166,11 @@ bool gpu_image_create(struct gpu *gpu, VkFormat format, VkExtent2D extent, VkIma
     VkResult result = vkCreateImage(gpu->device, &info, NULL, &image->image);
     if (result != VK_SUCCESS) {
         image->image = VK_NULL_HANDLE;
-        return vk_ok(err, "vkCreateImage", result);
+        return gpu_ok(err, "vkCreateImage", result);
     }
     vkGetImageMemoryRequirements(gpu->device, image->image, &need);
     bool ok = gpu_allocate(gpu, &need, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, &image->memory, err) &&
-              vk_ok(err, "vkBindImageMemory",
+              gpu_ok(err, "vkBindImageMemory",
                     vkBindImageMemory(gpu->device, image->image, image->memory, 0));
     if (ok) {
         result = vkCreateImageView(gpu->device,
@@ -194,7 +184,7 @@ bool gpu_image_create(struct gpu *gpu, VkFormat format, VkExtent2D extent, VkIma
                                    NULL, &image->view);
         if (result != VK_SUCCESS)
             image->view = VK_NULL_HANDLE;
-        ok = vk_ok(err, "vkCreateImageView", result);
+        ok = gpu_ok(err, "vkCreateImageView", result);
     }
     if (ok && to_general(gpu, image, err))
         return true;
@@ -243,15 +233,15 @@ bool gpu_buffer_create(struct gpu *gpu, uint64_t bytes, VkBufferUsageFlags usage
                                      NULL, &s->buffer);
     if (result != VK_SUCCESS) {
         s->buffer = VK_NULL_HANDLE;
-        return vk_ok(err, "vkCreateBuffer", result);
+        return gpu_ok(err, "vkCreateBuffer", result);
     }
     vkGetBufferMemoryRequirements(gpu->device, s->buffer, &need);
     if (gpu_allocate(gpu, &need,
                      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
                      &s->memory, err) &&
-        vk_ok(err, "vkBindBufferMemory",
+        gpu_ok(err, "vkBindBufferMemory",
               vkBindBufferMemory(gpu->device, s->buffer, s->memory, 0)) &&
-        vk_ok(err, "vkMapMemory",
+        gpu_ok(err, "vkMapMemory",
               vkMapMemory(gpu->device, s->memory, 0, VK_WHOLE_SIZE, 0, &s->mapped)))
         return true;
     gpu_buffer_destroy(gpu, s);

@@ -6,16 +6,10 @@
 
 const char *const stage_names[STAGES] = {"prepare", "ssao", "blur", "composite"};
 
+/* The panel offers what is in range only, so that an invalid argument is a bug. */
 static bool library_ok(struct tool_error *err, const char *call, vkao_result result)
 {
-    enum exit_code code = EXIT_DEVICE;
-    if (result == VKAO_SUCCESS)
-        return true;
-    if (result == VKAO_ERROR_OUT_OF_HOST_MEMORY || result == VKAO_ERROR_OUT_OF_DEVICE_MEMORY)
-        code = EXIT_MEMORY;
-    else if (result == VKAO_ERROR_INVALID_ARGUMENT)
-        code = EXIT_BUG; /* the panel offers what is in range only */
-    return fail(err, code, "%s: %s", call, vkao_result_string(result));
+    return result == VKAO_SUCCESS || gpu_library_failed(err, call, result);
 }
 
 /* --- Frame and images --- */
@@ -167,14 +161,14 @@ bool computation_record(const struct computation *c, VkCommandBuffer cmd,
 }
 
 bool read_stage_times(const struct gpu *gpu, VkQueryPool pool, uint32_t query,
-                      struct stage_times *times)
+                      struct stage_times *times, struct tool_error *err)
 {
     uint64_t ticks[STAGES + 1];
     uint64_t mask =
         gpu->timestamp_bits < 64 ? (UINT64_C(1) << gpu->timestamp_bits) - 1 : UINT64_MAX;
     VkResult result = vkGetQueryPoolResults(gpu->device, pool, query, STAGES + 1, sizeof ticks,
                                             ticks, sizeof ticks[0], VK_QUERY_RESULT_64_BIT);
-    if (result != VK_SUCCESS)
+    if (result == VK_NOT_READY || !gpu_ok(err, "vkGetQueryPoolResults", result))
         return false;
     /* Masked after the subtraction: the counter may have wrapped in between. */
     for (int i = 0; i < STAGES; i++)

@@ -56,9 +56,9 @@ bool computation_record(const struct computation *c, VkCommandBuffer cmd,
                         const struct inputs *inputs, const struct setting *setting,
                         enum view_kind view, VkQueryPool pool, uint32_t query,
                         struct tool_error *err);
-/* False while the results are not there. */
+/* False without an error in err: the results are not there yet. */
 bool read_stage_times(const struct gpu *gpu, VkQueryPool pool, uint32_t query,
-                      struct stage_times *times);
+                      struct stage_times *times, struct tool_error *err);
 
 /* The image that a view shows. */
 VkImageView computation_result(const struct computation *c, enum view_kind view);

@@ -9,15 +9,6 @@
 
 _Static_assert(sizeof(struct display_block) == 48, "as GLSL lays it out");
 
-static bool vk_ok(struct tool_error *err, const char *call, VkResult result)
-{
-    if (result == VK_SUCCESS)
-        return true;
-    bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    return fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "%s failed with VkResult %d", call,
-                (int)result);
-}
-
 static bool create_layouts(struct display *d, struct tool_error *err)
 {
     VkDescriptorSetLayoutBinding bindings[DISPLAY_BINDINGS];
@@ -36,7 +27,7 @@ static bool create_layouts(struct display *d, struct tool_error *err)
             .pBindings = bindings,
         },
         NULL, &d->set_layout);
-    if (!vk_ok(err, "vkCreateDescriptorSetLayout", result))
+    if (!gpu_ok(err, "vkCreateDescriptorSetLayout", result))
         return false;
     result = vkCreatePipelineLayout(d->gpu->device,
                                     &(VkPipelineLayoutCreateInfo){
@@ -51,7 +42,7 @@ static bool create_layouts(struct display *d, struct tool_error *err)
                                             },
                                     },
                                     NULL, &d->pipeline_layout);
-    return vk_ok(err, "vkCreatePipelineLayout", result);
+    return gpu_ok(err, "vkCreatePipelineLayout", result);
 }
 
 static bool create_sets(struct display *d, struct tool_error *err)
@@ -69,7 +60,7 @@ static bool create_sets(struct display *d, struct tool_error *err)
                                                   FRAMES_IN_FLIGHT * DISPLAY_BINDINGS},
         },
         NULL, &d->pool);
-    if (!vk_ok(err, "vkCreateDescriptorPool", result))
+    if (!gpu_ok(err, "vkCreateDescriptorPool", result))
         return false;
     result = vkAllocateDescriptorSets(d->gpu->device,
                                       &(VkDescriptorSetAllocateInfo){
@@ -79,7 +70,7 @@ static bool create_sets(struct display *d, struct tool_error *err)
                                           .pSetLayouts = layouts,
                                       },
                                       d->sets);
-    if (!vk_ok(err, "vkAllocateDescriptorSets", result))
+    if (!gpu_ok(err, "vkAllocateDescriptorSets", result))
         return false;
     result = vkCreateSampler(d->gpu->device,
                              &(VkSamplerCreateInfo){
@@ -91,7 +82,7 @@ static bool create_sets(struct display *d, struct tool_error *err)
                                  .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                              },
                              NULL, &d->sampler);
-    return vk_ok(err, "vkCreateSampler", result) &&
+    return gpu_ok(err, "vkCreateSampler", result) &&
            gpu_image_create(d->gpu, VK_FORMAT_R32_SFLOAT, (VkExtent2D){1, 1},
                             VK_IMAGE_USAGE_SAMPLED_BIT, &d->nothing, err);
 }
@@ -107,7 +98,7 @@ static VkShaderModule create_shader(struct display *d, const uint32_t *code, siz
                                                .pCode = code,
                                            },
                                            NULL, &module);
-    vk_ok(err, "vkCreateShaderModule", result);
+    gpu_ok(err, "vkCreateShaderModule", result);
     return result == VK_SUCCESS ? module : VK_NULL_HANDLE;
 }
 
@@ -182,7 +173,7 @@ bool display_create(struct gpu *gpu, VkRenderPass pass, struct display *display,
     VkShaderModule fragment =
         ok ? create_shader(display, display_frag, sizeof display_frag, err) : VK_NULL_HANDLE;
     ok = ok && vertex && fragment &&
-         vk_ok(err, "vkCreateGraphicsPipelines", create_pipeline(display, pass, vertex, fragment));
+         gpu_ok(err, "vkCreateGraphicsPipelines", create_pipeline(display, pass, vertex, fragment));
     vkDestroyShaderModule(gpu->device, vertex, NULL);
     vkDestroyShaderModule(gpu->device, fragment, NULL);
     if (!ok)

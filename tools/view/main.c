@@ -28,6 +28,10 @@ static int run(const struct arguments *arguments)
     if (!viewer_open(viewer, arguments, &err) || !viewer_run(viewer, &err))
         report_error(&err);
     viewer_close(viewer);
+    if (err.code == EXIT_OK && viewer->failure.code != EXIT_OK) {
+        err = viewer->failure;
+        report_error(&err);
+    }
     /* Counted to the end: what outlives its device is reported as that goes. */
     uint32_t messages = viewer->gpu.validation_messages;
     free(viewer);

@@ -78,7 +78,7 @@ static bool create_buffer(struct live_scene *scene, VkDeviceSize bytes, struct t
         NULL, &scene->buffer);
     if (result != VK_SUCCESS) {
         scene->buffer = VK_NULL_HANDLE;
-        return live_failed(err, "vkCreateBuffer", result);
+        return gpu_ok(err, "vkCreateBuffer", result);
     }
     vkGetBufferMemoryRequirements(device, scene->buffer, &need);
     result = vkAllocateMemory(device,
@@ -90,10 +90,10 @@ static bool create_buffer(struct live_scene *scene, VkDeviceSize bytes, struct t
                               NULL, &scene->memory);
     if (result != VK_SUCCESS) {
         scene->memory = VK_NULL_HANDLE;
-        return live_failed(err, "vkAllocateMemory", result);
+        return gpu_ok(err, "vkAllocateMemory", result);
     }
     result = vkBindBufferMemory(device, scene->buffer, scene->memory, 0);
-    return result == VK_SUCCESS || live_failed(err, "vkBindBufferMemory", result);
+    return gpu_ok(err, "vkBindBufferMemory", result);
 }
 
 static bool upload_mesh(struct live_scene *scene, const struct mesh *mesh, struct tool_error *err)
@@ -107,7 +107,7 @@ static bool upload_mesh(struct live_scene *scene, const struct mesh *mesh, struc
         return false;
     VkResult result = vkMapMemory(scene->gpu->device, scene->memory, 0, VK_WHOLE_SIZE, 0, &mapped);
     if (result != VK_SUCCESS)
-        return live_failed(err, "vkMapMemory", result);
+        return gpu_ok(err, "vkMapMemory", result);
     memcpy(mapped, mesh->vertices, vertex_bytes);
     memcpy((char *)mapped + vertex_bytes, mesh->indices, index_bytes);
     vkUnmapMemory(scene->gpu->device, scene->memory);

@@ -33,7 +33,6 @@ struct live_scene {
     uint32_t still_count, index_count; /* indices [0,still_count) stand still, the others move */
 };
 
-bool live_failed(struct tool_error *err, const char *call, VkResult result);
 bool live_pass_create(struct gpu *gpu, VkRenderPass *pass, struct tool_error *err);
 /* For live_pass_create's render pass; sets scene->layout and scene->pipeline. */
 bool live_pipeline_create(struct live_scene *scene, struct tool_error *err);

@@ -21,7 +21,7 @@ static VkShaderModule create_module(struct gpu *gpu, const uint32_t *code, size_
                                            NULL, &module);
     if (result == VK_SUCCESS)
         return module;
-    live_failed(err, "vkCreateShaderModule", result);
+    gpu_ok(err, "vkCreateShaderModule", result);
     return VK_NULL_HANDLE;
 }
 
@@ -42,7 +42,7 @@ static bool create_layout(struct live_scene *scene, struct tool_error *err)
     if (result == VK_SUCCESS)
         return true;
     scene->layout = VK_NULL_HANDLE;
-    return live_failed(err, "vkCreatePipelineLayout", result);
+    return gpu_ok(err, "vkCreatePipelineLayout", result);
 }
 
 static const VkVertexInputAttributeDescription attributes[] = {
@@ -141,7 +141,7 @@ static bool create_pipeline(struct live_scene *scene, VkShaderModule vertex,
     if (result == VK_SUCCESS)
         return true;
     scene->pipeline = VK_NULL_HANDLE;
-    return live_failed(err, "vkCreateGraphicsPipelines", result);
+    return gpu_ok(err, "vkCreateGraphicsPipelines", result);
 }
 
 bool live_pipeline_create(struct live_scene *scene, struct tool_error *err)

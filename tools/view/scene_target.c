@@ -21,13 +21,6 @@ const VkImageLayout live_layouts[ATTACHMENT_COUNT] = {
     [ATTACHMENT_DEPTH] = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
 };
 
-bool live_failed(struct tool_error *err, const char *call, VkResult result)
-{
-    bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    return fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "%s failed with VkResult %d", call,
-                (int)result);
-}
-
 static const VkPipelineStageFlags render_stages = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT |
                                                   VK_PIPELINE_STAGE_EARLY_FRAGMENT_TESTS_BIT |
                                                   VK_PIPELINE_STAGE_LATE_FRAGMENT_TESTS_BIT;
@@ -98,7 +91,7 @@ bool live_pass_create(struct gpu *gpu, VkRenderPass *pass, struct tool_error *er
     if (result == VK_SUCCESS)
         return true;
     *pass = VK_NULL_HANDLE;
-    return live_failed(err, "vkCreateRenderPass", result);
+    return gpu_ok(err, "vkCreateRenderPass", result);
 }
 
 /* The target's image for each attachment. */
@@ -128,7 +121,7 @@ static bool create_framebuffer(struct live_target *target, const VkImageView *vi
     if (result == VK_SUCCESS)
         return true;
     target->framebuffer = VK_NULL_HANDLE;
-    return live_failed(err, "vkCreateFramebuffer", result);
+    return gpu_ok(err, "vkCreateFramebuffer", result);
 }
 
 bool live_target_create(struct live_scene *scene, VkExtent2D extent, struct live_target *target,

@@ -174,7 +174,7 @@ static bool load_frame(struct source *s, const struct plan_frame *frame, size_t 
     if (!l->reference_path || read_reference(s->gpu, l, &unusable))
         return true;
     /* One that was asked for must be there; one that merely lies there need not fit. */
-    if (s->reference_given) {
+    if (s->reference_given || unusable.code == EXIT_DEVICE || unusable.code == EXIT_MEMORY) {
         *err = unusable;
         return false;
     }

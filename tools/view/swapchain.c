@@ -4,15 +4,6 @@
 #include <stdlib.h>
 #include <vulkan/vulkan.h>
 
-static bool vk_ok(struct tool_error *err, const char *call, VkResult result)
-{
-    if (result == VK_SUCCESS)
-        return true;
-    bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
-    return fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "%s failed with VkResult %d", call,
-                (int)result);
-}
-
 /* --- What the surface offers --- */
 
 static bool choose_format(struct swapchain *s, struct tool_error *err)
@@ -22,7 +13,7 @@ static bool choose_format(struct swapchain *s, struct tool_error *err)
     uint32_t count = 64;
     VkResult result =
         vkGetPhysicalDeviceSurfaceFormatsKHR(s->gpu->physical_device, s->surface, &count, formats);
-    if (result != VK_INCOMPLETE && !vk_ok(err, "vkGetPhysicalDeviceSurfaceFormatsKHR", result))
+    if (result != VK_INCOMPLETE && !gpu_ok(err, "vkGetPhysicalDeviceSurfaceFormatsKHR", result))
         return false;
     for (size_t w = 0; w < sizeof wanted / sizeof *wanted; w++) {
         for (uint32_t i = 0; i < count; i++) {
@@ -42,7 +33,7 @@ static bool check_surface(struct swapchain *s, struct tool_error *err)
     VkBool32 supported = VK_FALSE;
     VkResult result = vkGetPhysicalDeviceSurfaceSupportKHR(
         s->gpu->physical_device, s->gpu->queue_family, s->surface, &supported);
-    if (!vk_ok(err, "vkGetPhysicalDeviceSurfaceSupportKHR", result))
+    if (!gpu_ok(err, "vkGetPhysicalDeviceSurfaceSupportKHR", result))
         return false;
     return supported || fail(err, EXIT_DEVICE, "%s cannot present in this window",
                              s->gpu->properties.deviceName);
@@ -102,7 +93,7 @@ static bool create_render_pass(struct swapchain *s, struct tool_error *err)
                                .pDependencies = dependencies,
                            },
                            NULL, &s->render_pass);
-    return vk_ok(err, "vkCreateRenderPass", result);
+    return gpu_ok(err, "vkCreateRenderPass", result);
 }
 
 static bool create_frame(struct swapchain *s, struct frame_in_flight *f, struct tool_error *err)
@@ -116,7 +107,7 @@ static bool create_frame(struct swapchain *s, struct frame_in_flight *f, struct 
                                               .queueFamilyIndex = s->gpu->queue_family,
                                           },
                                           NULL, &f->pool);
-    if (!vk_ok(err, "vkCreateCommandPool", result))
+    if (!gpu_ok(err, "vkCreateCommandPool", result))
         return false;
     result = vkAllocateCommandBuffers(device,
                                       &(VkCommandBufferAllocateInfo){
@@ -126,7 +117,7 @@ static bool create_frame(struct swapchain *s, struct frame_in_flight *f, struct 
                                           .commandBufferCount = 1,
                                       },
                                       &f->cmd);
-    if (!vk_ok(err, "vkAllocateCommandBuffers", result))
+    if (!gpu_ok(err, "vkAllocateCommandBuffers", result))
         return false;
     result = vkCreateFence(device,
                            &(VkFenceCreateInfo){
@@ -134,8 +125,8 @@ static bool create_frame(struct swapchain *s, struct frame_in_flight *f, struct 
                                .flags = VK_FENCE_CREATE_SIGNALED_BIT,
                            },
                            NULL, &f->done);
-    return vk_ok(err, "vkCreateFence", result) &&
-           vk_ok(err, "vkCreateSemaphore",
+    return gpu_ok(err, "vkCreateFence", result) &&
+           gpu_ok(err, "vkCreateSemaphore",
                  vkCreateSemaphore(device, &semaphore, NULL, &f->acquired));
 }
 
@@ -173,7 +164,6 @@ void swapchain_destroy(struct swapchain *swapchain)
     if (!s->gpu)
         return;
     VkDevice device = s->gpu->device;
-    vkDeviceWaitIdle(device);
     destroy_images(s);
     vkDestroySwapchainKHR(device, s->handle, NULL);
     for (uint32_t i = 0; i < FRAMES_IN_FLIGHT; i++) {
@@ -198,7 +188,7 @@ static bool create_image(struct swapchain *s, struct swapchain_image *image, str
                               .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1},
                           },
                           NULL, &image->view);
-    if (!vk_ok(err, "vkCreateImageView", result))
+    if (!gpu_ok(err, "vkCreateImageView", result))
         return false;
     result = vkCreateFramebuffer(device,
                                  &(VkFramebufferCreateInfo){
@@ -211,12 +201,12 @@ static bool create_image(struct swapchain *s, struct swapchain_image *image, str
                                      .layers = 1,
                                  },
                                  NULL, &image->framebuffer);
-    if (!vk_ok(err, "vkCreateFramebuffer", result))
+    if (!gpu_ok(err, "vkCreateFramebuffer", result))
         return false;
     result = vkCreateSemaphore(
         device, &(VkSemaphoreCreateInfo){.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO}, NULL,
         &image->rendered);
-    return vk_ok(err, "vkCreateSemaphore", result);
+    return gpu_ok(err, "vkCreateSemaphore", result);
 }
 
 static bool create_images(struct swapchain *s, struct tool_error *err)
@@ -224,7 +214,7 @@ static bool create_images(struct swapchain *s, struct tool_error *err)
     VkImage images[MAX_SWAPCHAIN_IMAGES];
     uint32_t count = MAX_SWAPCHAIN_IMAGES;
     VkResult result = vkGetSwapchainImagesKHR(s->gpu->device, s->handle, &count, images);
-    if (!vk_ok(err, "vkGetSwapchainImagesKHR", result))
+    if (!gpu_ok(err, "vkGetSwapchainImagesKHR", result))
         return false;
     for (uint32_t i = 0; i < count; i++) {
         s->images[i].image = images[i];
@@ -244,10 +234,11 @@ bool swapchain_resize(struct swapchain *swapchain, VkExtent2D framebuffer, struc
 {
     struct swapchain *s = swapchain;
     VkSurfaceCapabilitiesKHR can;
-    vkDeviceWaitIdle(s->gpu->device);
-    VkResult result =
-        vkGetPhysicalDeviceSurfaceCapabilitiesKHR(s->gpu->physical_device, s->surface, &can);
-    if (!vk_ok(err, "vkGetPhysicalDeviceSurfaceCapabilitiesKHR", result))
+    VkResult result = vkDeviceWaitIdle(s->gpu->device);
+    if (!gpu_ok(err, "vkDeviceWaitIdle", result))
+        return false;
+    result = vkGetPhysicalDeviceSurfaceCapabilitiesKHR(s->gpu->physical_device, s->surface, &can);
+    if (!gpu_ok(err, "vkGetPhysicalDeviceSurfaceCapabilitiesKHR", result))
         return false;
     VkExtent2D extent = can.currentExtent;
     if (extent.width == UINT32_MAX) {
@@ -286,7 +277,7 @@ bool swapchain_resize(struct swapchain *swapchain, VkExtent2D framebuffer, struc
     vkDestroySwapchainKHR(s->gpu->device, old, NULL);
     if (result != VK_SUCCESS) {
         s->handle = VK_NULL_HANDLE;
-        return vk_ok(err, "vkCreateSwapchainKHR", result);
+        return gpu_ok(err, "vkCreateSwapchainKHR", result);
     }
     s->extent = extent;
     s->is_stale = false;
@@ -299,13 +290,13 @@ static enum swapchain_status status_of(VkResult result, const char *call, struct
 {
     if (result == VK_ERROR_OUT_OF_DATE_KHR)
         return SWAPCHAIN_STALE;
-    return vk_ok(err, call, result) ? SWAPCHAIN_OK : SWAPCHAIN_FAILED;
+    return gpu_ok(err, call, result) ? SWAPCHAIN_OK : SWAPCHAIN_FAILED;
 }
 
 bool swapchain_wait(struct swapchain *swapchain, struct tool_error *err)
 {
     const struct frame_in_flight *f = &swapchain->frames[swapchain->frame];
-    return vk_ok(err, "vkWaitForFences",
+    return gpu_ok(err, "vkWaitForFences",
                  vkWaitForFences(swapchain->gpu->device, 1, &f->done, VK_TRUE, UINT64_MAX));
 }
 
@@ -322,7 +313,7 @@ enum swapchain_status swapchain_begin(struct swapchain *swapchain, VkCommandBuff
      * again. */
     if (result != VK_SUBOPTIMAL_KHR && result != VK_SUCCESS)
         return status_of(result, "vkAcquireNextImageKHR", err);
-    if (!vk_ok(err, "vkResetCommandPool", vkResetCommandPool(s->gpu->device, f->pool, 0)))
+    if (!gpu_ok(err, "vkResetCommandPool", vkResetCommandPool(s->gpu->device, f->pool, 0)))
         return SWAPCHAIN_FAILED;
     result = vkBeginCommandBuffer(f->cmd, &(VkCommandBufferBeginInfo){
                                               .sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
@@ -395,8 +386,8 @@ enum swapchain_status swapchain_end(struct swapchain *swapchain, struct tool_err
     struct swapchain *s = swapchain;
     struct frame_in_flight *f = &s->frames[s->frame];
     VkSemaphore rendered = s->images[s->image].rendered;
-    if (!vk_ok(err, "vkEndCommandBuffer", vkEndCommandBuffer(f->cmd)) ||
-        !vk_ok(err, "vkResetFences", vkResetFences(s->gpu->device, 1, &f->done)))
+    if (!gpu_ok(err, "vkEndCommandBuffer", vkEndCommandBuffer(f->cmd)) ||
+        !gpu_ok(err, "vkResetFences", vkResetFences(s->gpu->device, 1, &f->done)))
         return SWAPCHAIN_FAILED;
     /* Compute does not touch the window's image and need not wait for it. */
     const VkPipelineStageFlags wait = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
@@ -412,7 +403,7 @@ enum swapchain_status swapchain_end(struct swapchain *swapchain, struct tool_err
                                         .pSignalSemaphores = &rendered,
                                     },
                                     f->done);
-    if (!vk_ok(err, "vkQueueSubmit", result))
+    if (!gpu_ok(err, "vkQueueSubmit", result))
         return SWAPCHAIN_FAILED;
     s->frame = (s->frame + 1) % FRAMES_IN_FLIGHT;
     result = vkQueuePresentKHR(s->gpu->queue, &(VkPresentInfoKHR){

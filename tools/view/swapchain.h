@@ -45,6 +45,7 @@ struct swapchain {
  * destroy. */
 bool swapchain_create(struct gpu *gpu, VkSurfaceKHR surface, struct swapchain *swapchain,
                       struct tool_error *err);
+/* Its frames must not be in flight any more. */
 void swapchain_destroy(struct swapchain *swapchain);
 /* New images of the window's size; waits for the device. False without an error in err: the surface
  * has no size now, as that of a minimised window. */

@@ -21,8 +21,18 @@ void viewer_say(struct viewer *viewer, const char *format, ...)
     viewer->status.bad = false;
 }
 
+void viewer_fail(struct viewer *viewer, const struct tool_error *err)
+{
+    if (viewer->failure.code == EXIT_OK)
+        viewer->failure = *err;
+}
+
 void viewer_say_error(struct viewer *viewer, const struct tool_error *err)
 {
+    if (err->ends_run) {
+        viewer_fail(viewer, err);
+        return;
+    }
     viewer_say(viewer, "%s%s%s", err->message, err->hint[0] ? "\n" : "", err->hint);
     viewer->status.bad = true;
     report_error(err); /* the panel may be hidden, and says one thing at a time */
@@ -112,7 +122,9 @@ void side_title(const struct viewer *viewer, enum side side, char *text, size_t 
 
 static void drop_results(struct viewer *viewer)
 {
-    vkDeviceWaitIdle(viewer->gpu.device);
+    struct tool_error err = {0};
+    if (!gpu_ok(&err, "vkDeviceWaitIdle", vkDeviceWaitIdle(viewer->gpu.device)))
+        viewer_fail(viewer, &err);
     for (int s = 0; s < SIDES; s++)
         for (int f = 0; f < FRAMES_IN_FLIGHT; f++)
             computation_destroy(&viewer->results[s][f]);
@@ -246,10 +258,9 @@ static bool create_timestamps(struct viewer *viewer, struct tool_error *err)
                                             .queryCount = SIDES * FRAMES_IN_FLIGHT * (STAGES + 1),
                                         },
                                         NULL, &viewer->timestamps);
-    if (result == VK_SUCCESS)
-        return true;
-    viewer->timestamps = VK_NULL_HANDLE;
-    return fail(err, EXIT_MEMORY, "vkCreateQueryPool failed with VkResult %d", (int)result);
+    if (result != VK_SUCCESS)
+        viewer->timestamps = VK_NULL_HANDLE;
+    return gpu_ok(err, "vkCreateQueryPool", result);
 }
 
 bool viewer_open(struct viewer *viewer, const struct arguments *arguments, struct tool_error *err)
@@ -360,6 +371,23 @@ static void save_if_wanted(struct viewer *v)
         viewer_say_error(v, &err);
 }
 
+/* Draws, and does what belongs to a frame that was drawn. False without an error in err: there was
+ * nothing to draw into. */
+static bool run_frame(struct viewer *v, bool last, struct tool_error *err)
+{
+    bool drawn = viewer_draw(v, last ? v->arguments->screenshot : NULL, err);
+    if (drawn) {
+        v->frames_drawn++;
+        v->frames_wanted -= v->frames_wanted > 0;
+        save_if_wanted(v);
+        update_title(v);
+    }
+    if (v->failure.code == EXIT_OK)
+        return drawn;
+    *err = v->failure;
+    return false;
+}
+
 bool viewer_run(struct viewer *viewer, struct tool_error *err)
 {
     struct viewer *v = viewer;
@@ -386,15 +414,9 @@ bool viewer_run(struct viewer *viewer, struct tool_error *err)
         const bool last = v->quit || (frames > 0 && v->frames_drawn + 1 >= frames);
         if (last && v->quit && !v->arguments->screenshot && !v->save_wanted)
             return true;
-        if (viewer_draw(v, last ? v->arguments->screenshot : NULL, err)) {
-            v->frames_drawn++;
-            v->frames_wanted -= v->frames_wanted > 0;
-            drawn_last = last;
-            save_if_wanted(v);
-            update_title(v);
-        } else if (err->code) {
+        drawn_last = run_frame(v, last, err) && last;
+        if (err->code)
             return false;
-        }
     }
     return true;
 }

@@ -67,6 +67,7 @@ struct viewer {
     enum drag drag;
     double drag_x, drag_y;
     struct status status;
+    struct tool_error failure; /* ends the run; EXIT_OK: none */
     uint64_t frames_drawn;
     unsigned frames_wanted; /* to draw before waiting for events */
     bool quit;
@@ -98,7 +99,11 @@ bool viewer_copy_command(struct viewer *viewer, struct tool_error *err);
 /* --- What the steps share --- */
 
 void viewer_say(struct viewer *viewer, const char *format, ...) TOOL_PRINTF(2, 3);
+/* What is wrong with files, old and new, is said in the panel, and the window goes on; a device
+ * that is lost ends it. */
 void viewer_say_error(struct viewer *viewer, const struct tool_error *err);
+/* Ends the run with the first error that was not said. */
+void viewer_fail(struct viewer *viewer, const struct tool_error *err);
 /* Loads a frame of the sequence; what is wrong with it is said in the panel. */
 bool viewer_load(struct viewer *viewer, size_t frame, size_t view);
 bool viewer_has_image(const struct viewer *viewer);

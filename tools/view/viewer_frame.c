@@ -13,9 +13,7 @@
 
 static bool wait_idle(struct viewer *v, struct tool_error *err)
 {
-    VkResult result = vkDeviceWaitIdle(v->gpu.device);
-    return result == VK_SUCCESS ||
-           fail(err, EXIT_DEVICE, "vkDeviceWaitIdle failed with VkResult %d", (int)result);
+    return gpu_ok(err, "vkDeviceWaitIdle", vkDeviceWaitIdle(v->gpu.device));
 }
 
 /* --- Results of earlier frames --- */
@@ -25,31 +23,33 @@ static uint32_t first_query(enum side side, uint32_t frame)
     return ((uint32_t)side * FRAMES_IN_FLIGHT + frame) * (STAGES + 1);
 }
 
-static void collect(struct viewer *v, uint32_t frame)
+static bool collect(struct viewer *v, uint32_t frame, struct tool_error *err)
 {
     for (int s = 0; s < SIDES; s++) {
         if (v->stamped[s][frame] &&
-            read_stage_times(&v->gpu, v->timestamps, first_query((enum side)s, frame),
-                             &v->times[s]))
+            read_stage_times(&v->gpu, v->timestamps, first_query((enum side)s, frame), &v->times[s],
+                             err))
             v->stamped[s][frame] = false;
     }
     probe_read(&v->probe, frame, &v->probed);
+    return err->code == EXIT_OK;
 }
 
 /* RMS difference over the image, once for each result. */
-static void measure_error(struct viewer *v, enum side side)
+static bool measure_error(struct viewer *v, enum side side, struct tool_error *err)
 {
     const struct loaded_frame *l = &v->source.now;
     const struct computation *c = &v->results[side][0];
-    struct tool_error unseen = {0};
     if (v->live || v->view != VIEW_DIFFERENCE || v->error[side] >= 0 || v->stale[side] ||
         !l->reference_values || !c->frame)
-        return;
+        return true;
     const uint32_t width = c->ao.extent.width, height = c->ao.extent.height;
     const uint64_t bytes = (uint64_t)width * height * sizeof(float);
     float *ao = malloc((size_t)bytes);
     struct gpu_image image = c->ao;
-    if (ao && gpu_image_download(&v->gpu, &image, ao, bytes, &unseen)) {
+    bool ok = (ao || fail(err, EXIT_MEMORY, "out of memory for a picture")) &&
+              gpu_image_download(&v->gpu, &image, ao, bytes, err);
+    if (ok) {
         double sum = 0;
         for (size_t y = 0; y < l->gbuffer.height; y++) {
             for (size_t x = 0; x < l->gbuffer.width; x++) {
@@ -61,6 +61,7 @@ static void measure_error(struct viewer *v, enum side side)
         v->error[side] = sqrt(sum / ((double)l->gbuffer.width * l->gbuffer.height));
     }
     free(ao);
+    return ok;
 }
 
 /* --- Making what is missing --- */
@@ -197,8 +198,16 @@ static void record_picture(struct viewer *v, uint32_t frame, VkCommandBuffer cmd
     display_draw(&v->display, cmd, frame, &block);
 }
 
-/* Makes what this frame will need, before there is an image that waits for it. What cannot be made
- * is said in the panel; the window goes on. */
+/* Without memory or the device nothing can be drawn, in the next frame neither. */
+static void tell(struct viewer *v, const struct tool_error *err)
+{
+    if (err->code == EXIT_MEMORY || err->code == EXIT_DEVICE)
+        viewer_fail(v, err);
+    else
+        viewer_say_error(v, err);
+}
+
+/* Makes what this frame will need, before there is an image that waits for it. */
 static bool prepare(struct viewer *v, uint32_t frame)
 {
     struct tool_error err = {0};
@@ -206,7 +215,7 @@ static bool prepare(struct viewer *v, uint32_t frame)
     for (int s = 0; ok && s < SIDES; s++)
         ok = !viewer_needs(v, (enum side)s) || ensure_result(v, (enum side)s, frame, &err);
     if (!ok)
-        viewer_say_error(v, &err);
+        tell(v, &err);
     return ok;
 }
 
@@ -221,7 +230,7 @@ static bool record_results(struct viewer *v, uint32_t frame, VkCommandBuffer cmd
     if (ok)
         record_probe(v, frame, cmd);
     else
-        viewer_say_error(v, &err);
+        tell(v, &err);
     return ok;
 }
 
@@ -235,8 +244,8 @@ static bool write_capture(struct viewer *v, uint32_t frame, VkExtent2D extent,
     const bool blue_first = v->swapchain.format == VK_FORMAT_B8G8R8A8_UNORM;
     VkResult result =
         vkWaitForFences(v->gpu.device, 1, &v->swapchain.frames[frame].done, VK_TRUE, UINT64_MAX);
-    if (result != VK_SUCCESS)
-        return fail(err, EXIT_DEVICE, "vkWaitForFences failed with VkResult %d", (int)result);
+    if (!gpu_ok(err, "vkWaitForFences", result))
+        return false;
     uint8_t *rgb = malloc(texels * 3);
     if (!rgb)
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
@@ -291,7 +300,8 @@ static bool record_frame(struct viewer *v, VkCommandBuffer cmd, bool there,
     there = there && record_results(v, frame, cmd);
     swapchain_begin_pass(&v->swapchain, cmd, clear);
     record_picture(v, frame, cmd, there);
-    widgets_end_frame(cmd);
+    if (!widgets_end_frame(cmd, err))
+        return false;
     vkCmdEndRenderPass(cmd);
     if (capture->buffer) {
         swapchain_capture(&v->swapchain, cmd, capture->buffer);
@@ -309,10 +319,9 @@ bool viewer_draw(struct viewer *viewer, const char *capture, struct tool_error *
     VkCommandBuffer cmd;
     if (!follow_window(v, err) || !swapchain_wait(&v->swapchain, err))
         return false;
-    for (int s = 0; s < SIDES; s++)
-        measure_error(v, (enum side)s);
     const uint32_t frame = v->swapchain.frame;
-    collect(v, frame);
+    if (!measure_error(v, SIDE_A, err) || !measure_error(v, SIDE_B, err) || !collect(v, frame, err))
+        return false;
     widgets_begin_frame();
     viewer_panel(v);
     const bool there = viewer_has_image(v) && prepare(v, frame);
@@ -321,7 +330,7 @@ bool viewer_draw(struct viewer *viewer, const char *capture, struct tool_error *
         viewer_fit(v);
     const VkExtent2D extent = v->swapchain.extent;
     if (capture && !create_capture(v, &buffer, err)) {
-        widgets_end_frame(VK_NULL_HANDLE);
+        widgets_end_frame(VK_NULL_HANDLE, err);
         return false;
     }
     enum swapchain_status status = swapchain_begin(&v->swapchain, &cmd, err);
@@ -330,11 +339,11 @@ bool viewer_draw(struct viewer *viewer, const char *capture, struct tool_error *
     if (ok)
         ok = record_frame(v, cmd, there, &buffer, err);
     else
-        widgets_end_frame(VK_NULL_HANDLE);
+        widgets_end_frame(VK_NULL_HANDLE, err);
     if (ok && capture)
         ok = write_capture(v, frame, extent, &buffer, capture, err);
-    if (capture)
-        vkDeviceWaitIdle(v->gpu.device);
+    if (capture) /* the copy may still be under way where the presentation failed */
+        ok = wait_idle(v, err) && ok;
     gpu_buffer_destroy(&v->gpu, &buffer);
     return ok;
 }

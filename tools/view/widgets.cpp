@@ -12,15 +12,33 @@ namespace
 VkDevice device;
 VkDescriptorPool pool;
 bool glfw_runs, vulkan_runs;
-VkResult first_failure;
 
+struct vulkan_failure {
+    VkResult result;
+};
+
+/* Dear ImGui goes on after an error and uses what it has not got: so it is left at once. */
 void on_result(VkResult result)
 {
-    if (result != VK_SUCCESS && first_failure == VK_SUCCESS)
-        first_failure = result;
+    if (result < 0)
+        throw vulkan_failure{result};
 }
 
-bool create_pool()
+/* After a failure nobody knows which of its objects the back end still has: they are left to the
+ * device's end. */
+bool draw_or_fail(struct tool_error *err, void (*draw)(void *), void *data)
+{
+    try {
+        draw(data);
+        return true;
+    } catch (const vulkan_failure &failure) {
+        vulkan_runs = false;
+        ImGui::GetIO().BackendRendererUserData = nullptr;
+        return gpu_ok(err, "drawing the panel", failure.result);
+    }
+}
+
+void create_pool()
 {
     const VkDescriptorPoolSize size = {VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1};
     VkDescriptorPoolCreateInfo info = {};
@@ -29,15 +47,25 @@ bool create_pool()
     info.maxSets = 1; /* the font */
     info.poolSizeCount = 1;
     info.pPoolSizes = &size;
-    first_failure = vkCreateDescriptorPool(device, &info, nullptr, &pool);
-    return first_failure == VK_SUCCESS;
+    const VkResult result = vkCreateDescriptorPool(device, &info, nullptr, &pool);
+    if (result != VK_SUCCESS)
+        pool = VK_NULL_HANDLE;
+    on_result(result);
 }
 
-bool create_back_ends(void *glfw_window, struct gpu *gpu, VkRenderPass pass, uint32_t image_count)
+struct creation {
+    struct gpu *gpu;
+    VkRenderPass pass;
+    uint32_t image_count;
+    struct tool_error *err;
+    bool ok;
+};
+
+void create_back_end(void *data)
 {
-    glfw_runs = ImGui_ImplGlfw_InitForVulkan(static_cast<GLFWwindow *>(glfw_window), true);
-    if (!glfw_runs || !create_pool())
-        return false;
+    creation *c = static_cast<creation *>(data);
+    struct gpu *gpu = c->gpu;
+    create_pool();
     ImGui_ImplVulkan_InitInfo info = {};
     info.Instance = gpu->instance;
     info.PhysicalDevice = gpu->physical_device;
@@ -46,22 +74,21 @@ bool create_back_ends(void *glfw_window, struct gpu *gpu, VkRenderPass pass, uin
     info.Queue = gpu->queue;
     info.DescriptorPool = pool;
     info.MinImageCount = 2;
-    info.ImageCount = image_count < 2 ? 2 : image_count;
+    info.ImageCount = c->image_count < 2 ? 2 : c->image_count;
     info.MSAASamples = VK_SAMPLE_COUNT_1_BIT;
     info.CheckVkResultFn = on_result;
-    vulkan_runs = ImGui_ImplVulkan_Init(&info, pass);
-    return vulkan_runs && first_failure == VK_SUCCESS;
+    vulkan_runs = ImGui_ImplVulkan_Init(&info, c->pass);
+    VkCommandBuffer cmd = gpu_begin(gpu, c->err);
+    if (!cmd)
+        return;
+    ImGui_ImplVulkan_CreateFontsTexture(cmd);
+    c->ok = gpu_submit(gpu, cmd, c->err);
+    ImGui_ImplVulkan_DestroyFontUploadObjects();
 }
 
-bool upload_font(struct gpu *gpu, struct tool_error *err)
+void render(void *cmd)
 {
-    VkCommandBuffer cmd = gpu_begin(gpu, err);
-    if (!cmd)
-        return false;
-    bool ok = ImGui_ImplVulkan_CreateFontsTexture(cmd);
-    ok = gpu_submit(gpu, cmd, err) && ok && first_failure == VK_SUCCESS;
-    ImGui_ImplVulkan_DestroyFontUploadObjects();
-    return ok;
+    ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), static_cast<VkCommandBuffer>(cmd));
 }
 } // namespace
 
@@ -70,16 +97,17 @@ bool widgets_create(void *glfw_window, struct gpu *gpu, VkRenderPass pass, uint3
 {
     device = gpu->device;
     pool = VK_NULL_HANDLE;
-    first_failure = VK_SUCCESS;
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr; /* nothing is written that nobody asked for */
     ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
     ImGui::StyleColorsDark();
     ImGui::GetStyle().WindowRounding = 0.0f;
     ImGui::GetStyle().WindowBorderSize = 0.0f;
-    if (create_back_ends(glfw_window, gpu, pass, image_count) && upload_font(gpu, err))
+    creation c = {gpu, pass, image_count, err, false};
+    glfw_runs = ImGui_ImplGlfw_InitForVulkan(static_cast<GLFWwindow *>(glfw_window), true);
+    if (glfw_runs && draw_or_fail(err, create_back_end, &c) && c.ok)
         return true;
-    fail(err, EXIT_DEVICE, "cannot draw the panel: VkResult %d", static_cast<int>(first_failure));
+    fail(err, EXIT_DEVICE, "cannot draw the panel");
     widgets_destroy();
     return false;
 }
@@ -104,11 +132,10 @@ void widgets_begin_frame(void)
     ImGui::NewFrame();
 }
 
-void widgets_end_frame(VkCommandBuffer cmd)
+bool widgets_end_frame(VkCommandBuffer cmd, struct tool_error *err)
 {
     ImGui::Render();
-    if (cmd)
-        ImGui_ImplVulkan_RenderDrawData(ImGui::GetDrawData(), cmd);
+    return !cmd || draw_or_fail(err, render, cmd);
 }
 
 bool widgets_want_mouse(void)

@@ -14,13 +14,14 @@
 extern "C" {
 #endif
 
-/* After the window's own callbacks are set: they are called first. Errors: EXIT_DEVICE. */
+/* After the window's own callbacks are set: they are called first. Errors, also of the end of a
+ * frame: EXIT_DEVICE, EXIT_MEMORY; then nothing but widgets_destroy may follow. */
 bool widgets_create(void *glfw_window, struct gpu *gpu, VkRenderPass pass, uint32_t image_count,
                     struct tool_error *err);
 void widgets_destroy(void);
 void widgets_begin_frame(void);
 /* Inside the render pass; ends the frame. cmd may be VK_NULL_HANDLE to drop what was drawn. */
-void widgets_end_frame(VkCommandBuffer cmd);
+bool widgets_end_frame(VkCommandBuffer cmd, struct tool_error *err);
 /* Whether input belongs to the panel, as of the last frame. */
 bool widgets_want_mouse(void);
 bool widgets_want_keyboard(void);

@@ -234,6 +234,8 @@ bool window_surface(struct window *window, VkInstance instance, VkSurfaceKHR *su
     if (result == VK_SUCCESS)
         return true;
     *surface = VK_NULL_HANDLE;
+    if (result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY)
+        return gpu_ok(err, "glfwCreateWindowSurface", result);
     return fail(err, EXIT_DEVICE, "cannot draw into a window: VkResult %d (%s)", (int)result,
                 glfw_message);
 }
