@@ -195,7 +195,7 @@ static void load(const struct exr_info *info, const struct gbuffer_options *opti
     if (padded_width < MOST_PADDED && padded_height < MOST_PADDED &&
         padded_width * padded_height < MOST_PADDED) {
         FUZZ_CHECK(placement_expand(&g, &placement, &err), "%s", err.message);
-        vkao_ssao_params ssao = vkao_ssao_params_default();
+        struct ao_ssao ssao = ao_ssao_default();
         ssao.radius = automatic_radius(&g);
         ssao.bias = automatic_bias(&g, ssao.radius, ssao.bias);
         const bool odd = (placement.left | placement.top) & 1;
