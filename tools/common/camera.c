@@ -172,13 +172,24 @@ void camera_project(const struct camera *camera, const struct camera_planes *pla
 
 bool camera_can_project(const vkao_view *view)
 {
+    /* A tenth of what vkao.h allows a texel to span: the place in the display may move it a little. */
+    static const double least = 1e-14, most = 1e14;
     const float *m = view->projection;
     const bool perspective = m[11] < 0.0f;
+    const double size[2] = {view->viewport.extent.width, view->viewport.extent.height};
+    const double offset[2] = {view->viewport.offset.x, view->viewport.offset.y};
     for (int i = 0; i < 16; i++)
         if (!(fabsf(m[i]) <= 1e18f)) /* squares must be finite, and a NaN is no number */
             return false;
-    return isnormal(m[0]) && isnormal(m[5]) && isnormal(1.0f / m[0]) && isnormal(1.0f / m[5]) &&
-           isnormal(perspective ? m[14] : m[10]);
+    for (int i = 0; i < 2; i++) {
+        const double scale = (double)m[i * 5], shift = (double)(perspective ? m[8 + i] : m[12 + i]);
+        const double span = fabs(2.0 / size[i] / scale);
+        const double corner =
+            (fabs((0.5 - offset[i]) * 2.0 / size[i]) + 1.0 + fabs(shift)) / fabs(scale);
+        if (!(span >= least && span <= most && corner <= most))
+            return false;
+    }
+    return isnormal(perspective ? m[14] : m[10]);
 }
 
 void camera_normal_to_view(const struct camera *camera, float matrix[9])
