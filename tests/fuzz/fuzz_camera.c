@@ -88,7 +88,7 @@ static void check_camera(const struct camera *file, float scale)
     for (size_t i = 0; i < sizeof flags / sizeof *flags; i++) {
         struct camera camera = {0};
         camera_resolve(&flags[i], file, &info, 0, &camera);
-        FUZZ_CHECK(camera.half_width > 0 && camera.half_height > 0, "half sizes %g, %g",
+        FUZZ_CHECK(camera.half_width >= 0 && camera.half_height >= 0, "half sizes %g, %g",
                    camera.half_width, camera.half_height);
         check_rays(&camera);
         check_depth_types(&camera, scale);
