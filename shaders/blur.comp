@@ -76,6 +76,7 @@ void main()
         return;
     float z = load_view_z(texel);
     vec4 result = z > 0.0 ? blurred(texel, z) : vec4(0.0, 0.0, 0.0, 1.0);
+    result.w = is_sane(result.w) ? result.w : 1.0; /* an ao_noisy of the caller's may hold anything */
     vec4 stored = BENT_NORMALS ? result : result.wwww;
     if (!VERTICAL)
         imageStore(halfway_out, texel, stored);

@@ -36,8 +36,7 @@ float final_ao(float visibility, bool background)
  * its normal is, which octahedral codes know as (0, 0, 1). */
 void finish(ivec2 texel, vec4 result, bool background)
 {
-    /* An ao_noisy of the caller's may hold anything. */
-    imageStore(ao_out, texel, vec4(final_ao(is_sane(result.w) ? result.w : 1.0, background)));
+    imageStore(ao_out, texel, vec4(final_ao(result.w, background)));
     if (BENT_NORMALS) {
         vec3 n = params.normal_x.xyz * result.x + params.normal_y.xyz * result.y + params.normal_z.xyz * result.z;
         float length2 = dot(n, n);

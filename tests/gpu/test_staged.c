@@ -148,8 +148,7 @@ static void every_end_of_blur_is_staged(void **state)
         double *stored = take_ao(&p);
         p.staged = true;
         picture_run(&p);
-        /* What compilers may join, times what intensity and power make of it. */
-        check_within(rows[i / 2].name, p.values[SLOT_AO], stored, picture_texels(&p), 0x1p-21);
+        check_within(rows[i / 2].name, p.values[SLOT_AO], stored, picture_texels(&p), 0x1p-22);
         check_shaded(stored, picture_texels(&p));
         free(stored);
         picture_free(&p);
