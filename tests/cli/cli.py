@@ -5,6 +5,7 @@ A test program is `test_NAME.py VKAO [--corpus DIR] [CASE...]`. It prints one li
 starts and one as it ends, and exits 0, 1 (a case failed) or 77 (all cases were skipped).
 """
 import argparse
+import functools
 import os
 import re
 import resource
@@ -27,10 +28,6 @@ INTERRUPTED, TERMINATED = 130, 143
 
 # Of one run; generous, because sanitizers and loaded machines are slow, but a hang must end.
 TIMEOUT = 120
-
-# Drivers are unloaded before the sanitizer looks for what points to their memory. Leaks of the tools'
-# own are the business of the unit tests and the fuzzers.
-WITHOUT_LEAKS = {'ASAN_OPTIONS': os.environ.get('ASAN_OPTIONS', '') + ':detect_leaks=0'}
 
 _cases = []
 _settings = argparse.Namespace(vkao=None, corpus=None)
@@ -150,6 +147,25 @@ class Result:
         return f'{self.command}\nexit {self.code}, stderr:\n{self.stderr}'
 
 
+@functools.lru_cache
+def is_sanitized(program):
+    with open(program, 'rb') as file:
+        return b'__asan_init' in file.read()
+
+
+def loaded_driver(program):
+    """For the environment of a sanitized program: the driver stays loaded, or what its globals hold
+    would seem lost once the instance unloads it."""
+    if not is_sanitized(program):
+        return {}
+    return {'LD_PRELOAD': 'libvulkan_lvp.so',
+            'ASAN_OPTIONS': os.environ.get('ASAN_OPTIONS', '') + ':verify_asan_link_order=0'}
+
+
+def vkao_is_sanitized():
+    return is_sanitized(_settings.vkao)
+
+
 def limit_file_size(size):
     """For preexec_fn: 'ulimit -f', here in bytes. Writing beyond would kill a careless process."""
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
@@ -185,7 +201,7 @@ class Scratch:
         more = {'stdout': subprocess.PIPE, **more}
         return subprocess.Popen([program or _settings.vkao, *arguments], cwd=self.directory,
                                 text=True, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                                env={**os.environ, **WITHOUT_LEAKS, **(env or {})}, **more)
+                                env={**os.environ, **loaded_driver(_settings.vkao), **(env or {})}, **more)
 
     def run(self, *arguments, timeout=TIMEOUT, **more):
         arguments = [str(a) for a in arguments]

@@ -5,7 +5,6 @@ A test program is `test_NAME.py VKAO VKAO-VIEW [CASE...]`; the cases and the com
 are those of tests/cli. Every run has the validation layers on: one message makes the viewer fail,
 and with it the case.
 """
-import functools
 import os
 import re
 import shutil
@@ -85,20 +84,10 @@ class Display:
 
 
 def sanitizer_options():
-    """Leaks of libraries that are not ours are left out, by name; for that they must stay loaded.
-    So must the driver: what its globals hold would seem lost once the instance unloads it."""
+    """Leaks of libraries that are not ours are left out, by name; for that they must stay loaded."""
     suppressions = os.path.join(HERE, 'leaks.supp')
-    options = {'LSAN_OPTIONS': f'suppressions={suppressions}:print_suppressions=0'}
-    if is_sanitized():
-        options['LD_PRELOAD'] = 'libvulkan_lvp.so'
-        options['ASAN_OPTIONS'] = os.environ.get('ASAN_OPTIONS', '') + ':verify_asan_link_order=0'
-    return options
-
-
-@functools.lru_cache
-def is_sanitized():
-    with open(VIEWER, 'rb') as program:
-        return b'__asan_init' in program.read()
+    return {'LSAN_OPTIONS': f'suppressions={suppressions}:print_suppressions=0',
+            **cli.loaded_driver(VIEWER)}
 
 
 # --- The viewer ---
