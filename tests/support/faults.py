@@ -33,7 +33,7 @@ def environment(layer, directory, log=None, fault=None):
 def without_leaks(env):
     """Not asked for here: drivers and layers are unloaded before the sanitizer looks, and what Dear
     ImGui had when it was left goes with the process."""
-    return {**env, 'ASAN_OPTIONS': env.get('ASAN_OPTIONS', '') + 
+    return {**env, 'ASAN_OPTIONS': env.get('ASAN_OPTIONS', '') +
             ':detect_leaks=0:verify_asan_link_order=0'}
 
 

@@ -86,7 +86,7 @@ input_stream::~input_stream()
 bool input_stream::read(char data[], int bytes)
 {
     if (bytes < 0 || uint64_t(bytes) > size_ - position_)
-        raise(EXIT_INPUT, "render or copy the file again", "%s: truncated or damaged: ends early",
+        raise(EXIT_INPUT, damaged_hint, "%s: truncated or damaged: ends early",
               fileName());
     errno = 0;
     if (fread(data, 1, size_t(bytes), file_) != size_t(bytes))
@@ -124,7 +124,7 @@ uint64_t input_stream::tellg()
 void input_stream::seekg(uint64_t position)
 {
     if (position > size_)
-        raise(EXIT_INPUT, "render or copy the file again", "%s: truncated or damaged: ends early",
+        raise(EXIT_INPUT, damaged_hint, "%s: truncated or damaged: ends early",
               fileName());
     if (fseeko(file_, off_t(position), SEEK_SET) != 0)
         raise(EXIT_INPUT, nullptr, "%s: cannot read: %s", fileName(), strerror(errno));
@@ -211,7 +211,7 @@ const char *find_difference(const Imf::Header &header, const part_layout &part)
     fprintf(stderr, "two readings of the headers disagree: part %zu: %s\n", part, what);
     abort();
 #endif
-    raise(EXIT_INPUT, "render or copy the file again",
+    raise(EXIT_INPUT, damaged_hint,
           "%s: damaged header: two readings of part %zu disagree: %s", stream.fileName(), part,
           what);
 }
@@ -251,12 +251,12 @@ std::unique_ptr<exr::Imf::MultiPartInputFile> exr_input::open()
             if (difference)
                 disagree(stream, size_t(i), difference);
             if (!file->partComplete(i))
-                raise(EXIT_INPUT, "render or copy the file again",
+                raise(EXIT_INPUT, damaged_hint,
                       "%s: truncated: part %d lacks chunks", stream.fileName(), i);
         }
         return file;
     } catch (const Iex::BaseExc &e) {
-        raise(EXIT_INPUT, "render or copy the file again", "%s: damaged: %s", stream.fileName(),
+        raise(EXIT_INPUT, damaged_hint, "%s: damaged: %s", stream.fileName(),
               library_message(e).c_str());
     }
 }

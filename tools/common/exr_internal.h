@@ -110,6 +110,7 @@ struct part_layout {
     int64_t pixel_bytes; /* of one pixel that has all channels */
     int64_t level_bytes; /* decoded size of level 0, less what subsampling saves; 0 if deep */
     int64_t chunk_count;
+    int64_t chunk_lines; /* without tiles */
     /* Decoded bytes of the largest chunk: lines, or a tile with all that lies beyond the image. */
     int64_t chunk_bytes;
 };
@@ -125,6 +126,12 @@ struct file_layout {
 /* Refuses what is not an OpenEXR file, what the library would not understand, whose sizes are
  * absurd for its length, or that ends early, before OpenEXR allocates anything for it. */
 file_layout read_layout(input_stream &stream);
+/* By the header: chunk_count. */
+int64_t count_chunks(const part_layout &part);
+/* Of a file whose end is missing, the chunk that lies last is the one which was cut: so that one is
+ * looked at, and of the others only where they begin. Returns the offset of the chunk that lies
+ * first. */
+uint64_t check_tables(input_stream &stream, const file_layout &layout);
 /* Checks that every chunk lies inside the file and is the one that its place in the table wants.
  * OpenEXR does neither before it makes raw copies. Tiles must also lie as it expects them. */
 void check_chunks(input_stream &stream, const file_layout &layout);
@@ -157,6 +164,12 @@ namespace exr {
 /* Tells OpenEXR our own limits; cheap when repeated. */
 void set_limits();
 
+inline int64_t divide_up(int64_t a, int64_t b)
+{
+    return (a + b - 1) / b;
+}
+
+extern const char *const damaged_hint;
 extern const char *const compression_names[10];
 extern const char *const line_order_names[3];
 

@@ -400,7 +400,7 @@ void write_parts(output_stream &stream, source_file *source,
             copy_part(*source, file, i);
         } catch (const Iex::BaseExc &e) {
             stream.throw_error();
-            raise(EXIT_INPUT, "render or copy the file again",
+            raise(EXIT_INPUT, damaged_hint,
                   "%s: damaged: cannot copy part %d: %s", source->info.path, i,
                   library_message(e).c_str());
         }
