@@ -8,7 +8,7 @@ import shutil
 import subprocess
 
 from cli import (CHANNELS, INPUT, OK, OUTPUT, TIMEOUT, beside_vkao, case, cases, check, equal,
-                 main, write_exr)
+                 loaded_driver, main, write_exr)
 from exr_raw import read_raw
 from scene import FOV, Scene
 
@@ -39,7 +39,8 @@ def run(scratch, code, *arguments, program='vkao'):
     """Both streams, in bytes as they came, checked and decoded."""
     command = [beside_vkao(program), *map(os.fsencode, map(str_or_bytes, arguments))]
     done = subprocess.run(command, cwd=scratch.directory, stdin=subprocess.DEVNULL,
-                          capture_output=True, timeout=TIMEOUT)
+                          capture_output=True, timeout=TIMEOUT,
+                          env={**os.environ, **loaded_driver(command[0])})
     equal(done.returncode, code, f'exit code of {command}\n{done.stderr}\n')
     for stream in (done.stdout, done.stderr):
         text = stream.decode()  # strict: invalid UTF-8 fails the case

@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Many frames and several views."""
+import os
+
 import numpy as np
 
 from cli import (CHANNELS, INPUT, OUTPUT, SOME_FRAMES, USAGE, case, cases, check, check_close,
@@ -235,6 +237,17 @@ def camera_file_with_views_means_all(scratch, _, write):
     write_camera(scratch.path('camera.json'), {'views': {'left': camera()}})
     scratch.fails(CHANNELS, "no camera for view 'right', only for left", 'in.exr', '-o', 'x.exr',
                   '--view', 'all', *options)
+
+
+@case
+def previews_of_views_stay_in_their_directory(scratch):
+    """A view is called what the file says; a directory that fits is there."""
+    os.makedirs(scratch.path('ao.'))
+    parts = [({'Z': Scene(*SIZE).depth()}, {'name': f'z{n}', 'view': view})
+             for n, view in enumerate(('left', '/../x'))]
+    write_exr(scratch.path('in.exr'), *parts)
+    scratch.render('in.exr', '-o', 'out.exr', '--view', 'all', '--preview', 'ao.png', *VIEW)
+    equal(scratch.files(), ['ao.', 'ao._.._x.png', 'ao.left.png', 'in.exr', 'out.exr'], 'files')
 
 
 @case

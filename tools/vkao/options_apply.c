@@ -100,12 +100,20 @@ bool apply_float(struct options *options, const struct option_row *row, const ch
     return true;
 }
 
+static bool read_integer(const struct option_row *row, const char *argument, int64_t *value,
+                         struct tool_error *err)
+{
+    if (!text_to_integer(argument, value) || !in_range(&row->range, (double)*value))
+        return fail_range(row, argument, true, err);
+    return true;
+}
+
 bool apply_uint(struct options *options, const struct option_row *row, const char *argument,
                 struct tool_error *err)
 {
     int64_t value;
-    if (!text_to_integer(argument, &value) || !in_range(&row->range, (double)value))
-        return fail_range(row, argument, true, err);
+    if (!read_integer(row, argument, &value, err))
+        return false;
     *(uint32_t *)member(options, row) = (uint32_t)value;
     return true;
 }
@@ -114,8 +122,8 @@ bool apply_count(struct options *options, const struct option_row *row, const ch
                  struct tool_error *err)
 {
     int64_t value;
-    if (!text_to_integer(argument, &value) || !in_range(&row->range, (double)value))
-        return fail_range(row, argument, true, err);
+    if (!read_integer(row, argument, &value, err))
+        return false;
     *(uint64_t *)member(options, row) = (uint64_t)value;
     return true;
 }

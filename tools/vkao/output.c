@@ -43,15 +43,21 @@ static void color_part_name(const struct options *o, const struct exr_info *info
         snprintf(name, NAME_BYTES, "%s", base);
 }
 
-/* 'x.png' becomes 'x.left.png' where there is more than one view. */
+/* 'x.png' becomes 'x.left.png' where there is more than one view. A view's name is the file's, and
+ * must not lead to another directory. */
 static void preview_path(const char *path, const char *view, size_t view_count, struct text *out)
 {
     const char *dot = strrchr(path, '.');
     size_t stem = dot && !strchr(dot, '/') ? (size_t)(dot - path) : strlen(path);
-    if (view_count > 1)
-        text_add(out, "%.*s.%s%s", (int)stem, path, view, path + stem);
-    else
+    if (view_count < 2) {
         text_add(out, "%s", path);
+        return;
+    }
+    text_add(out, "%.*s.%s%s", (int)stem, path, view, path + stem);
+    const size_t end = stem + 1 + strlen(view);
+    for (size_t i = stem + 1; out->data && !out->out_of_memory && i < end; i++)
+        if (out->data[i] == '/')
+            out->data[i] = '_';
 }
 
 /* The plan checked the path as given; what it becomes for each view is known only now. */
