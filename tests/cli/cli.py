@@ -5,7 +5,6 @@ A test program is `test_NAME.py VKAO [--corpus DIR] [CASE...]`. It prints one li
 starts and one as it ends, and exits 0, 1 (a case failed) or 77 (all cases were skipped).
 """
 import argparse
-import functools
 import os
 import re
 import resource
@@ -21,6 +20,9 @@ try:
 except ImportError as missing:
     print(f'[  SKIPPED ] everything: {missing} (python3-numpy, python3-openimageio)')
     sys.exit(77)
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', 'support'))
+from sanitizer import is_sanitized, loaded_driver  # noqa: E402, after its directory is known
 
 OK, SOME_FRAMES, USAGE, INPUT, CHANNELS, DEVICE, OUTPUT = range(7)
 MEMORY = 33
@@ -145,21 +147,6 @@ class Result:
 
     def __str__(self):
         return f'{self.command}\nexit {self.code}, stderr:\n{self.stderr}'
-
-
-@functools.lru_cache
-def is_sanitized(program):
-    with open(program, 'rb') as file:
-        return b'__asan_init' in file.read()
-
-
-def loaded_driver(program):
-    """For the environment of a sanitized program: the driver stays loaded, or what its globals hold
-    would seem lost once the instance unloads it."""
-    if not is_sanitized(program):
-        return {}
-    return {'LD_PRELOAD': 'libvulkan_lvp.so',
-            'ASAN_OPTIONS': os.environ.get('ASAN_OPTIONS', '') + ':verify_asan_link_order=0'}
 
 
 def vkao_is_sanitized():

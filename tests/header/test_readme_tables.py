@@ -5,11 +5,15 @@
 usage: test_readme_tables.py README.md VKAO_BENCH
 """
 
+import os
 import re
 import subprocess
 import sys
 
 from cases import Skip, run
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "support"))
+from sanitizer import loaded_driver  # noqa: E402, after its directory is known
 
 README, BENCH = sys.argv[1:]
 
@@ -34,7 +38,8 @@ def memory_table_is_what_vkao_frame_scratch_says():
     said = readme_table("scratch, MB")
     sizes = ",".join(re.sub(r"\s*[x×]\s*", "x", cell) for cell in said[0][1:])
     done = subprocess.run([BENCH, "speed", "--memory", "--markdown", "--device", "cpu", "--size",
-                           sizes], capture_output=True, text=True)
+                           sizes], capture_output=True, text=True,
+                          env={**os.environ, **loaded_driver(BENCH)})
     assert done.returncode == 0, done.stderr
     table = [cells(line) for line in done.stdout.splitlines()]
     assert len(said) > 2, f"the table has no rows: {said}"
