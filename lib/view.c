@@ -177,11 +177,15 @@ static float far_limit(double near, double far)
 
 /* Device depth to view z. The step of the depth format tells how far z may be off: fixed-point steps are the same
  * everywhere, floating ones shrink towards 0, which is why reversed floating depth is accurate. */
-static void read_depth(const struct projection *p, const vkao_view *view, VkFormat format,
+static void read_depth(const struct projection *p, const vkao_effect_info *effect, VkFormat format,
                        struct view_constants *out)
 {
     bool floating;
-    double step = vk_format_depth_step(format, &floating);
+    double step = vkao_format_depth_step(format, &floating);
+    if (effect->depth_bits && effect->depth_encoding == VKAO_DEPTH_PROJECTED) {
+        floating = effect->depth_bits == 32;
+        step = floating ? 0x1p-24 : ldexp(1.0, -(int)effect->depth_bits);
+    }
     double rounding = 0x1p-22; /* of the view z that prepare stores, and of the arithmetic on it */
     out->far_z = FLT_MAX;
     out->depth_error[0] = (float)rounding;
@@ -193,7 +197,7 @@ static void read_depth(const struct projection *p, const vkao_view *view, VkForm
         double shift = near > 0.0 ? 0.0 : 0.001 * (far - near) - near;
         out->linearize[0] = (float)(z0 + shift);
         out->linearize[1] = (float)(z1 - z0);
-        bool projected = view->depth_encoding == VKAO_DEPTH_PROJECTED;
+        bool projected = effect->depth_encoding == VKAO_DEPTH_PROJECTED;
         out->depth_error[0] = projected ? (float)(step * (far - near)) : 0.0f;
         out->depth_error[1] = (float)(projected ? rounding : rounding + 2.0 * step);
         if (!projected)
@@ -207,28 +211,20 @@ static void read_depth(const struct projection *p, const vkao_view *view, VkForm
         out->far_depth = one_is_far ? 1.0f : 0.0f;
         out->linearize[0] = (float)mul;
         out->linearize[1] = (float)add;
-        if (view->depth_encoding == VKAO_DEPTH_PROJECTED) {
+        if (effect->depth_encoding == VKAO_DEPTH_PROJECTED) {
             if (!floating || one_is_far)
                 out->depth_error[1] = (float)(step / fabs(mul));
         } else if (isfinite(far) && far > 0.0) {
             out->far_z = far_limit(fmin(at_zero, at_one), far);
         }
         /* The point and its occluder err by half a step each; a step is up to twice the format's above a power of two. */
-        if (view->depth_encoding != VKAO_DEPTH_PROJECTED || (floating && !one_is_far))
+        if (effect->depth_encoding != VKAO_DEPTH_PROJECTED || (floating && !one_is_far))
             out->depth_error[0] += (float)(2.0 * step);
     }
 }
 
-static vkao_result check_enums(const struct vkao_logger *log, const vkao_view *view)
+static vkao_result check_members(const struct vkao_logger *log, const vkao_view *view)
 {
-    if ((uint32_t)view->depth_encoding > VKAO_DEPTH_INVERSE_Z)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "view.depth_encoding is %d, want 0..%d", (int)view->depth_encoding,
-                           (int)VKAO_DEPTH_INVERSE_Z);
-    if ((uint32_t)view->normal_encoding > VKAO_NORMALS_OCT_UNORM)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "view.normal_encoding is %d, want 0..%d", (int)view->normal_encoding,
-                           (int)VKAO_NORMALS_OCT_UNORM);
     if ((uint32_t)view->axis > VKAO_VIEW_AXIS_POSITIVE_Z)
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.axis is %d, want 0..%d",
                            (int)view->axis, (int)VKAO_VIEW_AXIS_POSITIVE_Z);
@@ -236,46 +232,47 @@ static vkao_result check_enums(const struct vkao_logger *log, const vkao_view *v
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "view.viewport is %ux%u, want both 0 or none",
                            view->viewport.extent.width, view->viewport.extent.height);
-    if (view->reserved || view->reserved_too)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.reserved is %u, want 0",
-                           view->reserved | view->reserved_too);
-    if ((uint32_t)view->bent_encoding > VKAO_NORMALS_OCT_UNORM)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.bent_encoding is %d, want 0..%d",
-                           (int)view->bent_encoding, (int)VKAO_NORMALS_OCT_UNORM);
+    if (view->viewport.extent.width > INT32_MAX || view->viewport.extent.height > INT32_MAX)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.viewport is %dx%d, want a positive size: for a viewport of "
+                           "negative height, negate row 1 of view.projection",
+                           (int)view->viewport.extent.width, (int)view->viewport.extent.height);
+    if (view->padding)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.padding is %u, want 0",
+                           view->padding);
     return VKAO_SUCCESS;
 }
 
-vkao_result view_rects(const struct vkao_logger *log, const vkao_view *view, VkExtent2D extent,
+vkao_result vkao_view_rects(const struct vkao_logger *log, const vkao_view *view, VkExtent2D extent,
                        struct vkao_rect *valid, struct vkao_rect *rect)
 {
-    vkao_result result = check_enums(log, view);
+    vkao_result result = check_members(log, view);
     return result == VKAO_SUCCESS ? resolve_rects(log, view, extent, valid, rect) : result;
 }
 
-vkao_result view_constants_init(const struct vkao_logger *log, const vkao_view *view,
-                                VkExtent2D extent, VkFormat depth_format,
-                                struct view_constants *out)
+vkao_result vkao_view_constants_init(const struct vkao_logger *log, const vkao_view *view,
+                                     const vkao_effect_info *effect, VkExtent2D extent,
+                                     VkFormat depth_format, struct view_constants *out)
 {
     struct projection p = {0};
-    vkao_result result = check_enums(log, view);
+    vkao_result result = check_members(log, view);
     if (result == VKAO_SUCCESS)
         result = check_finite(log, "normal_to_view", view->normal_to_view, 9);
     if (result == VKAO_SUCCESS)
         result = read_projection(log, view, &p);
     if (result != VKAO_SUCCESS)
         return result;
-    *out = (struct view_constants){
-        .orthographic = p.orthographic,
-        .depth_encoding = (uint32_t)view->depth_encoding,
-    };
+    if (p.orthographic != (effect->projection == VKAO_PROJECTION_ORTHOGRAPHIC))
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.projection is %s, but effect.projection is %u",
+                           p.orthographic ? "orthographic" : "perspective",
+                           (unsigned)effect->projection);
+    *out = (struct view_constants){.orthographic = p.orthographic};
     result = resolve_rects(log, view, extent, &out->valid, &out->rect);
     if (result != VKAO_SUCCESS)
         return result;
-    vkao_normal_encoding bent = view->bent_encoding ? view->bent_encoding : view->normal_encoding;
-    out->encodings =
-        (uint32_t)view->normal_encoding | (uint32_t)(bent ? bent : VKAO_NORMALS_XYZ_SNORM) << 8;
     read_unproject(&p, view, out);
-    read_depth(&p, view, depth_format, out);
+    read_depth(&p, effect, depth_format, out);
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column) {
             float v = view->normal_to_view[column * 3 + row];
@@ -285,10 +282,9 @@ vkao_result view_constants_init(const struct vkao_logger *log, const vkao_view *
     return check_unproject(log, &p, out);
 }
 
-struct view_constants view_halve(const struct view_constants *view)
+struct view_constants vkao_view_halve(const struct view_constants *view)
 {
     struct view_constants half = *view;
-    half.grid_shift = 1;
     half.unproject[0] *= 2.0f;
     half.unproject[1] *= 2.0f;
     half.inverse_unproject[0] *= 0.5f;
@@ -300,18 +296,11 @@ struct view_constants view_halve(const struct view_constants *view)
     half.rect = (struct vkao_rect){view->rect.x0 / 2, view->rect.y0 / 2,
                                    x1 < half.valid.x1 ? x1 : half.valid.x1,
                                    y1 < half.valid.y1 ? y1 : half.valid.y1};
-    half.rect = rect_grow(half.rect, 1, 1, half.valid);
+    half.rect = vkao_rect_grow(half.rect, 1, 1, half.valid);
     return half;
 }
 
-void view_halve_precision(struct view_constants *view)
-{
-    /* Devices may cut where they could round: a whole step, of z itself in perspective or not. */
-    view->depth_error[view->orthographic ? 1 : 0] += 0x1p-10f;
-    view->far_z = fminf(view->far_z, 65504.0f);
-}
-
-struct vkao_rect rect_grow(struct vkao_rect rect, uint32_t x, uint32_t y, struct vkao_rect bounds)
+struct vkao_rect vkao_rect_grow(struct vkao_rect rect, uint32_t x, uint32_t y, struct vkao_rect bounds)
 {
     struct vkao_rect grown = {
         .x0 = rect.x0 - bounds.x0 > x ? rect.x0 - x : bounds.x0,
@@ -322,7 +311,7 @@ struct vkao_rect rect_grow(struct vkao_rect rect, uint32_t x, uint32_t y, struct
     return grown;
 }
 
-void rect_pack(struct vkao_rect rect, uint32_t out[2])
+void vkao_rect_pack(struct vkao_rect rect, uint32_t out[2])
 {
     out[0] = rect.x0 | rect.y0 << 16;
     out[1] = rect.x1 | rect.y1 << 16;

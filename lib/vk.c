@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "vk.h"
 
-#include "params.h"
-
-bool vk_table_load(struct vk_table *vk, const vkao_context_info *info, const char **missing)
+bool vkao_vk_table_load(struct vk_table *vk, const vkao_context_info *info, const char **missing)
 {
     *missing = NULL;
 #define VKAO_LOAD_INSTANCE(name)                                                                   \
@@ -28,7 +26,7 @@ bool vk_table_load(struct vk_table *vk, const vkao_context_info *info, const cha
     return !*missing;
 }
 
-vkao_result vk_result(VkResult result)
+vkao_result vkao_from_vk(VkResult result)
 {
     switch (result) {
     case VK_SUCCESS:
@@ -40,29 +38,15 @@ vkao_result vk_result(VkResult result)
     case VK_ERROR_FRAGMENTED_POOL:
         return VKAO_ERROR_OUT_OF_DEVICE_MEMORY;
     default:
-        return VKAO_ERROR_VULKAN;
+        /* What is no error should not have come. */
+        return (vkao_result)(VKAO_ERROR_VULKAN + (int)(result < 0 ? result : VK_ERROR_UNKNOWN));
     }
 }
 
-bool vk_format_is_ao(VkFormat format)
+bool vkao_format_is_ao(VkFormat format)
 {
-    return vk_format_staged(format) != VKAO_STAGED_NONE;
-}
-
-uint32_t vk_format_staged(VkFormat format)
-{
-    switch (format) {
-    case VK_FORMAT_R8_UNORM:
-        return VKAO_STAGED_UNORM8;
-    case VK_FORMAT_R16_UNORM:
-        return VKAO_STAGED_UNORM16;
-    case VK_FORMAT_R16_SFLOAT:
-        return VKAO_STAGED_FLOAT16;
-    case VK_FORMAT_R32_SFLOAT:
-        return VKAO_STAGED_FLOAT32;
-    default:
-        return VKAO_STAGED_NONE;
-    }
+    return format == VK_FORMAT_R8_UNORM || format == VK_FORMAT_R16_UNORM ||
+           format == VK_FORMAT_R16_SFLOAT || format == VK_FORMAT_R32_SFLOAT;
 }
 
 struct depth_format {
@@ -83,7 +67,7 @@ static const struct depth_format depth_formats[] = {
     {VK_FORMAT_R32_SFLOAT, 0x1p-24f, true},
 };
 
-float vk_format_depth_step(VkFormat format, bool *floating)
+float vkao_format_depth_step(VkFormat format, bool *floating)
 {
     for (size_t i = 0; i < sizeof depth_formats / sizeof depth_formats[0]; ++i) {
         if (depth_formats[i].format == format) {
@@ -95,13 +79,13 @@ float vk_format_depth_step(VkFormat format, bool *floating)
     return 0.0f;
 }
 
-bool vk_format_is_depth(VkFormat format)
+bool vkao_format_is_depth(VkFormat format)
 {
     bool floating;
-    return vk_format_depth_step(format, &floating) > 0.0f;
+    return vkao_format_depth_step(format, &floating) > 0.0f;
 }
 
-bool vk_format_is_sampled_float(VkFormat format)
+bool vkao_format_is_sampled_float(VkFormat format)
 {
     static const VkFormat integers[] = {
         VK_FORMAT_R8_UINT,
@@ -152,7 +136,7 @@ bool vk_format_is_sampled_float(VkFormat format)
     return true;
 }
 
-uint32_t vk_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits)
+uint32_t vkao_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits)
 {
     for (uint32_t i = 0; i < memory->memoryTypeCount; ++i) {
         if ((type_bits >> i & 1u) &&

@@ -27,7 +27,7 @@ struct Slice {
 /* Unit vector to the eye. It does not depend on view z: all that is made of it is ready before that is loaded. */
 Real3 eye_direction(ivec2 texel)
 {
-    if (orthographic())
+    if (ORTHOGRAPHIC)
         return Real3(real(0.0), real(0.0), real(-1.0));
     Real3 away = view_positions(texel, real(1.0));
     return times(away, -inversesqrt(dot3(away, away)));
@@ -41,7 +41,7 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
     s.step = Real2(d.x * params.inverse_unproject.x, d.y * params.inverse_unproject.y);
     s.per_texel = inversesqrt(s.step.x * s.step.x + s.step.y * s.step.y);
     s.center_z = position.z;
-    s.scale = orthographic() ? real(1.0) : 1.0 / position.z;
+    s.scale = ORTHOGRAPHIC ? real(1.0) : 1.0 / position.z;
     real along = d.x * to_eye.x + d.y * to_eye.y;
     /* As long as what is left of d without its share along V; 1 - along^2 is nothing at the edge of a field of view of
      * nearly 180 degrees. */
@@ -56,7 +56,7 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
     vec2 radii = params.unproject.xy * params.inverse_radius;
     s.to_x = Real2(radii.x * s.outward.x, radii.y * s.outward.y);
     s.to_y = Real2(radii.x * (to_eye.x + across.x * moved), radii.y * (to_eye.y + across.y * moved));
-    s.eye = params.inverse_radius * (orthographic() ? real(1.0) : -1.0 / to_eye.z);
+    s.eye = params.inverse_radius * (ORTHOGRAPHIC ? real(1.0) : -1.0 / to_eye.z);
     /* It is taken to lie as deep as its depth may be wrong: a wall must not occlude itself by the steps of a format. */
     s.origin = s.eye * position.z - (2.0 * params.inverse_radius) * depth_error(position.z);
     real length2 = max(1.0 - off * off, real(1.0e-12)), inverse = inversesqrt(length2);
@@ -109,14 +109,14 @@ void slice_points(Slice s, Offset offset, reals z, out reals x, out reals y)
 {
     reals dx = both(s.to_x.x * offset.x.number + s.to_x.y * offset.y.number);
     reals dy = SIDES * both(s.to_y.x * offset.x.number + s.to_y.y * offset.y.number);
-    x = orthographic() ? dx : z * dx;
-    y = orthographic() ? both(s.origin) + dy - z * params.inverse_radius : both(s.origin) + z * (dy - both(s.eye));
+    x = ORTHOGRAPHIC ? dx : z * dx;
+    y = ORTHOGRAPHIC ? both(s.origin) + dy - z * params.inverse_radius : both(s.origin) + z * (dy - both(s.eye));
 }
 
 /* How an occluder at squared distance d2, in radii, counts: the definition of both ray-traced truths. */
 reals falloff_weight(reals d2)
 {
-    return flag(VKAO_FLAG_THRESHOLD) ? reals(lessThanEqual(d2, reals(1.0))) : max(reals(0.0), 1.0 - d2);
+    return THRESHOLD ? reals(lessThanEqual(d2, reals(1.0))) : max(reals(0.0), 1.0 - d2);
 }
 
 #endif

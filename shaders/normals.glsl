@@ -13,7 +13,7 @@ Real3 view_positions(ivec2 texel, real z)
 {
     real x = (float(texel.x) + BESIDE) * params.unproject.x + params.unproject.z;
     real y = real(float(texel.y)) * params.unproject.y + params.unproject.w;
-    return orthographic() ? Real3(x, y, z) : Real3(x * z, y * z, z);
+    return ORTHOGRAPHIC ? Real3(x, y, z) : Real3(x * z, y * z, z);
 }
 
 real load_view_zs(ivec2 texel)
@@ -46,7 +46,7 @@ Neighbour straight_neighbour(reals near_z, reals far_z, real center_z)
     reals z = both(center_z);
     reals line = near_z - z, curve = 2.0 * near_z - far_z - z;
     reals line_scale = reals(1.0), curve_scale = reals(1.0);
-    if (!orthographic()) {
+    if (!ORTHOGRAPHIC) {
         reals inverse = both(1.0 / center_z), n = near_z * inverse, f = far_z * inverse;
         line = 1.0 - n;
         line_scale = n;
@@ -101,11 +101,11 @@ Real3 normal_from_depth(ivec2 texel, Real3 center, bool careful)
      * range of floats in scenes that are small or large or seen through a keyhole. */
     reals slope = reals(beside.side * (beside.z - center.z), below.side * (below.z - center.z));
     slope *= reals(real(params.inverse_unproject.x), real(params.inverse_unproject.y));
-    if (!orthographic())
+    if (!ORTHOGRAPHIC)
         slope /= reals(beside.z, below.z);
     slope = lesser(greater(slope, reals(-VKAO_STEEPEST_FACET)), reals(VKAO_STEEPEST_FACET));
     Real3 n = Real3(first_side(slope), other_side(slope), real(-1.0));
-    if (!orthographic()) {
+    if (!ORTHOGRAPHIC) {
         Real3 sight = view_positions(texel, real(1.0));
         n.z -= sight.x * n.x + sight.y * n.y;
     }
@@ -119,11 +119,11 @@ Real3 view_normals(ivec2 texel, Real3 center)
 {
     vec3 stored[TEXELS];
     [[unroll]] for (int i = 0; i < TEXELS; ++i)
-        stored[i] = to_view(decode_normal((texel + ivec2(i, 0)) << grid_shift()));
+        stored[i] = to_view(decode_normal((texel + ivec2(i, 0)) << GRID_SHIFT));
     Real3 n = join3(stored);
     /* Always computed, seldom taken: costs a driver in software less than the branch. */
-    Real3 own = normal_from_depth(texel, center, normal_encoding() == VKAO_GLSL_NORMALS_FROM_DEPTH);
-    real away = orthographic() ? n.z : dot3(n, center);
+    Real3 own = normal_from_depth(texel, center, NORMAL_ENCODING == VKAO_GLSL_NORMALS_FROM_DEPTH);
+    real away = ORTHOGRAPHIC ? n.z : dot3(n, center);
     real trust = choose(dot3(n, n), -dot3(n, own), above(away, real(0.0)));
     n = times(n, choose(real(1.0), real(-1.0), above(away, real(0.0))));
     n.x = choose(own.x, n.x, above(trust, real(0.0)));

@@ -9,8 +9,9 @@
 #include "params.h"
 
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
-layout(push_constant) uniform Block { vkao_prepare_block params; };
-layout(binding = VKAO_BINDING_VIEW_Z, VKAO_VIEW_Z_FORMAT) uniform writeonly image2D view_z_image;
+layout(push_constant) uniform Block { vkao_dispatch here; };
+#include "settings.glsl"
+layout(binding = VKAO_BINDING_VIEW_Z_WRITE) uniform writeonly image2D view_z_image;
 #include "depth.glsl"
 
 void main()
@@ -21,6 +22,6 @@ void main()
     if (any(greaterThanEqual(texel, high + VKAO_VIEW_Z_BORDER)))
         return;
     bool inside = all(greaterThanEqual(texel, low)) && all(lessThan(texel, high));
-    float z = inside ? view_z_from_depth(texel << grid_shift()) : 0.0;
+    float z = inside ? view_z_from_depth(texel << GRID_SHIFT) : 0.0;
     imageStore(view_z_image, texel + VKAO_VIEW_Z_BORDER, vec4(z));
 }

@@ -19,7 +19,7 @@
 /* Cosines of the horizons. */
 reals horizon_cosines(Slice s, ivec2 texel, real jitter)
 {
-    Steps steps = make_steps(s, jitter, params.normal_x.w);
+    Steps steps = make_steps(s, jitter, params.radius);
     reals low = -SIDES * both(s.sin_n); /* cos(n +- pi/2): the tangent plane */
     reals horizon = low, open = low + params.bias_cosine;
     Offset next = step_offset(s, steps, 0u);

@@ -19,7 +19,7 @@
 /* Of both sides together. */
 real occlusion(Slice s, ivec2 texel, real jitter)
 {
-    Steps steps = make_steps(s, jitter, params.normal_x.w);
+    Steps steps = make_steps(s, jitter, params.radius);
     reals sine = reals(params.bias_cosine), occluded = reals(0.0);
     reals along = SIDES * both(s.normal_length * s.sin_n), facing = both(s.normal_length * s.cos_n);
     uint t = 0u;

@@ -23,7 +23,7 @@
 Real3 to_texels(Real3 direction, Real3 sight)
 {
     real x = direction.x, y = direction.y;
-    if (!orthographic()) {
+    if (!ORTHOGRAPHIC) {
         x -= sight.x * direction.z;
         y -= sight.y * direction.z;
     }
@@ -60,7 +60,7 @@ reals pair_lengths(uint k, uint pairs, real jitter)
 
 Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
 {
-    float radius = params.normal_x.w;
+    float radius = params.radius;
     Real3 sight = view_positions(texel, real(1.0));
     Real3 t, b;
     tangents(normal, t, b);
@@ -75,8 +75,8 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
      * and in perspective the latter is position.z times that of where the texel is seen. */
     Real3 n = times(normal, real(params.inverse_radius));
     real slope_x = n.x * params.unproject.x, slope_y = n.y * params.unproject.y;
-    real facing = orthographic() ? n.z : n.x * sight.x + n.y * sight.y + n.z;
-    real least = (params.normal_y.w + depth_error(position.z)) * params.inverse_radius + facing * position.z;
+    real facing = ORTHOGRAPHIC ? n.z : n.x * sight.x + n.y * sight.y + n.z;
+    real least = (params.bias + depth_error(position.z)) * params.inverse_radius + facing * position.z;
     uint pairs = (sample_count() + 1u) / 2u, k = 0u;
     reals blocked = reals(0.0);
     [[unroll]] for (;;) {
@@ -87,7 +87,7 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
         reals x = len * mirrored(height, up.x, at, across.x, along.x);
         reals y = len * mirrored(height, up.y, at, across.y, along.y);
         reals z = both(position.z) + len * mirrored(height, up.z, at, across.z, along.z);
-        if (!orthographic()) {
+        if (!ORTHOGRAPHIC) {
             reals inverse = 1.0 / z;
             x *= inverse;
             y *= inverse;
@@ -95,7 +95,7 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
         RoundedSides at_x = rounded(x), at_y = rounded(y);
         reals scene_z = load_nearest(texel, at_x, at_y);
         reals over = both(slope_x) * at_x.number + both(slope_y) * at_y.number;
-        over = orthographic() ? over + both(facing) * scene_z : (over + both(facing)) * scene_z;
+        over = ORTHOGRAPHIC ? over + both(facing) * scene_z : (over + both(facing)) * scene_z;
         reals weight = range_weight(scene_z - both(position.z), radius);
         weight = mix(reals(0.0), weight, greaterThan(over, height * len + both(least)));
         blocked += mix(reals(0.0), weight, greaterThan(lesser(scene_z, z), reals(0.0)));

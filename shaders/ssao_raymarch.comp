@@ -16,8 +16,8 @@
 /* Weight of the first hit, 0 if there is none. */
 float first_hit(vec3 position, vec3 normal, vec3 direction, float jitter)
 {
-    float radius = params.normal_x.w;
-    float bias = params.normal_y.w + depth_error(position.z);
+    float radius = params.radius;
+    float bias = params.bias + depth_error(position.z);
     vec3 to_eye = direction_to_eye(position);
     uint t = 0u;
     for (;;) {

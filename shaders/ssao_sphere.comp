@@ -34,7 +34,7 @@ vec3 table_point(uint k)
 
 float literal_blocking(ivec2 texel, vec3 position)
 {
-    float radius = params.normal_x.w, scale = params.normal_z.w;
+    float radius = params.radius, scale = params.blocking_scale;
     float turn = TWO_PI * texel_noise(texel, 1u).turn;
     vec2 rotation = vec2(cos(turn), sin(turn));
     float factor = 0.0;
@@ -54,7 +54,7 @@ float literal_blocking(ivec2 texel, vec3 position)
 
 float hidden(vec3 position, vec3 normal, vec3 offset)
 {
-    float radius = params.normal_x.w, bias = params.normal_y.w + depth_error(position.z);
+    float radius = params.radius, bias = params.bias + depth_error(position.z);
     vec3 point = position + offset;
     float height = dot(normal, offset);
     ivec2 at = ivec2(floor(project_to_texel(point) + 0.5));
@@ -76,7 +76,7 @@ float rescaled_blocking(ivec2 texel, vec3 position, vec3 normal)
         /* z over (0,1), the antipode over (-1,0) */
         float z = (float(k) + shift) / float(pairs), ring = sqrt(1.0 - z * z);
         float angle = float(k) * GOLDEN_ANGLE + turn;
-        float len = params.normal_x.w * point_length(fract(golden_sequence(k) + shift));
+        float len = params.radius * point_length(fract(golden_sequence(k) + shift));
         vec3 offset = len * vec3(ring * cos(angle), ring * sin(angle), z);
         blocked += hidden(position, normal, offset) + hidden(position, normal, -offset);
         if (++k >= pairs)
@@ -88,7 +88,7 @@ float rescaled_blocking(ivec2 texel, vec3 position, vec3 normal)
 Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
 {
     vec3 p = lane3(position, 0);
-    float open = flag(VKAO_FLAG_SPHERE_LITERAL)
+    float open = SPHERE_LITERAL
                      ? 1.0 - literal_blocking(texel, p)
                      : min(1.0, 2.0 * (1.0 - rescaled_blocking(texel, p, lane3(normal, 0))));
     return Visibility(Real3(0.0, 0.0, 0.0), open);

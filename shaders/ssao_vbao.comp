@@ -150,8 +150,8 @@ void take_step(inout March march, Slice s, Masks m, reals tangent, ivec2 texel, 
 
 Hidden hidden_mass(Slice s, ivec2 texel, real jitter, bool unrolled)
 {
-    float reach = params.normal_x.w;
-    reach *= flag(VKAO_FLAG_THRESHOLD) ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH;
+    float reach = params.radius;
+    reach *= THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH;
     reals tangent = SIDES * both(s.sin_n / max(s.cos_n, real(VKAO_STEEPEST)));
     Masks m = make_masks(s);
     const reals none = reals(0.0);

@@ -28,7 +28,7 @@ float local_slope(float before, float z, float after)
 float off_surface(float z, float slope, float tap_z, float tap_slope, float k)
 {
     float off = abs(tap_z - z - slope * k);
-    return flag(VKAO_FLAG_HALF_RESOLUTION) ? max(off, abs(tap_z - z - tap_slope * k)) : off;
+    return (GRID_SHIFT > 0u) ? max(off, abs(tap_z - z - tap_slope * k)) : off;
 }
 
 /* 1 / the distance off the continued slope at which a tap counts nothing; never 0, so that background never counts. */
@@ -48,7 +48,7 @@ float blur_weight(int k, int radius)
 float normal_weight(vec4 normal, vec4 other, float power)
 {
     float c = max(max(dot(normal.xyz, other.xyz), 1.0e-6), max(normal.w, other.w));
-    if (flag(VKAO_FLAG_NORMAL_POWER_8)) {
+    if ((NORMAL_POWER == 8.0)) {
         float c2 = c * c, c4 = c2 * c2;
         return c4 * c4;
     }

@@ -11,15 +11,16 @@
 #include "params.h"
 
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
-layout(push_constant) uniform Block { vkao_upsample_block params; };
-layout(binding = VKAO_BINDING_NOISY_READ) uniform texture2D half_image;
+layout(push_constant) uniform Block { vkao_dispatch here; };
+#include "settings.glsl"
+layout(binding = VKAO_BINDING_SOURCE) uniform texture2D half_image;
 #include "view.glsl"
 #include "depth.glsl"
 #include "finish.glsl"
 
 float full_view_z(ivec2 texel)
 {
-    return in_rect(texel, params.full_valid) ? view_z_from_depth(texel) : 0.0;
+    return in_rect(texel, params.image_valid) ? view_z_from_depth(texel) : 0.0;
 }
 
 float slope_along(ivec2 texel, ivec2 axis, float z)
@@ -33,8 +34,8 @@ float slope_along(ivec2 texel, ivec2 axis, float z)
 vec4 upsampled(ivec2 texel, float z)
 {
     vec2 slope = vec2(slope_along(texel, ivec2(1, 0), z), slope_along(texel, ivec2(0, 1), z));
-    float edge = params.normal_x.w / (params.normal_z.w > 0.0 ? params.normal_z.w : z);
-    vec3 normal = flag(VKAO_FLAG_BLUR_NORMALS) ? decode_normal(texel) : vec3(0.0);
+    float edge = params.sharpness / (params.reference_z > 0.0 ? params.reference_z : z);
+    vec3 normal = (NORMAL_POWER > 0.0) ? decode_normal(texel) : vec3(0.0);
     vec4 sum = vec4(0.0);
     float weights = 0.0;
     /* Even texels are of half resolution; the others lie in the middle of two or four. */
@@ -49,7 +50,7 @@ vec4 upsampled(ivec2 texel, float z)
             float w = max(0.0, 1.0 - off);
             vec3 other = normal == vec3(0.0) ? vec3(0.0) : decode_normal(2 * at);
             if (other != vec3(0.0))
-                w *= pow(max(dot(normal, other), 1.0e-6), params.normal_y.w);
+                w *= pow(max(dot(normal, other), 1.0e-6), NORMAL_POWER);
             /* Far below any honest weight: decides only if there is none. */
             w += 1.0e-6 / (1.0 + off * off);
             vec4 v = texelFetch(half_image, at, 0);
@@ -63,8 +64,8 @@ vec4 upsampled(ivec2 texel, float z)
 
 void main()
 {
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(params.rect.x);
-    if (any(greaterThanEqual(texel, unpack_texel(params.rect.y))))
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(here.rect.x);
+    if (any(greaterThanEqual(texel, unpack_texel(here.rect.y))))
         return;
     float z = view_z_from_depth(texel);
     finish(texel, z > 0.0 ? upsampled(texel, z) : vec4(0.0), z == 0.0);

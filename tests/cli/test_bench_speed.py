@@ -97,7 +97,7 @@ def settings_are_chosen_by(scratch, _, arguments, wanted):
 
 @case
 def features_are_measured(scratch):
-    rows = measure(scratch, '--preset', 'fast,default', '--bent-normals', '--half-view-z',
+    rows = measure(scratch, '--preset', 'fast,default', '--bent-normals',
                    '--composite')
     check('composite' in stages_of(rows, 'vbao-default'), f'{rows}')
 

@@ -199,7 +199,7 @@ static void load(const struct exr_info *info, const struct gbuffer_options *opti
     FUZZ_CHECK(placement_expand(&g, &placement, &err), "%s", err.message);
     FUZZ_CHECK(placement.left < MOST_PADDING && placement.top < MOST_PADDING, "padded by %ux%u",
                placement.left, placement.top);
-    vkao_ssao_params ssao = vkao_ssao_params_default();
+    struct ao_ssao ssao = ao_ssao_default();
     ssao.radius = automatic_radius(&g);
     ssao.bias = automatic_bias(&g, ssao.radius, ssao.bias);
     for (int half = 0; half < 2; half++)

@@ -261,7 +261,7 @@ static void check_camera(struct fuzz_input *in, const struct exr_info *info, siz
     const struct exr_part *p = &info->parts[part];
     struct camera camera = {0};
     struct camera_flags flags = {0};
-    vkao_view view = vkao_view_default();
+    struct ao_view view = ao_view_default();
     if (fuzz_flag(in))
         flags = (struct camera_flags){.fov_deg = 40, .fov_is_vertical = fuzz_flag(in)};
     camera_resolve(&flags, NULL, info, part, &camera);

@@ -79,7 +79,7 @@ static void check_words(const struct options *o)
 /* render resolves the radius and the planes; all else goes to the library as it is. */
 static void check_with_library(const struct options *o)
 {
-    vkao_view view = vkao_view_default();
+    struct ao_view view = ao_view_default();
     const struct exr_box box = {0, 0, 15, 8};
     struct exr_part part = {.data_window = box, .display_window = box, .pixel_aspect = 1.0f};
     const struct exr_info info = {.parts = &part, .part_count = 1};
@@ -91,7 +91,7 @@ static void check_with_library(const struct options *o)
         camera_project(&camera, &(struct camera_planes){0, 100}, &box, &box, &view);
     if (!camera_can_project(&view)) /* refused by name when the depth is prepared */
         return;
-    vkao_ssao_params ssao = o->ssao;
+    struct ao_ssao ssao = o->ssao;
     if (o->radius_is_auto)
         ssao.radius = 1.0f;
     fuzz_check_job(&(struct fuzz_job){

@@ -186,10 +186,10 @@ static void stage_by_stage_equals_all(void **state)
     picture_run(&all);
     picture_open(&stages, &g);
     VkCommandBuffer cmd = gpu_begin(&fixture.gpu, &fixture.error);
-    check_vkao(vkao_cmd_prepare(g.frame, cmd, &stages.view));
-    check_vkao(vkao_cmd_ssao(g.frame, cmd, &stages.view, &stages.ssao));
-    check_vkao(vkao_cmd_blur(g.frame, cmd, &stages.view, &stages.blur));
-    check_vkao(vkao_cmd_composite(g.frame, cmd, &stages.view, &stages.composite));
+    picture_record_stages(&stages, &g, cmd, VKAO_STAGE_PREPARE);
+    picture_record_stages(&stages, &g, cmd, VKAO_STAGE_SSAO);
+    picture_record_stages(&stages, &g, cmd, VKAO_STAGE_BLUR);
+    picture_record_stages(&stages, &g, cmd, VKAO_STAGE_COMPOSITE);
     check(gpu_submit(&fixture.gpu, cmd, &fixture.error));
     picture_download(&stages, &g);
     check_equal("ao_noisy", stages.values[SLOT_NOISY], all.values[SLOT_NOISY],

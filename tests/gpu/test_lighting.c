@@ -166,7 +166,7 @@ static void multi_bounce_brightens_by_albedo(void **state)
         struct picture p;
         make(&p, false, -1.0);
         picture_fill(&p, SLOT_ALBEDO, VK_FORMAT_R32G32B32A32_SFLOAT, i * 0.25);
-        p.composite = vkao_composite_params_default();
+        p.composite = ao_composite_default();
         p.composite.mode = VKAO_COMPOSITE_AO_ONLY;
         p.composite.multi_bounce = VK_TRUE;
         p.values[SLOT_AO][0] = 0.0;

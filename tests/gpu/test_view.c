@@ -89,20 +89,20 @@ static void check_tilted_planes(bool orthographic, bool given_normals, float bia
 static void tilted_planes_are_open_with_given_normals(void **state)
 {
     (void)state;
-    check_tilted_planes(false, true, vkao_ssao_params_default().bias, VK_FORMAT_R32_SFLOAT);
+    check_tilted_planes(false, true, ao_ssao_default().bias, VK_FORMAT_R32_SFLOAT);
 }
 
 static void tilted_planes_are_open_with_normals_from_depth(void **state)
 {
     (void)state;
-    check_tilted_planes(false, false, vkao_ssao_params_default().bias, VK_FORMAT_R32_SFLOAT);
+    check_tilted_planes(false, false, ao_ssao_default().bias, VK_FORMAT_R32_SFLOAT);
 }
 
 static void orthographic_tilted_planes_are_open(void **state)
 {
     (void)state;
-    check_tilted_planes(true, true, vkao_ssao_params_default().bias, VK_FORMAT_R32_SFLOAT);
-    check_tilted_planes(true, false, vkao_ssao_params_default().bias, VK_FORMAT_R32_SFLOAT);
+    check_tilted_planes(true, true, ao_ssao_default().bias, VK_FORMAT_R32_SFLOAT);
+    check_tilted_planes(true, false, ao_ssao_default().bias, VK_FORMAT_R32_SFLOAT);
 }
 
 /* Without a bias only the guard that knows the precision of the depth stands between a wall and

@@ -13,7 +13,7 @@ static VkRect2D halved(VkRect2D r)
     return (VkRect2D){{x0, y0}, {(uint32_t)((x1 + 1) / 2 - x0), (uint32_t)((y1 + 1) / 2 - y0)}};
 }
 
-void ref_scene_half(const struct ref_scene *full, const vkao_view *view, const double *stored,
+void ref_scene_half(const struct ref_scene *full, const struct ao_view *view, const double *stored,
                     struct ref_scene *half, double **half_stored)
 {
     *half = (struct ref_scene){
@@ -49,7 +49,7 @@ void ref_scene_half(const struct ref_scene *full, const vkao_view *view, const d
 
 struct upsample {
     const struct ref_scene *full, *half;
-    const vkao_blur_params *params;
+    const struct ao_blur *params;
     vkao_normal_encoding encoding;
     const double *stored;
     double nothing;
@@ -104,7 +104,7 @@ static double upsampled(const struct upsample *u, const double *value, int x, in
 }
 
 void ref_upsample(const struct ref_scene *full, const struct ref_scene *half,
-                  const vkao_blur_params *params, vkao_normal_encoding encoding,
+                  const struct ao_blur *params, vkao_normal_encoding encoding,
                   const double *stored, double nothing, const double *value, double *out)
 {
     double left[3], right[3];

@@ -40,7 +40,7 @@ bool fixture_open(void)
         fprintf(stderr, "skipped: %s\n", fixture.error.message);
         return false;
     }
-    fixture.context = gpu_context(&fixture.gpu, 0, &fixture.error);
+    fixture.context = gpu_context(&fixture.gpu, &fixture.error);
     if (!fixture.context) {
         fprintf(stderr, "%s\n", fixture.error.message);
         exit(EXIT_FAILURE);
@@ -50,16 +50,9 @@ bool fixture_open(void)
 
 vkao_context_info fixture_context_info(void)
 {
-    return (vkao_context_info){
-        .struct_size = sizeof(vkao_context_info),
-        .instance = fixture.gpu.instance,
-        .physical_device = fixture.gpu.physical_device,
-        .device = fixture.gpu.device,
-        .get_instance_proc_addr = vkGetInstanceProcAddr,
-        .get_device_proc_addr = vkGetDeviceProcAddr,
-        .enabled_features = &fixture.gpu.features,
-        .storage_16bit = fixture.gpu.storage_16bit,
-    };
+    vkao_context_info info = gpu_context_info(&fixture.gpu);
+    info.log = NULL;
+    return info;
 }
 
 int fixture_close(void **state)

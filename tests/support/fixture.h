@@ -7,6 +7,7 @@
 #define VKAO_TESTS_FIXTURE_H_
 
 #include "gpu.h"
+#include "setting.h"
 #include "lens.h"
 #include "ref_view.h"
 #include "scenes.h"
@@ -40,7 +41,7 @@ int fixture_after_test(void **state);
 #define fixture_run(tests)                                                                         \
     (fixture_open() ? cmocka_run_group_tests(tests, NULL, fixture_close) : FIXTURE_UNAVAILABLE)
 
-/* What a further context on the fixture's device starts from: silent, all methods. */
+/* What a further context on the fixture's device starts from: silent. */
 vkao_context_info fixture_context_info(void);
 
 /* Fails the test with the tool's error if ok is false. */
@@ -74,19 +75,21 @@ struct picture {
                                       others 4 */
     bool output_is_color;          /* composite in place */
     bool half_resolution;
-    bool staged; /* ao_image is given */
+    bool staged; /* ao.image is given */
+    vkao_effect *effect;           /* null = one compiled for it */
     VkDeviceMemory scratch_memory; /* null = the library's own */
     VkDeviceSize scratch_offset;
-    vkao_view view;
-    vkao_ssao_params ssao;
-    vkao_blur_params blur;
-    vkao_composite_params composite;
+    struct ao_view view;
+    struct ao_ssao ssao;
+    struct ao_blur blur;
+    struct ao_composite composite;
 };
 
 /* What a picture is on the device. */
 struct picture_gpu {
     struct gpu_image images[SLOT_COUNT];
     vkao_images slots;
+    vkao_effect *effect, *own_effect; /* the second is destroyed with it */
     vkao_frame *frame;
 };
 
@@ -112,7 +115,13 @@ void picture_render_scene(struct picture *p, const struct scene *scene, const st
  * view z in R32F, given normals in RGBA32F, AO in R32F. */
 void picture_make(struct picture *p, vkao_stage_flags stages, const struct scene *scene);
 
+/* What the picture's frame is an effect of. */
+vkao_effect_info picture_effect_info(const struct picture *p);
+vkao_effect *picture_effect(const struct picture *p, const vkao_context *context);
 void picture_open(const struct picture *p, struct picture_gpu *g);
+/* These stages alone. */
+void picture_record_stages(const struct picture *p, const struct picture_gpu *g, VkCommandBuffer cmd,
+                           vkao_stage_flags stages);
 void picture_frame_info(const struct picture *p, const struct picture_gpu *g,
                         vkao_frame_info *info);
 void picture_record(const struct picture *p, const struct picture_gpu *g, VkCommandBuffer cmd);

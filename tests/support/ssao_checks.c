@@ -35,7 +35,7 @@ void check_ssao(struct picture *p, ssao_reference *reference, const char *what)
     free(expected);
 }
 
-void check_every_normal_encoding(const vkao_ssao_params *params, ssao_reference *reference)
+void check_every_normal_encoding(const struct ao_ssao *params, ssao_reference *reference)
 {
     static const struct {
         const char *name;
@@ -70,7 +70,7 @@ void check_every_normal_encoding(const vkao_ssao_params *params, ssao_reference 
     }
 }
 
-void check_world_space_normals(const vkao_ssao_params *params, ssao_reference *reference)
+void check_world_space_normals(const struct ao_ssao *params, ssao_reference *reference)
 {
     /* Columns of an orthonormal matrix that is neither symmetric nor close to the identity. */
     static const double columns[3][3] = {{2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0},
@@ -96,7 +96,7 @@ void check_world_space_normals(const vkao_ssao_params *params, ssao_reference *r
     picture_free(&turned);
 }
 
-void check_every_projection(const vkao_ssao_params *params, ssao_reference *reference)
+void check_every_projection(const struct ao_ssao *params, ssao_reference *reference)
 {
     static const struct {
         const char *name;
@@ -147,7 +147,7 @@ void check_every_projection(const vkao_ssao_params *params, ssao_reference *refe
     }
 }
 
-void check_bad_normals_are_replaced(const vkao_ssao_params *params, ssao_reference *reference)
+void check_bad_normals_are_replaced(const struct ao_ssao *params, ssao_reference *reference)
 {
     static const double bad[][3] = {
         {0.0, 0.0, 0.0},
@@ -178,7 +178,7 @@ void check_bad_normals_are_replaced(const vkao_ssao_params *params, ssao_referen
     }
 }
 
-void check_no_nan_at_the_limits(const vkao_ssao_params *params)
+void check_no_nan_at_the_limits(const struct ao_ssao *params)
 {
     static const uint32_t extents[][2] = {{1, 1}, {33, 1}, {1, 33}, {2, 2}, {17, 9}};
     static const float radii[] = {1e-30f, 1e-3f, 100.0f, 1e30f};

@@ -51,8 +51,8 @@ static void refuse(const char *line, const char *message)
 static void defaults_are_those_of_the_library(void **state)
 {
     const struct options o = accept("in.exr -o out.exr");
-    const vkao_ssao_params ssao = vkao_ssao_params_default();
-    const vkao_blur_params blur = vkao_blur_params_default();
+    const struct ao_ssao ssao = ao_ssao_default();
+    const struct ao_blur blur = ao_blur_default();
     (void)state;
     assert_int_equal(o.ssao.method, ssao.method);
     assert_int_equal(o.ssao.falloff, ssao.falloff);

@@ -32,7 +32,7 @@ static const struct config default_set[] = {
 };
 enum { DEFAULT_COUNT = sizeof default_set / sizeof default_set[0] };
 
-/* What the two numbers of a setting are. The limits are those of vkao_ssao_params. */
+/* What the two numbers of a setting are. The limits are those of struct ao_ssao. */
 static const struct method_row {
     const char *name;
     bool has_samples, has_slices, has_steps;
@@ -157,14 +157,14 @@ bool configs_choose(const char *option, const char *names, struct config_list *l
 
 void config_apply(const struct config *config, struct ao_job *job)
 {
-    job->ssao = vkao_ssao_params_default();
-    job->blur = vkao_blur_params_default();
+    job->ssao = ao_ssao_default();
+    job->blur = ao_blur_default();
     job->half_resolution = false;
     if (config->is_preset) {
-        vkao_frame_info frame = {.struct_size = sizeof frame};
+        VkBool32 half_resolution = VK_FALSE;
         /* The table holds no quality that the library does not know. */
-        (void)vkao_preset(config->quality, &frame, &job->ssao, &job->blur);
-        job->half_resolution = frame.half_resolution;
+        (void)ao_preset(config->quality, &half_resolution, &job->ssao, &job->blur);
+        job->half_resolution = half_resolution;
         return;
     }
     job->ssao.method = config->method;

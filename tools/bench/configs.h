@@ -7,7 +7,7 @@
 
 #include "ao.h"
 #include "error.h"
-#include "vkao.h"
+#include "setting.h"
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -95,7 +95,7 @@ static bool run_once(struct bench *b, struct scene *scene, const struct ao_job *
 
 static struct ao_job make_job(const struct config *config, const struct scene *scene, int falloff)
 {
-    struct ao_job job = {.composite = vkao_composite_params_default()};
+    struct ao_job job = {.composite = ao_composite_default()};
     scene_fill_job(scene, &job);
     config_apply(config, &job);
     job.ssao.radius = scene->radius;
@@ -354,7 +354,7 @@ static bool prepare(struct bench *b, struct tool_error *err)
     if (!corpus_open(o->folder, o->files, &b->corpus, err) || !gpu_create(&gpu, &b->gpu, err))
         return false;
     snprintf(q->device, sizeof q->device, "%s", b->gpu.properties.deviceName);
-    b->session = ao_session_create(&b->gpu, 0, err);
+    b->session = ao_session_create(&b->gpu, err);
     return b->session != NULL;
 }
 

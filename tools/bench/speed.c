@@ -19,7 +19,7 @@ struct speed_options {
     unsigned slices, steps, samples; /* 0 = the method's default */
     unsigned sky, threads, runs;
     float radius;
-    bool composite, bent_normals, half_view_z, start, scaling, memory, text, markdown, quiet, help;
+    bool composite, bent_normals, start, scaling, memory, text, markdown, quiet, help;
 };
 
 #define AT(member) offsetof(struct speed_options, member)
@@ -48,8 +48,6 @@ static const struct argument rows[] = {
      NULL},
     {"bent-normals", NULL, "also write bent normals: gtao, vbao, raymarch", ARGUMENT_FLAG,
      AT(bent_normals), 0, 0, NULL},
-    {"half-view-z", NULL, "keep view z in 16-bit floats", ARGUMENT_FLAG, AT(half_view_z), 0, 0,
-     NULL},
     {"threads", "N", "of Mesa lavapipe (LP_NUM_THREADS), for --vs too; others ignore it",
      ARGUMENT_COUNT, AT(threads), 0, 256, NULL},
     {"runs", "N", "of each setting, taking turns, after one that does not count (9)",
@@ -59,7 +57,7 @@ static const struct argument rows[] = {
      "prints, or the list that --json writes",
      ARGUMENT_TEXT, AT(vs), 0, 0, NULL},
     {"start", NULL,
-     "instead: device, vkao_context_create and the first two frames of a process, with an empty "
+     "instead: device, context and effect, and the first two frames of a process, with an empty "
      "(cold) and a filled (warm) shader cache on disk",
      ARGUMENT_FLAG, AT(start), 0, 0, NULL},
     {"scaling", NULL,
@@ -142,7 +140,7 @@ static bool choose_sizes(struct bench *b, const char *names, struct tool_error *
 /* --method and its numbers, in the names of settings. */
 static bool name_methods(const struct speed_options *o, struct text *names, struct tool_error *err)
 {
-    const vkao_ssao_params params = vkao_ssao_params_default();
+    const struct ao_ssao params = ao_ssao_default();
     const unsigned slices = o->slices ? o->slices : params.slice_count;
     const unsigned steps = o->steps ? o->steps : params.step_count;
     const unsigned samples = o->samples ? o->samples : params.sample_count;
@@ -242,7 +240,7 @@ static bool open_device(struct bench *b, struct tool_error *err)
 {
     const struct speed_options *o = b->options;
     const struct speed_features features = {
-        .composite = o->composite, .bent_normals = o->bent_normals, .half_view_z = o->half_view_z};
+        .composite = o->composite, .bent_normals = o->bent_normals};
     if (!speed_device_create(o->device, features, &b->device, err) ||
         !speed_device_compile(&b->device, b->configs.rows, b->configs.count, err))
         return false;

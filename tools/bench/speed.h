@@ -20,7 +20,7 @@ enum { MAX_SIZES = 16, SPEED_NAME = 48, MAX_RUNS = 1000 };
 
 /* What the frames hold beside AO. */
 struct speed_features {
-    bool composite, bent_normals, half_view_z;
+    bool composite, bent_normals;
 };
 
 /* --- The device --- */
@@ -28,7 +28,10 @@ struct speed_features {
 struct speed_device {
     struct gpu gpu;
     vkao_context *ctx;
-    double context_ms; /* that vkao_context_create took */
+    vkao_effect *effects[MAX_CONFIGS]; /* by the settings that they are compiled for */
+    struct config configs[MAX_CONFIGS];
+    size_t effect_count;
+    double context_ms; /* that vkao_context_create and vkao_effect_create took */
     struct stage_clock clock;
     struct speed_features features;
 };
@@ -36,8 +39,8 @@ struct speed_device {
 /* device: as of --device. Errors: EXIT_DEVICE, EXIT_MEMORY. */
 bool speed_device_create(const char *device, struct speed_features features,
                          struct speed_device *d, struct tool_error *err);
-/* A context for these settings, at most MAX_CONFIGS, and no others; the one before is destroyed, no
- * images may be left of it. */
+/* Effects for these settings, at most MAX_CONFIGS, and no others; those before are destroyed, no
+ * images may be left of them. */
 bool speed_device_compile(struct speed_device *d, const struct config *configs, size_t count,
                           struct tool_error *err);
 void speed_device_destroy(struct speed_device *d);
@@ -47,7 +50,7 @@ struct speed_images {
     VkExtent2D extent;
     struct gpu_image depth, normals, ao, bent, color, output;
     VkDeviceMemory scratch;
-    vkao_frame *frames[2]; /* full, half resolution */
+    vkao_frame *frames[MAX_CONFIGS]; /* by effect */
 };
 
 /* Whether its images can have that size, before anyone draws it. Errors: EXIT_DEVICE. */
@@ -56,8 +59,10 @@ bool speed_images_create(struct speed_device *d, const struct room *room,
                          struct speed_images *images, struct tool_error *err);
 void speed_images_destroy(struct speed_device *d, struct speed_images *images);
 
-/* A frame of this device and extent, as vkao_frame_create wants it. info->images is images. */
-void speed_frame_info(struct speed_features features, VkExtent2D extent, bool half_resolution,
+/* What is compiled for a setting. */
+vkao_effect_info speed_effect_info(struct speed_features features, const struct config *config);
+/* A frame of this extent, as vkao_frame_create wants it. info->images is images. */
+void speed_frame_info(struct speed_features features, VkExtent2D extent,
                       const struct speed_images *on_device, vkao_images *images,
                       vkao_frame_info *info);
 
@@ -149,7 +154,7 @@ bool speed_scaling(struct speed_device *d, const struct config *config, VkExtent
 struct speed_start {
     char name[SPEED_NAME];
     struct start_times {
-        /* milliseconds: instance and device, vkao_context_create, two frames */
+        /* milliseconds: instance and device, context and effect, two frames */
         double device, context, first, second;
     } cold, warm;
 };

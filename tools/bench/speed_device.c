@@ -4,6 +4,8 @@
  * frame, nothing read back. */
 #include "speed.h"
 
+#include "parallel.h"
+
 #include <string.h>
 #include <vulkan/vulkan.h>
 
@@ -15,10 +17,9 @@ bool speed_device_create(const char *device, struct speed_features features, str
     return gpu_create(&options, &d->gpu, err) && stage_clock_create(&d->gpu, &d->clock, err);
 }
 
-/* Of any size: what a variant takes from a view does not depend on it. */
-static vkao_view room_view(VkExtent2D extent)
+static struct ao_view room_view(VkExtent2D extent)
 {
-    vkao_view view = vkao_view_default();
+    struct ao_view view = ao_view_default();
     view.depth_encoding = VKAO_DEPTH_VIEW_Z;
     view.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
     room_projection(extent.width, extent.height, view.projection);
@@ -33,43 +34,57 @@ static vkao_stage_flags stages_of(struct speed_features features)
     return VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (features.composite ? VKAO_STAGE_COMPOSITE : 0u);
 }
 
+vkao_effect_info speed_effect_info(struct speed_features features, const struct config *config)
+{
+    const struct ao_view view = room_view((VkExtent2D){1920, 1080});
+    const struct ao_composite composite = ao_composite_default();
+    struct ao_job job = {0};
+    config_apply(config, &job);
+    vkao_effect_info info =
+        ao_effect(stages_of(features), &view, &job.ssao, &job.blur, &composite);
+    info.half_resolution = job.half_resolution;
+    info.bent_normals = features.bent_normals;
+    info.ao_format = ao_format;
+    return info;
+}
+
+static void destroy_effects(struct speed_device *d)
+{
+    for (size_t i = 0; i < d->effect_count; i++)
+        vkao_effect_destroy(d->effects[i]);
+    d->effect_count = 0;
+    vkao_context_destroy(d->ctx);
+    d->ctx = NULL;
+}
+
 bool speed_device_compile(struct speed_device *d, const struct config *configs, size_t count,
                           struct tool_error *err)
 {
-    const vkao_view view = room_view((VkExtent2D){1920, 1080});
-    struct ao_job jobs[MAX_CONFIGS];
-    vkao_variant variants[MAX_CONFIGS];
-    vkao_context_info info = gpu_context_info(&d->gpu, 0);
-    for (size_t i = 0; i < count; i++) {
-        config_apply(&configs[i], &jobs[i]);
-        variants[i] = (vkao_variant){
-            .struct_size = sizeof variants[i],
-            .half_resolution = jobs[i].half_resolution,
-            .bent_normals = d->features.bent_normals,
-            .staged_ao = ao_format,
-            .view = &view,
-            .ssao = &jobs[i].ssao,
-            .blur = &jobs[i].blur,
-        };
-    }
-    info.half_view_z = d->features.half_view_z;
-    info.variants = variants;
-    info.variant_count = (uint32_t)count;
-    info.variants_only = VK_TRUE;
-    info.stage_mask = stages_of(d->features);
-    stage_clock_hook(&info);
-    vkao_context_destroy(d->ctx);
+    vkao_result result = VKAO_SUCCESS;
+    destroy_effects(d);
+    vkao_context_info info = gpu_context_info(&d->gpu);
+    info.mark = stage_clock_mark;
+    info.mark_user_data = &d->clock;
     double start = speed_now_ms();
     d->ctx = gpu_context_create(&info, err);
+    if (!d->ctx)
+        return false;
+    for (size_t i = 0; result == VKAO_SUCCESS && i < count; i++) {
+        vkao_effect_info effect = speed_effect_info(d->features, &configs[i]);
+        effect.parallel = parallel_run;
+        d->configs[i] = configs[i];
+        result = vkao_effect_create(d->ctx, &effect, &d->effects[i]);
+        d->effect_count += result == VKAO_SUCCESS;
+    }
     d->context_ms = speed_now_ms() - start;
-    return d->ctx != NULL;
+    return result == VKAO_SUCCESS || gpu_library_failed(err, "vkao_effect_create", result);
 }
 
 void speed_device_destroy(struct speed_device *d)
 {
     if (d->gpu.device)
         stage_clock_destroy(&d->clock);
-    vkao_context_destroy(d->ctx);
+    destroy_effects(d);
     gpu_destroy(&d->gpu);
     *d = (struct speed_device){0};
 }
@@ -84,7 +99,7 @@ static vkao_image slot(VkFormat format, const struct gpu_image *image)
     return image ? gpu_image_slot(image) : empty;
 }
 
-void speed_frame_info(struct speed_features features, VkExtent2D extent, bool half_resolution,
+void speed_frame_info(struct speed_features features, VkExtent2D extent,
                       const struct speed_images *on_device, vkao_images *images,
                       vkao_frame_info *info)
 {
@@ -94,20 +109,16 @@ void speed_frame_info(struct speed_features features, VkExtent2D extent, bool ha
     images->normals = slot(normal_format, on ? &on->normals : NULL);
     images->ao = slot(ao_format, on ? &on->ao : NULL);
     if (on)
-        images->ao_image = on->ao.image;
+        images->ao.image = on->ao.image;
     if (features.bent_normals)
         images->bent_normals = slot(normal_format, on ? &on->bent : NULL);
     if (features.composite) {
         images->color = slot(color_format, on ? &on->color : NULL);
         images->output = slot(color_format, on ? &on->output : NULL);
     }
-    *info = (vkao_frame_info){
-        .struct_size = sizeof *info,
-        .stages = stages_of(features),
-        .extent = extent,
-        .images = images,
-        .half_resolution = half_resolution,
-    };
+    *info = vkao_frame_info_default();
+    info->extent = extent;
+    info->images = images;
 }
 
 static bool create_images(struct speed_device *d, struct speed_images *i, struct tool_error *err)
@@ -137,34 +148,34 @@ static bool clear_color(struct speed_device *d, struct speed_images *images, str
     return gpu_submit(&d->gpu, cmd, err);
 }
 
-/* One block for both frames: they run in turn. */
+/* One block for all frames: they run in turn. */
 static bool create_scratch(struct speed_device *d, struct speed_images *images,
                            struct tool_error *err)
 {
-    VkMemoryRequirements both = {.alignment = 1, .memoryTypeBits = UINT32_MAX};
-    for (int half = 0; half < 2; half++) {
+    VkMemoryRequirements all = {.alignment = 1, .memoryTypeBits = UINT32_MAX};
+    for (size_t i = 0; i < d->effect_count; i++) {
         VkMemoryRequirements need;
         vkao_images slots;
         vkao_frame_info info;
-        speed_frame_info(d->features, images->extent, half, images, &slots, &info);
-        vkao_result result = vkao_frame_scratch(d->ctx, &info, &need);
+        speed_frame_info(d->features, images->extent, images, &slots, &info);
+        vkao_result result = vkao_frame_scratch(d->effects[i], &info, &need);
         if (result != VKAO_SUCCESS)
             return gpu_library_failed(err, "vkao_frame_scratch", result);
-        both.size = need.size > both.size ? need.size : both.size;
-        both.memoryTypeBits &= need.memoryTypeBits;
+        all.size = need.size > all.size ? need.size : all.size;
+        all.memoryTypeBits &= need.memoryTypeBits;
     }
-    return gpu_allocate(&d->gpu, &both, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, &images->scratch, err);
+    return gpu_allocate(&d->gpu, &all, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, &images->scratch, err);
 }
 
 static bool create_frames(struct speed_device *d, struct speed_images *images,
                           struct tool_error *err)
 {
-    for (int half = 0; half < 2; half++) {
+    for (size_t i = 0; i < d->effect_count; i++) {
         vkao_images slots;
         vkao_frame_info info;
-        speed_frame_info(d->features, images->extent, half, images, &slots, &info);
+        speed_frame_info(d->features, images->extent, images, &slots, &info);
         info.scratch_memory = images->scratch;
-        vkao_result result = vkao_frame_create(d->ctx, &info, &images->frames[half]);
+        vkao_result result = vkao_frame_create(d->effects[i], &info, &images->frames[i]);
         if (result != VKAO_SUCCESS)
             return gpu_library_failed(err, "vkao_frame_create", result);
     }
@@ -198,8 +209,8 @@ void speed_images_destroy(struct speed_device *d, struct speed_images *images)
 {
     struct gpu_image *all[] = {&images->depth, &images->normals, &images->ao,
                                &images->bent,  &images->color,   &images->output};
-    for (int half = 0; half < 2; half++)
-        vkao_frame_destroy(images->frames[half]);
+    for (size_t i = 0; i < MAX_CONFIGS; i++)
+        vkao_frame_destroy(images->frames[i]);
     for (size_t i = 0; d->gpu.device && i < sizeof all / sizeof all[0]; i++)
         gpu_image_destroy(&d->gpu, all[i]);
     if (images->scratch)
@@ -209,17 +220,28 @@ void speed_images_destroy(struct speed_device *d, struct speed_images *images)
 
 /* --- One run --- */
 
+/* The frame whose effect was compiled for the setting. */
+static const vkao_frame *frame_of(const struct speed_device *d, const struct speed_images *images,
+                                  const struct config *config)
+{
+    for (size_t i = 0; i < d->effect_count; i++)
+        if (strcmp(d->configs[i].name, config->name) == 0)
+            return images->frames[i];
+    return NULL;
+}
+
 static vkao_result record(struct speed_device *d, const struct speed_images *images,
                           const struct config *config, float radius, VkCommandBuffer cmd)
 {
-    const vkao_composite_params composite = vkao_composite_params_default();
-    const vkao_view view = room_view(images->extent);
+    const struct ao_composite composite = ao_composite_default();
+    const struct ao_view room = room_view(images->extent);
+    const vkao_view view = ao_library_view(&room);
     struct ao_job job = {0};
     config_apply(config, &job);
     job.ssao.radius = radius;
+    const vkao_params params = ao_params(&job.ssao, &job.blur, &composite);
     stage_clock_start(&d->clock, cmd);
-    vkao_result result = vkao_cmd_all(images->frames[job.half_resolution], cmd, &view, &job.ssao,
-                                      &job.blur, d->features.composite ? &composite : NULL);
+    vkao_result result = vkao_cmd_record(frame_of(d, images, config), cmd, &view, &params);
     stage_clock_stop(&d->clock);
     return result;
 }
@@ -236,6 +258,6 @@ bool speed_run_once(struct speed_device *d, const struct speed_images *images,
     bool submitted = gpu_submit(&d->gpu, cmd, err);
     double wall = speed_now_ms() - start;
     if (result != VKAO_SUCCESS)
-        return gpu_library_failed(err, "vkao_cmd_all", result);
+        return gpu_library_failed(err, "vkao_cmd_record", result);
     return submitted && stage_clock_read(&d->clock, wall, ms, err);
 }

@@ -7,12 +7,10 @@
 
 static const struct kind {
     const char *name;
-    bool bent_normals, ao_in_scratch, half_resolution, half_view_z;
+    bool bent_normals, ao_in_scratch, half_resolution;
 } kinds[] = {
     {.name = "AO"},
-    {.name = "AO, half view z", .half_view_z = true},
     {.name = "AO, half resolution", .half_resolution = true},
-    {.name = "AO, both halves", .half_resolution = true, .half_view_z = true},
     {.name = "bent normals", .bent_normals = true},
     {.name = "bent normals, half resolution", .bent_normals = true, .half_resolution = true},
     {.name = "composite, no AO image", .ao_in_scratch = true},
@@ -25,13 +23,21 @@ static bool query(const vkao_context *ctx, const struct kind *kind, VkExtent2D e
 {
     const struct speed_features features = {.composite = kind->ao_in_scratch,
                                             .bent_normals = kind->bent_normals};
+    const struct config config = {.name = "default", .is_preset = true,
+                                  .quality = VKAO_QUALITY_DEFAULT};
     VkMemoryRequirements need;
     vkao_images images;
     vkao_frame_info info;
-    speed_frame_info(features, extent, kind->half_resolution, NULL, &images, &info);
+    vkao_effect *effect = NULL;
+    vkao_effect_info effect_info = speed_effect_info(features, &config);
+    effect_info.half_resolution = kind->half_resolution;
+    speed_frame_info(features, extent, NULL, &images, &info);
     if (kind->ao_in_scratch)
         images.ao = (vkao_image){0};
-    vkao_result result = vkao_frame_scratch(ctx, &info, &need);
+    vkao_result result = vkao_effect_create(ctx, &effect_info, &effect);
+    if (result == VKAO_SUCCESS)
+        result = vkao_frame_scratch(effect, &info, &need);
+    vkao_effect_destroy(effect);
     if (result != VKAO_SUCCESS)
         return gpu_library_failed(err, "vkao_frame_scratch", result);
     *mb = (double)need.size * 1e-6;
@@ -48,13 +54,10 @@ static void add_head(const VkExtent2D *sizes, size_t count, bool markdown, struc
         text_add(text, "---:|%s", i + 1 == count ? "\n" : "");
 }
 
-static bool add_kinds(vkao_context *const contexts[2], const VkExtent2D *sizes, size_t count,
-                      bool markdown, struct text *text, struct tool_error *err)
+static bool add_kinds(const vkao_context *ctx, const VkExtent2D *sizes, size_t count, bool markdown,
+                      struct text *text, struct tool_error *err)
 {
     for (size_t k = 0; k < KINDS; k++) {
-        const vkao_context *ctx = contexts[kinds[k].half_view_z];
-        if (!ctx)
-            continue;
         text_add(text, markdown ? "| %s |" : "%-32s", kinds[k].name);
         for (size_t i = 0; i < count; i++) {
             double mb = 0;
@@ -71,27 +74,18 @@ bool speed_memory(const char *device, const VkExtent2D *sizes, size_t count, boo
                   struct text *text, struct tool_error *err)
 {
     const struct gpu_options options = {.device = device};
-    vkao_context *contexts[2] = {0}; /* by half_view_z; NULL: the device cannot */
     struct gpu gpu;
     if (!gpu_create(&options, &gpu, err))
         return false;
-    bool ok = true;
-    for (int half = 0; ok && half < 2; half++) {
-        vkao_context_info info = gpu_context_info(&gpu, 1u << VKAO_SSAO_VBAO);
-        info.half_view_z = (VkBool32)half;
-        if (half && !gpu.features.shaderStorageImageExtendedFormats)
-            continue;
-        contexts[half] = gpu_context_create(&info, err);
-        ok = contexts[half] != NULL;
-    }
+    vkao_context *ctx = gpu_context(&gpu, err);
+    bool ok = ctx != NULL;
     if (ok && !markdown)
         text_add(text, "%s, 10^6 bytes\n", gpu.properties.deviceName);
     if (ok) {
         add_head(sizes, count, markdown, text);
-        ok = add_kinds(contexts, sizes, count, markdown, text, err);
+        ok = add_kinds(ctx, sizes, count, markdown, text, err);
     }
-    for (int half = 0; half < 2; half++)
-        vkao_context_destroy(contexts[half]);
+    vkao_context_destroy(ctx);
     gpu_destroy(&gpu);
     return ok;
 }

@@ -7,18 +7,18 @@
 
 #include "error.h"
 #include "gpu.h"
-#include "vkao.h"
+#include "setting.h"
 
 struct ao_job {
     uint32_t width, height;
     const float *depth;   /* width * height, rows from the top; what view.depth_encoding says */
     const float *normals; /* width * height * 4 (xyz and padding), or NULL; what view.normal_encoding says */
     const float *color;   /* width * height * 4 linear RGBA, or NULL = no composite */
-    vkao_view view;
-    vkao_ssao_params ssao;
-    vkao_blur_params blur;
-    vkao_composite_params composite; /* used if color is given */
-    bool half_resolution;            /* as vkao_frame_info.half_resolution */
+    struct ao_view view;
+    struct ao_ssao ssao;
+    struct ao_blur blur;
+    struct ao_composite composite; /* used if color is given */
+    bool half_resolution;            /* as vkao_effect_info.half_resolution */
     bool bent_normals;               /* compute result.bent */
 };
 
@@ -33,10 +33,9 @@ struct ao_result {
 uint64_t ao_job_texel_bytes(bool has_normals, bool has_color, bool bent_normals);
 
 /* A session keeps device objects from one frame to the next: create once, run per frame of the same or of another
- * size. method_mask 0: pipelines are compiled for the settings of the job at hand, anew if they change. Else: general
- * ones of the methods in the mask, for sessions that try many settings. */
+ * size. What is compiled is compiled anew when the job's settings change. */
 struct ao_session;
-struct ao_session *ao_session_create(struct gpu *gpu, uint32_t method_mask, struct tool_error *err);
+struct ao_session *ao_session_create(struct gpu *gpu, struct tool_error *err);
 void ao_session_destroy(struct ao_session *session);
 
 /* result's arrays are malloc'ed; ao_result_free frees them. On failure *result is empty, and the

@@ -252,7 +252,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
                   const struct camera *camera_file, struct report *report, struct gbuffer *gbuffer,
                   struct tool_error *err)
 {
-    *gbuffer = (struct gbuffer){.view = vkao_view_default()};
+    *gbuffer = (struct gbuffer){.view = ao_view_default()};
     struct gbuffer *g = gbuffer;
     if (!resolve(info, options, camera_file, g, err))
         return false;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * One view of one EXR file, loaded and made ready for the library: depth cleaned and in one of its
- * encodings, normals signed, colour as RGBA, all in the data window of the depth, and the vkao_view
+ * encodings, normals signed, colour as RGBA, all in the data window of the depth, and the struct ao_view
  * that describes them. */
 #ifndef VKAO_TOOLS_GBUFFER_H_
 #define VKAO_TOOLS_GBUFFER_H_
@@ -12,7 +12,7 @@
 #include "exr_file.h"
 #include "report.h"
 #include "roles.h"
-#include "vkao.h"
+#include "setting.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -53,7 +53,7 @@ struct gbuffer {
     double background_share;       /* [0,1], with the invalid ones */
     double invalid_share;          /* [0,1] of NaN, -Inf and negative values */
     double depth_step; /* distance between neighbouring half values at the median; 0 for float */
-    vkao_view view;
+    struct ao_view view;
 };
 
 /* camera_file may be NULL. Errors: EXIT_INPUT, EXIT_CHANNELS, EXIT_MEMORY (also if the budget is too

@@ -27,8 +27,9 @@ struct gpu {
     VkPhysicalDeviceProperties properties;
     VkPhysicalDeviceMemoryProperties memory;
     VkDeviceSize max_allocation; /* maxMemoryAllocationSize */
-    VkPhysicalDeviceFeatures features; /* as enabled */
-    VkBool32 storage_16bit;            /* storageBuffer16BitAccess is enabled */
+    /* As enabled; the first is the head of the chain. */
+    VkPhysicalDeviceFeatures2 features;
+    VkPhysicalDevice16BitStorageFeatures storage_features;
     uint32_t validation_messages;      /* warnings and errors of the validation layers so far */
     bool print_validation;
 };
@@ -105,10 +106,10 @@ bool gpu_submit(struct gpu *gpu, VkCommandBuffer cmd, struct tool_error *err);
 /* Makes every earlier write visible to every later access on the queue. */
 void gpu_full_barrier(VkCommandBuffer cmd);
 
-/* A vkao context on this device; log lines go to stderr. method_mask as in vkao_context_info. */
-vkao_context *gpu_context(struct gpu *gpu, uint32_t method_mask, struct tool_error *err);
-/* The two halves of gpu_context, for those who change something in between. */
-vkao_context_info gpu_context_info(const struct gpu *gpu, uint32_t method_mask);
+/* A vkao context on this device; log lines go to stderr. Destroy it before the gpu. */
+vkao_context *gpu_context(struct gpu *gpu, struct tool_error *err);
+/* The two halves of gpu_context, for those who change something in between. The info points into gpu. */
+vkao_context_info gpu_context_info(struct gpu *gpu);
 vkao_context *gpu_context_create(const vkao_context_info *info, struct tool_error *err);
 /* True if result is VK_SUCCESS; else the error of the call: EXIT_MEMORY or EXIT_DEVICE. */
 bool gpu_ok(struct tool_error *err, const char *call, VkResult result);

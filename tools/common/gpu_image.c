@@ -205,7 +205,7 @@ void gpu_image_destroy(struct gpu *gpu, struct gpu_image *image)
 
 vkao_image gpu_image_slot(const struct gpu_image *image)
 {
-    return (vkao_image){image->view, VK_IMAGE_LAYOUT_GENERAL, image->format};
+    return (vkao_image){image->view, VK_IMAGE_LAYOUT_GENERAL, image->format, VK_NULL_HANDLE};
 }
 
 void gpu_buffer_destroy(struct gpu *gpu, struct gpu_buffer *buffer)

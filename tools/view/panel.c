@@ -158,7 +158,7 @@ static void live_rows(struct viewer *v)
     ui_text("%s, %u x %u", live_scene_name(l->kind), used.width, used.height);
     if (ui_slider_float("resolution", &scale, 0.25f, 1.0f, false))
         l->scale = (double)scale;
-    ui_help("share of the window's resolution on each axis: vkao_view.valid alone changes, and "
+    ui_help("share of the window's resolution on each axis: struct ao_view.valid alone changes, and "
             "nothing is allocated anew");
     ui_checkbox("orthographic", &l->camera.orthographic);
     ui_same_line();

@@ -136,7 +136,7 @@ static bool is_empty(const VkRect2D *rect)
     return rect->extent.width == 0 || rect->extent.height == 0;
 }
 
-static double axis_sign(const vkao_view *view)
+static double axis_sign(const struct ao_view *view)
 {
     const float *p = view->projection;
     if (fabsf(p[11]) > 0.0f)
@@ -145,7 +145,7 @@ static double axis_sign(const vkao_view *view)
 }
 
 /* z of view space, NAN for background. Equations of the projection: clip = P * (x, y, z, 1). */
-static double view_z(const vkao_view *view, double depth)
+static double view_z(const struct ao_view *view, double depth)
 {
     const float *p = view->projection;
     if (!isfinite(depth))
@@ -160,7 +160,7 @@ static double view_z(const vkao_view *view, double depth)
     return ((double)p[14] - depth * (double)p[15]) / (depth * (double)p[11] - (double)p[10]);
 }
 
-bool unproject(const vkao_view *view, VkExtent2D extent, double column, double row, double depth,
+bool unproject(const struct ao_view *view, VkExtent2D extent, double column, double row, double depth,
                double position[3])
 {
     const float *p = view->projection;

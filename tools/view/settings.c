@@ -122,9 +122,9 @@ const size_t param_count = sizeof params / sizeof *params;
 
 struct setting setting_default(void)
 {
-    return (struct setting){.ssao = vkao_ssao_params_default(),
-                            .blur = vkao_blur_params_default(),
-                            .composite = vkao_composite_params_default()};
+    return (struct setting){.ssao = ao_ssao_default(),
+                            .blur = ao_blur_default(),
+                            .composite = ao_composite_default()};
 }
 
 /* Of the member; every kind but a colour is one word of 32 bits. */
@@ -154,10 +154,8 @@ void param_reset(const struct param *param, struct setting *setting)
 
 void setting_apply_preset(struct setting *setting, vkao_quality quality)
 {
-    vkao_frame_info frame = {.struct_size = sizeof frame};
     /* Fails for unknown qualities only, and then changes nothing. */
-    if (vkao_preset(quality, &frame, &setting->ssao, &setting->blur) == VKAO_SUCCESS)
-        setting->half_resolution = frame.half_resolution;
+    (void)ao_preset(quality, &setting->half_resolution, &setting->ssao, &setting->blur);
 }
 
 const char *method_name(vkao_ssao_method method)
@@ -233,7 +231,7 @@ static void add_value(struct text *text, const struct param *param, const struct
 /* vkao.h: zero means the default. The command line knows no zero. */
 static void name_zeros(struct setting *s)
 {
-    const vkao_ssao_params standard = vkao_ssao_params_default();
+    const struct ao_ssao standard = ao_ssao_default();
     if (!s->ssao.slice_count)
         s->ssao.slice_count = standard.slice_count;
     if (!s->ssao.step_count)

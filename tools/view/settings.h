@@ -6,16 +6,16 @@
 #define VKAO_VIEW_SETTINGS_H_
 
 #include "text.h"
-#include "vkao.h"
+#include "setting.h"
 
 #include <stdbool.h>
 #include <stddef.h>
 
 /* All that decides the AO of a G-buffer. */
 struct setting {
-    vkao_ssao_params ssao;
-    vkao_blur_params blur;
-    vkao_composite_params composite;
+    struct ao_ssao ssao;
+    struct ao_blur blur;
+    struct ao_composite composite;
     VkBool32 half_resolution;
 };
 

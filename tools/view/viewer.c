@@ -285,7 +285,7 @@ bool viewer_open(struct viewer *viewer, const struct arguments *arguments, struc
                                         .presentation = &presentation};
     if (!gpu_create(&options, &v->gpu, err))
         return false;
-    v->context = gpu_context(&v->gpu, 0, err);
+    v->context = gpu_context(&v->gpu, err);
     if (!v->context || !open_images(v, err) || !open_window(v, err) || !open_panel(v, err) ||
         !create_timestamps(v, err))
         return false;

@@ -137,9 +137,9 @@ static const struct option_row *row_of(int code)
 static bool apply_defaults(struct options *options, struct tool_error *err)
 {
     *options = (struct options){.command = COMMAND_RENDER,
-                                .ssao = vkao_ssao_params_default(),
-                                .blur = vkao_blur_params_default(),
-                                .composite = vkao_composite_params_default()};
+                                .ssao = ao_ssao_default(),
+                                .blur = ao_blur_default(),
+                                .composite = ao_composite_default()};
     /* What --quality fills unless it is given. */
     options->ssao.slice_count = options->ssao.step_count = 0;
     options->ssao.thickness = 0.0f;
@@ -191,12 +191,12 @@ static bool fail_positional(const char *first, const char *second, struct tool_e
 /* The preset fills what was not given. Only vbao was chosen with it; the other methods take their samples as they are. */
 static void apply_quality(struct options *o)
 {
-    vkao_frame_info frame = {.struct_size = sizeof frame};
-    vkao_ssao_params ssao = o->ssao;
-    vkao_blur_params blur = o->blur;
+    VkBool32 half_resolution = VK_FALSE;
+    struct ao_ssao ssao = o->ssao;
+    struct ao_blur blur = o->blur;
     /* The table knows no other quality. */
-    (void)vkao_preset((vkao_quality)o->quality, &frame, &ssao, &blur);
-    o->half_resolution = frame.half_resolution;
+    (void)ao_preset((vkao_quality)o->quality, &half_resolution, &ssao, &blur);
+    o->half_resolution = half_resolution;
     if (!o->ssao.slice_count)
         o->ssao.slice_count = ssao.slice_count;
     if (!o->ssao.step_count)

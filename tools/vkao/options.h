@@ -10,7 +10,7 @@
 #include "gbuffer.h"
 #include "report.h"
 #include "text.h"
-#include "vkao.h"
+#include "setting.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -44,10 +44,10 @@ struct options {
     bool radius_is_auto, bias_is_given;
     int quality; /* vkao_quality */
     bool half_resolution, bent_normals;
-    vkao_ssao_params ssao; /* slice_count, step_count and thickness 0 until the preset
+    struct ao_ssao ssao; /* slice_count, step_count and thickness 0 until the preset
                               fills them */
-    vkao_blur_params blur;
-    vkao_composite_params composite;
+    struct ao_blur blur;
+    struct ao_composite composite;
 
     const char *device;
     bool validation;

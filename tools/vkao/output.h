@@ -16,7 +16,7 @@ struct rendered_view {
     const char *name; /* "" or the view */
     struct gbuffer gbuffer;
     struct ao_result result;
-    vkao_ssao_params ssao; /* as resolved: radius, bias */
+    struct ao_ssao ssao; /* as resolved: radius, bias */
 };
 
 /* Whether the names of the new part and of the previews of several views are free, asked before any

@@ -48,7 +48,7 @@ static bool session_start(struct session *s, struct tool_error *err)
                                         .validation = s->options->validation};
     if (!gpu_create(&options, &s->gpu, err))
         return false;
-    s->ao = ao_session_create(&s->gpu, 0, err);
+    s->ao = ao_session_create(&s->gpu, err);
     if (!s->ao)
         gpu_destroy(&s->gpu);
     return s->ao != NULL;

@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What tools and tests let people set, by stage, as panels and command lines show it; and what the library makes of it: an
+ * effect to compile, a view and params to record with. */
+#ifndef VKAO_TOOLS_SETTING_H_
+#define VKAO_TOOLS_SETTING_H_
+
+#include "vkao.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Members as in vkao_effect_info and vkao_params. */
+struct ao_ssao {
+    vkao_ssao_method method;
+    vkao_falloff falloff;
+    vkao_sphere_form sphere_form;
+    uint32_t sample_count, slice_count, step_count, noise_index;
+    float radius, bias, thickness, blocking_scale;
+};
+
+struct ao_blur {
+    uint32_t radius;
+    float normal_power, sharpness, intensity, power;
+};
+
+struct ao_composite {
+    vkao_composite_mode mode;
+    VkBool32 multi_bounce;
+    vkao_specular specular;
+    float strength, tint[3], debug_distance;
+};
+
+/* vkao_view and what images hold. */
+struct ao_view {
+    vkao_depth_encoding depth_encoding;
+    vkao_normal_encoding normal_encoding, bent_encoding;
+    vkao_view_axis axis;
+    VkRect2D valid, viewport, rect;
+    float projection[16], normal_to_view[9];
+};
+
+struct ao_ssao ao_ssao_default(void);
+struct ao_blur ao_blur_default(void);
+struct ao_composite ao_composite_default(void);
+struct ao_view ao_view_default(void);
+
+/* vkao_preset. Each pointer may be NULL. */
+vkao_result ao_preset(vkao_quality quality, VkBool32 *half_resolution, struct ao_ssao *ssao,
+                      struct ao_blur *blur);
+
+/* What is compiled. blur and composite may be NULL where no stage needs them. The rest of the effect is the caller's:
+ * half_resolution, ao_format, bent_normals and so on. */
+vkao_effect_info ao_effect(vkao_stage_flags stages, const struct ao_view *view,
+                           const struct ao_ssao *ssao, const struct ao_blur *blur,
+                           const struct ao_composite *composite);
+/* What is recorded. Each pointer may be NULL. */
+vkao_params ao_params(const struct ao_ssao *ssao, const struct ao_blur *blur,
+                      const struct ao_composite *composite);
+vkao_view ao_library_view(const struct ao_view *view);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
