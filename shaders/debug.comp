@@ -27,7 +27,7 @@ vec4 debug_view(ivec2 texel)
         return vec4(vec3(z > 0.0 ? noisy_ao(at) : 1.0), 1.0);
     vec3 n = vec3(0.0);
     if (z > 0.0 && COMPOSITE_MODE == VKAO_GLSL_COMPOSITE_NORMALS)
-        n = lane3(view_normals(at, view_positions(at, real(z))), 0);
+        n = view_normal(at, view_position(vec2(at), z));
     if (COMPOSITE_MODE == VKAO_GLSL_COMPOSITE_BENT_NORMALS)
         n = to_view(decode_direction(texelFetch(bent_image, texel, 0).xyz, BENT_ENCODING));
     n.z = -n.z; /* towards the eye is what pictures of normals show as blue */

@@ -5,6 +5,8 @@
 #ifndef VKAO_NOISE_GLSL_
 #define VKAO_NOISE_GLSL_
 
+#include "real.glsl"
+
 const float GOLDEN_ANGLE = 2.39996322972865332;
 const float TWO_PI = 6.28318530717958648;
 
@@ -37,19 +39,16 @@ vec2 tile_noise(uvec2 texel, uint slices, uint index)
 }
 
 /* cos and sin of pi u, u in [0,1): off by less than 7e-6. The exact ones cost a driver in software ten times that. */
-Real2 half_turn(real u)
+real half_turn_x(real u)
 {
     real v = u - 0.5, v2 = v * v;
-    real s = v * (3.14158202 + v2 * (-5.16714276 + v2 * (2.54189872 - 0.55463536 * v2)));
-    real c = 0.99999329 + v2 * (-4.93393798 + v2 * (4.04128334 - 1.22212545 * v2));
-    return Real2(-s, c);
+    return -v * (3.14158202 + v2 * (-5.16714276 + v2 * (2.54189872 - 0.55463536 * v2)));
 }
 
-/* cos and sin of 2 pi u. */
-Real2 full_turn(real u)
+real half_turn_y(real u)
 {
-    Real2 half_way = half_turn(u);
-    return Real2(half_way.x * half_way.x - half_way.y * half_way.y, 2.0 * half_way.x * half_way.y);
+    real v = u - 0.5, v2 = v * v;
+    return 0.99999329 + v2 * (-4.93393798 + v2 * (4.04128334 - 1.22212545 * v2));
 }
 
 /* The golden ratio sequence, in fixed point. */

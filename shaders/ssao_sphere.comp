@@ -43,7 +43,7 @@ float literal_blocking(ivec2 texel, vec3 position)
         vec3 p = table_point(k);
         p.xy = vec2(p.x * rotation.x - p.y * rotation.y, p.x * rotation.y + p.y * rotation.x);
         vec3 point = position + radius * p;
-        float scene_z = point.z > 0.0 ? load_view_z(ivec2(floor(project_to_texel(point) + 0.5))) : 0.0;
+        float scene_z = point.z > 0.0 ? load_view_z(nearest_texel(point)) : 0.0;
         float dz = scale * max(0.0, scene_z - point.z);
         factor += scene_z > 0.0 ? 1.0 / (1.0 + dz * dz) : 0.0;
         if (++k >= sample_count())
@@ -57,10 +57,10 @@ float hidden(vec3 position, vec3 normal, vec3 offset)
     float radius = params.radius, bias = params.bias + depth_error(position.z);
     vec3 point = position + offset;
     float height = dot(normal, offset);
-    ivec2 at = ivec2(floor(project_to_texel(point) + 0.5));
+    ivec2 at = nearest_texel(point);
     float scene_z = point.z > 0.0 ? load_view_z(at) : 0.0;
     vec3 occluder = view_position(vec2(at), scene_z);
-    float weight = scene_z > 0.0 ? range_weight(reals(scene_z - position.z), radius).x : 0.0;
+    float weight = scene_z > 0.0 ? range_weight(vec2(scene_z - position.z), radius).x : 0.0;
     bool behind = stands_in_front(occluder, position, normal, height + bias);
     return mix(height < 0.0 ? 1.0 : 0.0, behind ? 1.0 : 0.0, weight);
 }
@@ -85,11 +85,9 @@ float rescaled_blocking(ivec2 texel, vec3 position, vec3 normal)
     return blocked / float(2u * pairs);
 }
 
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
+Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
 {
-    vec3 p = lane3(position, 0);
-    float open = SPHERE_LITERAL
-                     ? 1.0 - literal_blocking(texel, p)
-                     : min(1.0, 2.0 * (1.0 - rescaled_blocking(texel, p, lane3(normal, 0))));
-    return Visibility(Real3(0.0, 0.0, 0.0), open);
+    float open = SPHERE_LITERAL ? 1.0 - literal_blocking(texel, position)
+                                : min(1.0, 2.0 * (1.0 - rescaled_blocking(texel, position, normal)));
+    return Visibility(vec3(0.0), open);
 }

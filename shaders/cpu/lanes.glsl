@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Numbers of the texels that an invocation shades side by side: with VKAO_SIDE_BY_SIDE two neighbours of a row, as a CPU's
- * lanes have long chains of dependent operations and nothing else to fill the gaps with; else one. `real` is a number per
- * texel, `reals` one per texel for each of the two sides of a slice, first those of the side along O, then those of the
- * other, or for each of a pair of points. */
+ * Numbers of the two texels of a row that an invocation shades side by side, as a CPU's lanes have long chains of dependent
+ * operations and nothing else to fill the gaps with. `real` is a number per texel, `reals` one per texel for each of the
+ * two sides of a slice, first those of the side along O, then those of the other, or for each of a pair of points. */
 #ifndef VKAO_LANES_GLSL_
 #define VKAO_LANES_GLSL_
 
 #include "layout.h"
 
-#ifdef VKAO_SIDE_BY_SIDE
 #define real vec2
 #define reals vec4
 #define whole ivec2
@@ -32,12 +30,6 @@ real join(float of_texels[TEXELS])
 float lane(real v, int i)
 {
     return v[i];
-}
-
-/* Bytes into a word. */
-int pack_codes(whole codes)
-{
-    return codes.x | codes.y << 8;
 }
 
 real first_side(reals v)
@@ -65,64 +57,91 @@ real sane(real v, real otherwise)
 {
     return mix(otherwise, v, lessThan(floatBitsToInt(v) & 0x7fffffff, ivec2(floatBitsToInt(VKAO_LARGEST_RESULT))));
 }
-#else
-#define real float
-#define reals vec2
-#define whole int
-#define ints ivec2
-#define bools bvec2
-#define boolean bool
-const int TEXELS = 1;
-const real BESIDE = 0.0;
 
-int lane(whole v, int i)
+const reals SIDES = reals(real(1.0), real(-1.0));
+
+/* The same on both sides. */
+reals both(real v)
 {
-    return v;
+    return reals(v, v);
 }
 
-real join(float of_texels[TEXELS])
+/* max() and min() of numbers: those may have to look for NaN, which takes three instructions instead of one. */
+reals greater(reals a, reals b)
 {
-    return of_texels[0];
+    return mix(b, a, greaterThan(a, b));
 }
 
-float lane(real v, int i)
+reals lesser(reals a, reals b)
 {
-    return v;
+    return mix(b, a, lessThan(a, b));
 }
 
-real first_side(reals v)
+/* The nearest integer, as a number and with ROUND_BITS as an integer. A number below 2^22 plus ROUND has no room for a
+ * fraction: its last bits are that integer. Whatever larger ones become, infinities and NaN too, lies in no image. */
+struct Rounded {
+    real number;
+    whole bits;
+};
+
+const float ROUND = 12582912.0;
+const int ROUND_BITS = 0x4b400000;
+
+Rounded rounded(real v)
 {
-    return v.x;
+    precise real moved = v + ROUND, number = moved - ROUND;
+    return Rounded(number, floatBitsToInt(moved));
 }
 
-real other_side(reals v)
+struct RoundedSides {
+    reals number;
+    ints bits;
+};
+
+RoundedSides rounded(reals v)
 {
-    return v.y;
+    precise reals moved = v + ROUND, number = moved - ROUND;
+    return RoundedSides(number, floatBitsToInt(moved));
 }
 
-real choose(real no, real yes, bool which)
+/* Vectors of the texels. */
+struct Real2 {
+    real x, y;
+};
+
+struct Real3 {
+    real x, y, z;
+};
+
+Real3 join3(vec3 of_texels[TEXELS])
 {
-    return which ? yes : no;
+    float x[TEXELS], y[TEXELS], z[TEXELS];
+    for (int i = 0; i < TEXELS; ++i) {
+        x[i] = of_texels[i].x;
+        y[i] = of_texels[i].y;
+        z[i] = of_texels[i].z;
+    }
+    return Real3(join(x), join(y), join(z));
 }
 
-bool above(real a, real b)
+vec3 lane3(Real3 v, int i)
 {
-    return a > b;
+    return vec3(lane(v.x, i), lane(v.y, i), lane(v.z, i));
 }
 
-/* v, or where it is no number or absurdly large, what stands in for it. */
-real sane(real v, real otherwise)
+real dot3(Real3 a, Real3 b)
 {
-    return (floatBitsToInt(v) & 0x7fffffff) < floatBitsToInt(VKAO_LARGEST_RESULT) ? v : otherwise;
+    return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-/* The only byte. */
-int pack_codes(whole codes)
+Real3 times(Real3 v, real s)
 {
-    return codes;
+    return Real3(v.x * s, v.y * s, v.z * s);
 }
-#endif
 
-#include "numbers.glsl"
+Real3 plus(Real3 a, Real3 b)
+{
+    return Real3(a.x + b.x, a.y + b.y, a.z + b.z);
+}
 
 #endif

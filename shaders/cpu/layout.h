@@ -58,7 +58,7 @@
 #define VKAO_TILE_HEIGHT 8    /* least rows of a tile of SSAO; a group is one of its rows */
 #define VKAO_MOST_TILES 65535 /* what every device dispatches; in larger frames tiles are higher */
 #define VKAO_STRIP_TEXELS 640 /* width of a strip of tiles, a multiple of every group's */
-#define VKAO_SSAO_TEXELS 2    /* of the methods that are VKAO_SIDE_BY_SIDE */
+#define VKAO_SSAO_TEXELS 2    /* of the methods that shade side by side */
 #define VKAO_BLUR_X_WIDTH 8
 #define VKAO_BLUR_Y_WIDTH 4
 #define VKAO_BLUR_Y_HEIGHT 4

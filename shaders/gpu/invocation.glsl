@@ -9,8 +9,6 @@ void main()
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(here.rect.x);
     if (any(greaterThanEqual(texel, unpack_texel(here.rect.y))))
         return;
-    Visibility v = Visibility(Real3(0.0, 0.0, 0.0), 1.0);
-    if (load_view_z(texel) > 0.0)
-        v = shade(texel);
-    imageStore(noisy_image, texel, BENT_NORMALS ? vec4(lane3(v.bent, 0), v.open) : vec4(v.open));
+    Visibility v = shade(texel);
+    imageStore(noisy_image, texel, BENT_NORMALS ? vec4(v.bent, v.open) : vec4(v.open));
 }
