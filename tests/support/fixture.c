@@ -48,6 +48,29 @@ bool fixture_open(void)
     return true;
 }
 
+/* A ring: [next] is the oldest. */
+static struct {
+    vkao_effect_info info;
+    vkao_effect *effect;
+} kept[32];
+static size_t next;
+
+vkao_effect *fixture_effect(const vkao_effect_info *info)
+{
+    const size_t count = sizeof kept / sizeof kept[0];
+    for (size_t i = 0; i < count; ++i) {
+        if (kept[i].effect && memcmp(&kept[i].info, info, sizeof *info) == 0)
+            return kept[i].effect;
+    }
+    vkao_effect_destroy(kept[next].effect);
+    kept[next].effect = NULL;
+    check_vkao(vkao_effect_create(fixture.context, info, &kept[next].effect));
+    kept[next].info = *info;
+    vkao_effect *effect = kept[next].effect;
+    next = (next + 1) % count;
+    return effect;
+}
+
 vkao_context_info fixture_context_info(void)
 {
     vkao_context_info info = gpu_context_info(&fixture.gpu);
@@ -58,6 +81,8 @@ vkao_context_info fixture_context_info(void)
 int fixture_close(void **state)
 {
     (void)state;
+    for (size_t i = 0; i < sizeof kept / sizeof kept[0]; ++i)
+        vkao_effect_destroy(kept[i].effect);
     vkao_context_destroy(fixture.context);
     gpu_destroy(&fixture.gpu);
     /* Objects that outlive their device are reported as it goes. */

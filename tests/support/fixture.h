@@ -44,6 +44,10 @@ int fixture_after_test(void **state);
 /* What a further context on the fixture's device starts from: silent. */
 vkao_context_info fixture_context_info(void);
 
+/* Of the fixture's context, which keeps the last ones: a software driver takes longer to compile an
+ * effect than to run it. Not the caller's to destroy; valid until 31 others have been asked for. */
+vkao_effect *fixture_effect(const vkao_effect_info *info);
+
 /* Fails the test with the tool's error if ok is false. */
 void check(bool ok);
 #define check_vkao(call)                                                                           \
@@ -76,7 +80,6 @@ struct picture {
     bool output_is_color;          /* composite in place */
     bool half_resolution;
     bool staged; /* ao.image is given */
-    vkao_effect *effect;           /* null = one compiled for it */
     VkDeviceMemory scratch_memory; /* null = the library's own */
     VkDeviceSize scratch_offset;
     struct ao_view view;
@@ -89,7 +92,7 @@ struct picture {
 struct picture_gpu {
     struct gpu_image images[SLOT_COUNT];
     vkao_images slots;
-    vkao_effect *effect, *own_effect; /* the second is destroyed with it */
+    vkao_effect *effect; /* the fixture's */
     vkao_frame *frame;
 };
 
@@ -117,6 +120,7 @@ void picture_make(struct picture *p, vkao_stage_flags stages, const struct scene
 
 /* What the picture's frame is an effect of. */
 vkao_effect_info picture_effect_info(const struct picture *p);
+/* Compiled for the context, the caller's to destroy. */
 vkao_effect *picture_effect(const struct picture *p, const vkao_context *context);
 void picture_open(const struct picture *p, struct picture_gpu *g);
 /* These stages alone. */

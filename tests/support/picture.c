@@ -204,8 +204,8 @@ void picture_open(const struct picture *p, struct picture_gpu *g)
     if (p->staged)
         g->slots.ao.image = g->images[SLOT_AO].image;
     picture_frame_info(p, g, &info);
-    g->own_effect = p->effect ? NULL : picture_effect(p, fixture.context);
-    g->effect = p->effect ? p->effect : g->own_effect;
+    const vkao_effect_info effect = picture_effect_info(p);
+    g->effect = fixture_effect(&effect);
     check_vkao(vkao_frame_create(g->effect, &info, &g->frame));
 }
 
@@ -240,7 +240,6 @@ void picture_download(struct picture *p, struct picture_gpu *g)
 void picture_close(struct picture_gpu *g)
 {
     vkao_frame_destroy(g->frame);
-    vkao_effect_destroy(g->own_effect);
     for (int i = 0; i < SLOT_COUNT; ++i)
         gpu_image_destroy(&fixture.gpu, &g->images[i]);
     *g = (struct picture_gpu){.frame = NULL};
