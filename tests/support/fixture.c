@@ -71,6 +71,13 @@ vkao_effect *fixture_effect(const vkao_effect_info *info)
     return effect;
 }
 
+void fixture_forget_effects(void)
+{
+    for (size_t i = 0; i < sizeof kept / sizeof kept[0]; ++i)
+        vkao_effect_destroy(kept[i].effect);
+    memset(kept, 0, sizeof kept);
+}
+
 vkao_context_info fixture_context_info(void)
 {
     vkao_context_info info = gpu_context_info(&fixture.gpu);
@@ -81,8 +88,7 @@ vkao_context_info fixture_context_info(void)
 int fixture_close(void **state)
 {
     (void)state;
-    for (size_t i = 0; i < sizeof kept / sizeof kept[0]; ++i)
-        vkao_effect_destroy(kept[i].effect);
+    fixture_forget_effects();
     vkao_context_destroy(fixture.context);
     gpu_destroy(&fixture.gpu);
     /* Objects that outlive their device are reported as it goes. */

@@ -47,6 +47,8 @@ vkao_context_info fixture_context_info(void);
 /* Of the fixture's context, which keeps the last ones: a software driver takes longer to compile an
  * effect than to run it. Not the caller's to destroy; valid until 31 others have been asked for. */
 vkao_effect *fixture_effect(const vkao_effect_info *info);
+/* Before fixture.context is another. */
+void fixture_forget_effects(void);
 
 /* Fails the test with the tool's error if ok is false. */
 void check(bool ok);

@@ -104,14 +104,14 @@ void check_every_projection(const struct ao_ssao *params, ssao_reference *refere
         double forward, shift, lift;
         bool depth_only, sky;
     } rows[] = {
-        {"perspective, left-handed, y up", false, false, true, 1.0, 0.0, 0.0},
-        {"perspective, right-handed, off-centre", false, false, false, -1.0, 0.3, 0.0},
-        {"orthographic, right-handed", true, false, false, -1.0, 0.0, 0.0},
-        {"orthographic, left-handed, reversed, off-centre", true, true, true, 1.0, 0.5, 0.0},
+        {"perspective, left-handed, y up", false, false, true, 1.0, 0.0, 0.0, false, false},
+        {"perspective, right-handed, off-centre", false, false, false, -1.0, 0.3, 0.0, false, false},
+        {"orthographic, right-handed", true, false, false, -1.0, 0.0, 0.0, false, false},
+        {"orthographic, left-handed, reversed, off-centre", true, true, true, 1.0, 0.5, 0.0, false, false},
         /* The floor turns its back on the origin, but not on the camera. */
-        {"orthographic, lifted", true, false, false, 1.0, 0.0, -2.5},
-        {"perspective, y up, depth only", false, false, true, 1.0, 0.0, 0.0, true},
-        {"orthographic, y up, depth only", true, false, true, -1.0, 0.0, 0.0, true},
+        {"orthographic, lifted", true, false, false, 1.0, 0.0, -2.5, false, false},
+        {"perspective, y up, depth only", false, false, true, 1.0, 0.0, 0.0, true, false},
+        {"orthographic, y up, depth only", true, false, true, -1.0, 0.0, 0.0, true, false},
         {"perspective, sky", false, false, false, -1.0, 0.0, 0.0, false, true},
         {"orthographic, sky", true, false, false, -1.0, 0.0, 0.0, false, true},
     };
