@@ -36,20 +36,11 @@ float local_slope(ivec2 texel, float z)
     return local_slope(surface_z(load_view_z(texel - AXIS)), z, surface_z(load_view_z(texel + AXIS)));
 }
 
-float normal_weight(vec3 normal, ivec2 texel)
-{
-    vec3 other = decode_normal(texel << GRID_SHIFT);
-    if (normal == vec3(0.0) || other == vec3(0.0))
-        return 1.0;
-    return pow(max(dot(normal, other), 1.0e-6), NORMAL_POWER);
-}
-
 vec4 blurred(ivec2 texel, float z)
 {
     float slope = local_slope(texel, z);
     float edge = edge_stop(z, params.sharpness, params.reference_z);
-    bool use_normals = (NORMAL_POWER > 0.0);
-    vec3 normal = use_normals ? decode_normal(texel << GRID_SHIFT) : vec3(0.0);
+    vec4 normal = NORMAL_POWER > 0.0 ? stored_normal(texel << GRID_SHIFT) : vec4(0.0);
     vec4 sum = load_noisy(texel);
     float weights = 1.0;
     int k = -RADIUS;
@@ -59,8 +50,8 @@ vec4 blurred(ivec2 texel, float z)
         if (tap_z > 0.0) {
             float off = off_surface(z, slope, tap_z, local_slope(at, tap_z), float(k));
             float w = blur_weight(k, RADIUS) * max(0.0, 1.0 - edge * off);
-            if (use_normals)
-                w *= normal_weight(normal, at);
+            if (NORMAL_POWER > 0.0)
+                w *= normal_weight(normal, stored_normal(at << GRID_SHIFT), NORMAL_POWER);
             sum += w * load_noisy(at);
             weights += w;
         }

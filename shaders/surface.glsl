@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * What blur and upsampling in buffers share: depths continued by their slope, and normals. */
+ * How alike two texels of a surface are, for blur and upsampling: depths continued by their slope, and normals. */
 #ifndef VKAO_SURFACE_GLSL_
 #define VKAO_SURFACE_GLSL_
+
+#include "view.glsl"
 
 /* What stands for the z of background: no slope leads there, and it is so far off any surface that the square of the
  * distance times the least edge_stop is no float: background weighs exactly nothing, in the blur and in upsampling.
@@ -28,7 +30,7 @@ float local_slope(float before, float z, float after)
 float off_surface(float z, float slope, float tap_z, float tap_slope, float k)
 {
     float off = abs(tap_z - z - slope * k);
-    return (GRID_SHIFT > 0u) ? max(off, abs(tap_z - z - tap_slope * k)) : off;
+    return GRID_SHIFT > 0u ? max(off, abs(tap_z - z - tap_slope * k)) : off;
 }
 
 /* 1 / the distance off the continued slope at which a tap counts nothing; never 0, so that background never counts. */
@@ -44,11 +46,17 @@ float blur_weight(int k, int radius)
     return min(1.0, float(radius + 1 - abs(k)) * (radius < 3 ? 0.5 : 0.25));
 }
 
-/* w is 1 where there is no normal: then the others decide. */
+/* A stored normal of the image; w is 1 where there is none to trust: then depths decide. */
+vec4 stored_normal(ivec2 texel)
+{
+    vec3 n = decode_normal(texel);
+    return vec4(n, n == vec3(0.0) ? 1.0 : 0.0);
+}
+
 float normal_weight(vec4 normal, vec4 other, float power)
 {
     float c = max(max(dot(normal.xyz, other.xyz), 1.0e-6), max(normal.w, other.w));
-    if ((NORMAL_POWER == 8.0)) {
+    if (NORMAL_POWER == 8.0) {
         float c2 = c * c, c4 = c2 * c2;
         return c4 * c4;
     }

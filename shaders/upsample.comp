@@ -16,6 +16,7 @@ layout(push_constant) uniform Block { vkao_dispatch here; };
 layout(binding = VKAO_BINDING_SOURCE) uniform texture2D half_image;
 #include "view.glsl"
 #include "depth.glsl"
+#include "surface.glsl"
 #include "finish.glsl"
 
 float full_view_z(ivec2 texel)
@@ -25,17 +26,14 @@ float full_view_z(ivec2 texel)
 
 float slope_along(ivec2 texel, ivec2 axis, float z)
 {
-    float before = full_view_z(texel - axis), after = full_view_z(texel + axis);
-    float a = before > 0.0 ? z - before : 3.0e38, b = after > 0.0 ? after - z : 3.0e38;
-    float slope = abs(a) < abs(b) ? a : b;
-    return abs(slope) < 3.0e38 ? slope : 0.0;
+    return local_slope(surface_z(full_view_z(texel - axis)), z, surface_z(full_view_z(texel + axis)));
 }
 
 vec4 upsampled(ivec2 texel, float z)
 {
     vec2 slope = vec2(slope_along(texel, ivec2(1, 0), z), slope_along(texel, ivec2(0, 1), z));
-    float edge = params.sharpness / (params.reference_z > 0.0 ? params.reference_z : z);
-    vec3 normal = (NORMAL_POWER > 0.0) ? decode_normal(texel) : vec3(0.0);
+    float edge = edge_stop(z, params.sharpness, params.reference_z);
+    vec4 normal = NORMAL_POWER > 0.0 ? stored_normal(texel) : vec4(0.0);
     vec4 sum = vec4(0.0);
     float weights = 0.0;
     /* Even texels are of half resolution; the others lie in the middle of two or four. */
@@ -48,9 +46,8 @@ vec4 upsampled(ivec2 texel, float z)
                 continue;
             float off = edge * abs(half_z - z - dot(slope, vec2(2 * at - texel)));
             float w = max(0.0, 1.0 - off);
-            vec3 other = normal == vec3(0.0) ? vec3(0.0) : decode_normal(2 * at);
-            if (other != vec3(0.0))
-                w *= pow(max(dot(normal, other), 1.0e-6), NORMAL_POWER);
+            if (NORMAL_POWER > 0.0)
+                w *= normal_weight(normal, stored_normal(2 * at), NORMAL_POWER);
             /* Far below any honest weight: decides only if there is none. */
             w += 1.0e-6 / (1.0 + off * off);
             vec4 v = texelFetch(half_image, at, 0);

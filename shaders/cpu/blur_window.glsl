@@ -10,12 +10,10 @@
 /* Texels beyond the radius whose depths tell slopes: see off_surface. */
 const int MARGIN = int(GRID_SHIFT);
 
-/* A normal, and in w 1 if there is none. */
 vec4 window_normal(ivec2 texel)
 {
     ivec2 low = unpack_texel(params.valid.x), high = unpack_texel(params.valid.y);
-    vec3 n = decode_normal(clamp(texel, low, high - 1) << GRID_SHIFT);
-    return vec4(n, n == vec3(0.0) ? 1.0 : 0.0);
+    return stored_normal(clamp(texel, low, high - 1) << GRID_SHIFT);
 }
 
 /* Row of the ring that holds the image's row y. */

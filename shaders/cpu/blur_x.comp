@@ -37,7 +37,7 @@ void blur(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
 {
     float z[WINDOW], code[WINDOW], slope[WINDOW];
     vec4 normal[WINDOW];
-    bool use_normals = (NORMAL_POWER > 0.0);
+    bool use_normals = NORMAL_POWER > 0.0;
     int z_word = (z_row(texel.y) + texel.x - REACH) >> 2, code_word = (buffer_row(texel.y) + texel.x - REACH) >> 2;
     [[unroll]] for (int j = 0; j < WINDOW / 4; ++j) {
         vec4 z4 = imageLoad(view_z4, z_word + j);

@@ -72,7 +72,7 @@ vec4 normal_weights(ivec2 texel, ivec2 tap)
 /* Four texels of a row. */
 void put(ivec2 texel, vec4 z, vec4 fine)
 {
-    if ((GRID_SHIFT > 0u)) {
+    if (GRID_SHIFT > 0u) {
         ivec4 v = ivec4(fine + (float(VKAO_CODE_OPEN) + 0.5));
         if (texel.y < int(here.rect.y >> 16))
             blurred_ao[(buffer_row(texel.y) + texel.x) >> 2] = uvec2(v.xz | v.yw << 16);
@@ -85,7 +85,7 @@ void put(ivec2 texel, vec4 z, vec4 fine)
 void blur(ivec2 texel)
 {
     vec4 z[WINDOW], slope[WINDOW], fine[WINDOW], normal[WINDOW * VKAO_BLUR_Y_WIDTH];
-    bool use_normals = (NORMAL_POWER > 0.0);
+    bool use_normals = NORMAL_POWER > 0.0;
     [[unroll]] for (int j = 0; j < WINDOW; ++j) {
         ivec2 at = texel + ivec2(0, j - RADIUS - MARGIN);
         z[j] = load_z(at);

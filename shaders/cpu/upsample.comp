@@ -58,8 +58,7 @@ float full_z(ivec2 texel)
 vec4 full_normal(ivec2 texel)
 {
     ivec2 low = unpack_texel(params.image_valid.x), high = unpack_texel(params.image_valid.y);
-    vec3 n = decode_normal(clamp(texel, low, high - 1));
-    return vec4(n, n == vec3(0.0) ? 1.0 : 0.0);
+    return stored_normal(clamp(texel, low, high - 1));
 }
 
 struct Mean {
@@ -91,7 +90,7 @@ float blend(int dx, int dy, float z, vec4 normal, vec2 slope, Neighbour n[4])
             continue;
         float off = edge * abs(n[i].z - z - dot(slope, side));
         float w = 1.0;
-        if ((NORMAL_POWER > 0.0))
+        if (NORMAL_POWER > 0.0)
             w = normal_weight(normal, n[i].normal, NORMAL_POWER);
         add(mean, off, w, n[i].fine);
     }
@@ -126,7 +125,7 @@ void main()
         [[unroll]] for (int row = 0; row < 3; ++row) {
             bool is_half = (i & 1) == 0 && row != 1;
             z[row][i] = is_half ? half_z[row / 2][i / 2] : full_z(texel + ivec2(i, row));
-            normal[row][i] = (NORMAL_POWER > 0.0) ? full_normal(texel + ivec2(i, row)) : vec4(0.0);
+            normal[row][i] = NORMAL_POWER > 0.0 ? full_normal(texel + ivec2(i, row)) : vec4(0.0);
         }
     }
     float row_z[2][VKAO_UPSAMPLE_WIDTH], row[2][VKAO_UPSAMPLE_WIDTH];

@@ -16,7 +16,7 @@ static const float tiny = 0x1p-149f;
 
 /* Cases come in groups of the same compiled settings, which are drawn from a sequence of the group's own: a software
  * driver takes longer to compile an effect than to run it. */
-enum { GROUP = 8 };
+enum { GROUP = 25 };
 
 /* --- Settings --- */
 
@@ -148,7 +148,7 @@ static void lit_images(struct picture *p, struct chance *settings, struct chance
     for (size_t i = 0; i < picture_texels(p) * 4; ++i)
         p->values[SLOT_SPECULAR][i] = i % 4 < 3 ? 1.0 : p->values[SLOT_SPECULAR][i]; /* roughness alone */
     p->composite.multi_bounce = chance_yes(settings, 0.5);
-    if (p->composite.mode < VKAO_COMPOSITE_AO_ONLY)
+    if (p->composite.mode < VKAO_COMPOSITE_AO_ONLY && p->view.normal_encoding)
         p->composite.specular = (vkao_specular)chance_below(settings, bent ? 3 : 2);
     picture_set(p, SLOT_OUTPUT, VK_FORMAT_R16G16B16A16_SFLOAT, NULL);
 }

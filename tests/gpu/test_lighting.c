@@ -119,7 +119,7 @@ static void every_mode_follows_its_formulas(void **state)
         bool cones = p.composite.specular == VKAO_SPECULAR_FROM_BENT &&
                      p.composite.mode != VKAO_COMPOSITE_AO_ONLY;
         check_close(what, p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4, cones ? 1e-4 : 1e-6,
-                    cones ? 2e-3 : 1e-5);
+                    cones ? 2e-3 : 1e-5, cones ? 1e-2 : 1e-5);
         free(want);
         picture_free(&p);
     }

@@ -139,7 +139,8 @@ static void check_bent(struct picture *p, const struct method *m, const char *wh
         ++seen;
     }
     assert_true(seen > texels / 8);
-    check_close(what, angles, zeros, texels, m->bent_degrees, 20.0 * m->bent_degrees);
+    check_close(what, angles, zeros, texels, m->bent_degrees, 20.0 * m->bent_degrees,
+                50.0 * m->bent_degrees);
     ref_scene_free(&scene);
     free(ao);
     free(bent);

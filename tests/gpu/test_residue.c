@@ -319,7 +319,7 @@ static void presets_forget_what_memory_held(void **state)
 {
     (void)state;
     scratch_open();
-    for (uint32_t i = 0; i < 4 * 4; ++i) {
+    for (uint32_t i = 0; i < 4 * 2; ++i) {
         struct picture pictures[COUNT(edges)];
         char what[96];
         for (uint32_t e = 0; e < COUNT(edges); ++e) {
@@ -377,7 +377,7 @@ static void blurs_forget_what_memory_held(void **state)
 {
     (void)state;
     scratch_open();
-    for (uint32_t i = 0; i < COUNT(specials) * 6; ++i) {
+    for (uint32_t i = 0; i < COUNT(specials) * 3; ++i) {
         struct picture pictures[COUNT(edges)];
         char what[96];
         for (uint32_t e = 0; e < COUNT(edges); ++e) {

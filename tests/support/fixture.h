@@ -143,10 +143,9 @@ struct difference {
     double max, mean, p99;
 };
 struct difference difference_of(const double *a, const double *b, size_t count);
-/* Prints the three figures and fails if one of the two exceeds its limit; NaN is never equal to
- * anything. */
+/* Prints the three figures and fails if one exceeds its limit; NaN is never equal to anything. */
 void check_close(const char *what, const double *a, const double *b, size_t count, double mean,
-                 double p99);
+                 double p99, double max);
 /* Bit for bit, NaN never. */
 void check_equal(const char *what, const double *a, const double *b, size_t count);
 double mean_of(const double *v, size_t count);

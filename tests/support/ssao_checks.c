@@ -12,11 +12,11 @@
  * point or ray that flips is worth 2/n, a horizon as much as the step to the next sample, a sector
  * bound of VBAO, which the shader has from a cubic that is off by up to .0053, 1/31 of a slice. */
 static const struct {
-    double mean, p99;
+    double mean, p99, max;
 } tolerances[] = {
-    [VKAO_SSAO_SPHERE] = {1e-4, 1e-3}, [VKAO_SSAO_HEMISPHERE] = {1e-4, 1e-3},
-    [VKAO_SSAO_HBAO] = {1e-4, 1e-3},   [VKAO_SSAO_GTAO] = {1e-4, 1e-3},
-    [VKAO_SSAO_VBAO] = {1e-3, 2.2e-2}, [VKAO_SSAO_RAYMARCH] = {1e-4, 1e-3},
+    [VKAO_SSAO_SPHERE] = {1e-4, 1e-3, 0.07},  [VKAO_SSAO_HEMISPHERE] = {1e-4, 1e-3, 0.07},
+    [VKAO_SSAO_HBAO] = {1e-4, 1e-3, 0.07},    [VKAO_SSAO_GTAO] = {1e-4, 1e-3, 0.07},
+    [VKAO_SSAO_VBAO] = {1e-3, 2.2e-2, 0.15}, [VKAO_SSAO_RAYMARCH] = {1e-4, 1e-3, 0.07},
 };
 
 void check_ssao(struct picture *p, ssao_reference *reference, const char *what)
@@ -28,7 +28,7 @@ void check_ssao(struct picture *p, ssao_reference *reference, const char *what)
     picture_reference_scene(p, &scene);
     reference(&scene, &p->ssao, expected);
     check_close(what, p->values[SLOT_AO], expected, texels, tolerances[p->ssao.method].mean,
-                tolerances[p->ssao.method].p99);
+                tolerances[p->ssao.method].p99, tolerances[p->ssao.method].max);
     /* An image without occlusion would agree with a shader that does nothing. */
     assert_true(mean_of(expected, texels) < 0.995);
     ref_scene_free(&scene);
@@ -91,7 +91,7 @@ void check_world_space_normals(const struct ao_ssao *params, ssao_reference *ref
     picture_run(&p);
     check_ssao(&turned, reference, "world-space normals against the reference");
     check_close("world-space against view-space normals", turned.values[SLOT_AO], p.values[SLOT_AO],
-                picture_texels(&p), 1e-3, 0.02);
+                picture_texels(&p), 1e-3, 0.02, 0.1);
     picture_free(&p);
     picture_free(&turned);
 }

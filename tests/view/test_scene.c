@@ -125,7 +125,7 @@ static void check_lights(struct rig *rig, const struct orbit *camera)
         assert_true(shot.indirect[k] >= 0 && shot.direct[k] >= 0);
     }
     /* Half floats around 1 are 0.001 apart. */
-    check_close("output", got, want, 3 * n, 0.0003, 0.001);
+    check_close("output", got, want, 3 * n, 0.0003, 0.001, 0.02);
     free(want);
     free(got);
     shot_free(&shot);
