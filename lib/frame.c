@@ -2,6 +2,7 @@
 #include "frame.h"
 
 #include "cpu/cpu.h"
+#include "formats.h"
 #include "parameters.h"
 #include "slots.h"
 
@@ -326,6 +327,7 @@ vkao_result vkao_frame_update(vkao_frame *frame, const vkao_images *images)
     if (!frame)
         return VKAO_ERROR_INVALID_ARGUMENT;
     vkao_images known;
+    char now[VKAO_NAME_BYTES], then[VKAO_NAME_BYTES];
     const vkao_context *ctx = frame->ctx;
     vkao_result result = vkao_import(&ctx->log, VKAO_STRUCT_IMAGES, "images", images, &known);
     if (result != VKAO_SUCCESS)
@@ -335,8 +337,9 @@ vkao_result vkao_frame_update(vkao_frame *frame, const vkao_images *images)
                          *is = vkao_slot_image(&known, i);
         if (was->format != is->format)
             return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                               "%s.format is VkFormat %d, the frame was created with %d",
-                               vkao_slot_name(i), (int)is->format, (int)was->format);
+                               "%s.format is %s, the frame was created with %s",
+                               vkao_slot_name(i), vkao_format_name(is->format, now),
+                               vkao_format_name(was->format, then));
         if (!was->image != !is->image)
             return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
                                "%s.image is %s, the frame was created %s it", vkao_slot_name(i),

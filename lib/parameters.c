@@ -4,6 +4,7 @@
  * refusal names field, value and range. */
 #include "parameters.h"
 
+#include "formats.h"
 #include "vk.h"
 
 #include <float.h>
@@ -392,11 +393,12 @@ vkao_result vkao_effect_info_check(const struct vkao_logger *log, const vkao_eff
     if (!out->stages || (out->stages & ~VKAO_STAGE_ALL))
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "effect.stages is 0x%x, want bits of 0x%x", out->stages, VKAO_STAGE_ALL);
+    char name[VKAO_NAME_BYTES];
     if (out->ao_format && !vkao_format_is_ao(out->ao_format))
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "effect.ao_format is VkFormat %d, want R8 or R16 UNORM, R16 or R32 "
-                           "SFLOAT",
-                           (int)out->ao_format);
+                           "effect.ao_format is %s, want R8_UNORM, R16_UNORM, R16_SFLOAT or "
+                           "R32_SFLOAT",
+                           vkao_format_name(out->ao_format, name));
     result = check_all(log, "effect", VK_TRUE, out);
     if (result == VKAO_SUCCESS)
         result = check_combination(log, out);

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "slots.h"
 
+#include "formats.h"
+
 #include <stddef.h>
 
 enum slot_use { SLOT_DEPTH, SLOT_AO, SLOT_COLOR };
@@ -23,6 +25,11 @@ static const struct slot {
     [VKAO_RESOURCE_SPECULAR] = {"images.specular", offsetof(vkao_images, specular), SLOT_COLOR},
 };
 
+static const char *const wants[] = {
+    [SLOT_DEPTH] = "a depth format, R16_UNORM, R16_SFLOAT or R32_SFLOAT",
+    [SLOT_AO] = "R8_UNORM, R16_UNORM, R16_SFLOAT or R32_SFLOAT",
+    [SLOT_COLOR] = "a float, UNORM or SNORM format",
+};
 
 const vkao_image *vkao_slot_image(const vkao_images *images, uint32_t slot)
 {
@@ -74,6 +81,8 @@ static vkao_result check_slot(const struct vkao_program *program, uint32_t i,
 {
     const vkao_context *ctx = program->ctx;
     const char *name = slots[i].name;
+    char is[VKAO_NAME_BYTES], other[VKAO_NAME_BYTES];
+    vkao_format_name(image->format, is);
     if (!image->format && image->view)
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s has a view but no format",
                            name);
@@ -88,21 +97,24 @@ static vkao_result check_slot(const struct vkao_program *program, uint32_t i,
                            "%s.image is given, want it in images.ao only", name);
     if (!format_fits(slots[i].use, image->format))
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "%s.format is VkFormat %d, which cannot hold it", name, (int)image->format);
+                           "%s.format is %s, want %s", name, is, wants[slots[i].use]);
     if (i == VKAO_RESOURCE_AO && writes && image->format != program->settings.ao_format)
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "%s.format is VkFormat %d, but effect.ao_format is %d", name,
-                           (int)image->format, (int)program->settings.ao_format);
+                           "%s.format is %s, but effect.ao_format is %s", name, is,
+                           vkao_format_name(program->settings.ao_format, other));
     if (writes ? image->layout != VK_IMAGE_LAYOUT_GENERAL : reads && !read_layout(image->layout))
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "%s.layout is VkImageLayout %d, want %s", name, (int)image->layout,
+                           "%s.layout is %s, want %s", name, vkao_layout_name(image->layout, other),
                            writes ? "GENERAL" : "a read-only one or GENERAL");
     const VkFormatFeatureFlags want = (reads ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT : 0u) |
                                       (writes ? VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT : 0u);
     if (!vkao_format_can(ctx, image->format, want))
         return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
-                           "%s.format is VkFormat %d, which the device cannot %s", name,
-                           (int)image->format, writes ? "use as a storage image" : "sample");
+                           "%s.format is %s, which the device cannot %s%s", name, is,
+                           writes ? "use as a storage image" : "sample",
+                           writes && vkao_format_is_srgb(image->format)
+                               ? ": make the image with MUTABLE_FORMAT, give a UNORM view of it"
+                               : "");
     return VKAO_SUCCESS;
 }
 

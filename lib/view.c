@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "view.h"
 
-#include "vk.h"
+#include "formats.h"
 
 #include <float.h>
 #include <math.h>
@@ -56,10 +56,19 @@ static vkao_result read_projection(const struct vkao_logger *log, const vkao_vie
         if (m[zero[i]] != 0.0f)
             return vkao_refuse(
                 log, VKAO_ERROR_INVALID_ARGUMENT,
-                "view.projection[%d] is %g, want 0: sheared or rotated projections are "
-                "not supported",
-                zero[i], (double)m[zero[i]]);
+                "view.projection[%d] is %g, want 0: %s", zero[i], (double)m[zero[i]],
+                zero[i] == 2 || zero[i] == 6
+                    ? "the near plane is oblique, or rows stand where columns should; of an oblique "
+                      "view give VIEW_Z, which does not depend on planes, with the plain matrix"
+                    : "sheared and rotated projections are not supported, and m[column * 4 + row] "
+                      "holds columns");
     }
+    /* -near far / (far - near), or near, stands where w's factor of z should, and that where the former should. */
+    if (m[15] == 0.0f && fabsf(m[11]) != 1.0f && fabsf(m[14]) == 1.0f)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.projection is transposed: [11] is %g and [14] is %g, want [11] 1 "
+                           "or -1 in perspective, as m[column * 4 + row] holds columns",
+                           (double)m[11], (double)m[14]);
     bool perspective = m[11] != 0.0f && m[15] == 0.0f,
          orthographic = m[11] == 0.0f && m[15] != 0.0f;
     if ((!perspective && !orthographic) || m[0] == 0.0f || m[5] == 0.0f ||

@@ -68,15 +68,6 @@ bool vkao_vk_table_load(struct vk_table *vk, const vkao_context_info *info, cons
 
 vkao_result vkao_from_vk(VkResult result);
 
-/* Formats that texture2D can read: everything but integers, multi-planar and stencil-only. */
-bool vkao_format_is_sampled_float(VkFormat format);
-/* Formats of AO images. */
-bool vkao_format_is_ao(VkFormat format);
-/* Depth formats and one-component floats. */
-bool vkao_format_is_depth(VkFormat format);
-/* Size of one step of a depth value in [0.5,1), and whether the format floats; 0 for other formats. */
-float vkao_format_depth_step(VkFormat format, bool *floating);
-
 /* Index of a memory type among type_bits with DEVICE_LOCAL, or UINT32_MAX. */
 uint32_t vkao_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits);
 

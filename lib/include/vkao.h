@@ -183,7 +183,9 @@ typedef uint32_t vkao_stage_flags;
 #define VKAO_STAGE_PREPARE 0x8u
 
 typedef enum vkao_depth_encoding {
-    VKAO_DEPTH_PROJECTED = 0, /* device depth z/w in [0,1] as rasterised: standard, reversed or infinite far */
+    /* Device depth z/w in [0,1] as rasterised with the view's own matrix: standard, reversed or infinite far. Depth of
+     * an oblique near plane is of another matrix, which nothing can tell by looking: give VIEW_Z instead. */
+    VKAO_DEPTH_PROJECTED = 0,
     VKAO_DEPTH_VIEW_Z = 1,    /* positive distance along the view axis */
     VKAO_DEPTH_DISTANCE = 2,  /* positive distance from the eye (the Z channel of some ray tracers) */
     VKAO_DEPTH_INVERSE_Z = 3, /* 1 / view z; 0 = infinitely far */

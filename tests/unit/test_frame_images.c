@@ -273,6 +273,37 @@ static void formats_fit_their_slots(void **state)
     expect_formats(colors, COUNT(colors), SPECULAR, true);
 }
 
+static void messages_name_formats_and_layouts(void **state)
+{
+    (void)state;
+    const vkao_image integers = {.format = VK_FORMAT_R8G8B8A8_UINT, .layout = VK_IMAGE_LAYOUT_GENERAL},
+                     attachment = {.format = VK_FORMAT_R8G8B8A8_UNORM,
+                                   .layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL},
+                     unknown = {.format = (VkFormat)1000156000, .layout = VK_IMAGE_LAYOUT_GENERAL},
+                     srgb = {.format = VK_FORMAT_R8G8B8A8_SRGB, .layout = VK_IMAGE_LAYOUT_GENERAL};
+    const struct {
+        const vkao_image *image;
+        vkao_result result;
+        const char *words;
+    } cases[] = {
+        {&integers, VKAO_ERROR_INVALID_ARGUMENT, "R8G8B8A8_UINT (41)"},
+        {&attachment, VKAO_ERROR_INVALID_ARGUMENT, "COLOR_ATTACHMENT_OPTIMAL (2)"},
+        {&unknown, VKAO_ERROR_INVALID_ARGUMENT, "VkFormat (1000156000)"},
+        {&srgb, VKAO_ERROR_UNSUPPORTED, "MUTABLE_FORMAT"},
+    };
+    for (size_t i = 0; i < COUNT(cases); ++i) {
+        struct world w;
+        world_open(&w);
+        set_case(&w, 2 * VKAO_STAGE_ALL);
+        fake_limit_format(&w.fake, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT, 0);
+        const VkImageView view = w.images.output.view;
+        w.images.output = *cases[i].image;
+        w.images.output.view = view;
+        expect_result(&w, cases[i].result, "images.output", cases[i].words);
+        world_close(&w);
+    }
+}
+
 static void view_without_format_is_refused(void **state)
 {
     (void)state;
@@ -437,6 +468,7 @@ int main(void)
         cmocka_unit_test(device_abilities_decide_about_formats),
         cmocka_unit_test(integer_formats_fit_no_slot),
         cmocka_unit_test(formats_fit_their_slots),
+        cmocka_unit_test(messages_name_formats_and_layouts),
         cmocka_unit_test(view_without_format_is_refused),
         cmocka_unit_test(padding_is_refused),
         cmocka_unit_test(each_binding_holds_its_slot),

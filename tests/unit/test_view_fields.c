@@ -109,6 +109,21 @@ static void not_finite_number_is_refused_and_named(void **state)
     world_close(&w);
 }
 
+/* Rows for columns: what is 1 or -1 in w's factor of z lands in [14]. */
+static void transposed_projection_is_refused(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open_frame(&w, VKAO_STAGE_ALL);
+    expect_all_accept(&w, "view.projection");
+    float transposed[16];
+    for (int i = 0; i < 16; ++i)
+        transposed[i] = w.view.projection[i % 4 * 4 + i / 4];
+    memcpy(w.view.projection, transposed, sizeof transposed);
+    expect_all_refuse(&w, "view.projection", "transposed");
+    world_close(&w);
+}
+
 static void projection_that_is_none_is_refused(void **state)
 {
     (void)state;
@@ -118,7 +133,7 @@ static void projection_that_is_none_is_refused(void **state)
         float v;
         const char *value; /* in the log beside view.projection */
     } cases[] = {
-        {false, 1, 0.5f, "[1] is 0.5"},   {false, 2, 0.5f, "[2] is 0.5"},
+        {false, 1, 0.5f, "columns"},       {false, 2, 0.5f, "oblique"},
         {false, 3, 0.5f, "[3] is 0.5"},   {false, 4, 0.5f, "[4] is 0.5"},
         {false, 6, -0.5f, "[6] is -0.5"}, {false, 7, 0.5f, "[7] is 0.5"},
         {true, 1, 0.5f, "[1] is 0.5"},    {true, 4, 0.5f, "[4] is 0.5"},
@@ -285,6 +300,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(integer_out_of_range_is_refused_and_named),
         cmocka_unit_test(not_finite_number_is_refused_and_named),
+        cmocka_unit_test(transposed_projection_is_refused),
         cmocka_unit_test(projection_that_is_none_is_refused),
         cmocka_unit_test(default_view_wants_a_projection),
         cmocka_unit_test(ambiguous_orthographic_view_wants_an_axis),
