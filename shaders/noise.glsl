@@ -36,7 +36,9 @@ vec2 tile_noise(uvec2 texel, uint slices, uint index)
     return vec2(unit_float(turn + index * 3242174889u), unit_float(jitter + index * 2447445414u));
 }
 
-/* cos and sin of pi u, u in [0,1): off by less than 7e-6. The exact ones cost a driver in software ten times that. */
+/* cos and sin of pi u, u in [0,1). The exact ones cost a driver in software ten times that.
+ * s fits sin(pi v) and c fits cos(pi v), both over [-.5, .5], for the least largest error: 5.9e-7
+ * and 6.8e-6. Rounding to floats makes the first 7.5e-7. */
 Real2 half_turn(real u)
 {
     real v = u - 0.5, v2 = v * v;
@@ -45,7 +47,7 @@ Real2 half_turn(real u)
     return Real2(-s, c);
 }
 
-/* cos and sin of 2 pi u. */
+/* cos and sin of 2 pi u, off by less than 1.4e-5. */
 Real2 full_turn(real u)
 {
     Real2 half_way = half_turn(u);
