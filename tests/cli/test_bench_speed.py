@@ -275,7 +275,8 @@ def start_leaves_no_cache_behind(scratch):
     equal(scratch.files(), ['note'], 'files')
     columns = '  '.join(['device', 'context', 'first frame', 'second frame', 'overhead'])
     check(columns in re.sub('  +', '  ', run.stdout), run.stdout)
-    matches(r'(?m)^vbao-default +cold( +-?\d+\.\d){5}\nvbao-default +warm( +-?\d+\.\d){5}$', run.stdout, 'the text')
+    five = r'( +-?\d+\.\d){5}'
+    matches(rf'(?m)^vbao-default +cold{five}\nvbao-default +warm{five}$', run.stdout, 'the text')
 
 
 @case
@@ -330,9 +331,10 @@ def memory_has_a_text(scratch):
 # --- Wrong use ---
 
 @cases([('--size', ('0x5', '64', '64x', 'x64', '64x36x2', '70000x1', '4k', '-1x5'), 'want WxH'),
-        ('--configs', ('vbao-fastest', 'gtao-0x6', 'fast,gtao-3'), 'no setting'),
+        ('--configs', ('vbao-fastest', 'gtao-0x6', 'gtao-65x6', 'gtao-3x257', 'sphere-1025',
+                       'fast,gtao-3'), 'no setting'),
         ('--preset', ('ultra', 'slow,fast'), 'no setting'),
-        ('--method', ('ssao', 'default'), 'no setting'),
+        ('--method', ('ssao', 'default', 'gtao-3x6'), 'no method'),
         ('--runs', ('0', '1001', '2.5', 'many'), 'whole number from 1 to 1000'),
         ('--sky', ('-1', '101', 'all'), 'whole number from 0 to 100'),
         ('--threads', ('-1', '257', 'x'), 'whole number from 0 to 256'),

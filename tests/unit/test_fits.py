@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""The fits in the shaders are as close as their comments say: numbers and errors are read from there."""
+"""The fits in the shaders are as close as their comments say. All numbers come from there."""
 import math
 import os
 import re
@@ -37,9 +37,9 @@ def check(what, error, stated):
 
 def half_turn():
     text, number = text_of('noise.glsl'), r'(\d+\.\d+)'
-    s1, s3, s5, s7 = numbers(rf's = v \* \({number} \+ v2 \* \(-{number} \+ v2 \* \({number} - {number}', text,
-                             'noise.glsl')
-    c0, c2, c4, c6 = numbers(rf'c = {number} \+ v2 \* \(-{number} \+ v2 \* \({number} - {number}', text, 'noise.glsl')
+    four = rf'{number} \+ v2 \* \(-{number} \+ v2 \* \({number} - {number}'
+    s1, s3, s5, s7 = numbers(rf's = v \* \({four}', text, 'noise.glsl')
+    c0, c2, c4, c6 = numbers(rf'c = {four}', text, 'noise.glsl')
     of_sine, of_cosine = numbers(r'least largest error: (\S+) and (\S+)\.', text, 'noise.glsl')
 
     def sine(v):
@@ -49,8 +49,10 @@ def half_turn():
         return c0 + v * v * (-c2 + v * v * (c4 - c6 * v * v))
 
     range_of_fit = span(-0.5, 0.5)
-    check('half_turn, sine', max(abs(sine(v) - math.sin(math.pi * v)) for v in range_of_fit), of_sine)
-    check('half_turn, cosine', max(abs(cosine(v) - math.cos(math.pi * v)) for v in range_of_fit), of_cosine)
+    check('half_turn, sine',
+          max(abs(sine(v) - math.sin(math.pi * v)) for v in range_of_fit), of_sine)
+    check('half_turn, cosine',
+          max(abs(cosine(v) - math.cos(math.pi * v)) for v in range_of_fit), of_cosine)
     stated, = numbers(r'2 pi u, off by less than (\S+)\. ', text, 'noise.glsl')
     turned = [(cosine(v), -sine(v), 2 * math.pi * (v + 0.5)) for v in range_of_fit]
     check('full_turn', max(max(abs(x * x - y * y - math.cos(a)), abs(2 * x * y - math.sin(a)))
@@ -79,17 +81,19 @@ def density_integral():
         low = math.cos(n) * math.sin(n) ** 2 / 2 + math.sin(n) * g(-math.sin(n))
         return 31 * mass(c) / mass(1)
 
-    check('sector bounds', max(abs(bound(fitted, n, c) - bound(exact, n, c))
-                               for n in span(0, math.pi / 2, 60) for c in span(-math.sin(n), 1, 100)), of_sector)
+    check('sector bounds',
+          max(abs(bound(fitted, n, c) - bound(exact, n, c))
+              for n in span(0, math.pi / 2, 60) for c in span(-math.sin(n), 1, 100)), of_sector)
 
 
 def multi_bounce():
     text = text_of('composite.comp')
-    lines = numbers(r'vec3 a = (\S+) \* albedo - (\S+), b = -(\S+) \* albedo \+ (\S+), c = (\S+) \* albedo \+ (\S+);',
-                    text, 'composite.comp')
+    a1, a0, b1, b0, c1, c0 = numbers(
+        r'vec3 a = (\S+) \* albedo - (\S+), b = -(\S+) \* albedo \+ (\S+), '
+        r'c = (\S+) \* albedo \+ (\S+);', text, 'composite.comp')
     stated, = numbers(r'within (\S+) of 1\. ', text, 'composite.comp')
-    a1, a0, b1, b0, c1, c0 = lines
-    check('multi_bounce at 1', max(abs(a1 * p - a0 - b1 * p + b0 + c1 * p + c0 - 1) for p in span(0, 1)), stated)
+    check('multi_bounce at 1',
+          max(abs(a1 * p - a0 - b1 * p + b0 + c1 * p + c0 - 1) for p in span(0, 1)), stated)
 
 
 half_turn()

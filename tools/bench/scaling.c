@@ -35,22 +35,14 @@ static bool add_samples(struct timings *timings, const struct config *config, Vk
                         struct tool_error *err)
 {
     static const unsigned counts[] = {4, 8, 16, 32};
+    const bool has_steps = config_reads(config->method, "step_count");
     struct ao_job job = {0};
     config_apply(config, &job);
-    const char *method = config_method_name(config);
-    bool has_samples = config->method == VKAO_SSAO_SPHERE || config->method == VKAO_SSAO_HEMISPHERE;
-    bool is_raymarch = config->method == VKAO_SSAO_RAYMARCH;
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
-        char name[64];
-        struct config_list list;
-        unsigned first = is_raymarch ? job.ssao.sample_count : job.ssao.slice_count;
-        if (has_samples)
-            snprintf(name, sizeof name, "%s-%u", method, counts[i]);
-        else
-            snprintf(name, sizeof name, "%s-%ux%u", method, first, counts[i]);
-        if (!configs_choose("--scaling", name, &list, err) ||
-            !add(timings, by_samples, counts[i], LARGEST, &list.rows[0], extent, timings->radius,
-                 err))
+        const unsigned samples = has_steps ? job.ssao.sample_count : counts[i];
+        const struct config other =
+            config_of(config->method, samples, job.ssao.slice_count, counts[i]);
+        if (!add(timings, by_samples, counts[i], LARGEST, &other, extent, timings->radius, err))
             return false;
     }
     return true;

@@ -44,7 +44,7 @@ static const struct argument rows[] = {
     {"slices", "N", "of hbao, gtao and vbao (1)", ARGUMENT_COUNT, AT(slices), 1, 64, NULL},
     {"steps", "N", "of hbao, gtao, vbao and raymarch (8)", ARGUMENT_COUNT, AT(steps), 1, 256, NULL},
     {"samples", "N", "of sphere and hemisphere, rays of raymarch (16)", ARGUMENT_COUNT, AT(samples),
-     1, 64, NULL},
+     1, 1024, NULL},
     {"radius", "R", "scene units; the room is 10 deep (0.5)", ARGUMENT_NUMBER, AT(radius), 0, 0,
      NULL},
     {"sky", "PERCENT", "rows that show sky, from the top (0)", ARGUMENT_COUNT, AT(sky), 0, 100,
@@ -152,13 +152,11 @@ static bool name_methods(const struct speed_options *o, struct text *names, stru
     if (!rest && (o->slices || o->steps || o->samples))
         return fail(err, EXIT_USAGE, "--slices, --steps and --samples belong to --method");
     while (rest && *rest) {
-        int length = (int)strcspn(rest, ",");
-        bool has_samples = strncmp(rest, "sphere", 6) == 0 || strncmp(rest, "hemisphere", 10) == 0;
-        bool is_raymarch = strncmp(rest, "raymarch", 8) == 0;
-        if (has_samples)
-            text_add(names, ",%.*s-%u", length, rest, samples);
-        else
-            text_add(names, ",%.*s-%ux%u", length, rest, is_raymarch ? samples : slices, steps);
+        const size_t length = strcspn(rest, ",");
+        vkao_ssao_method method;
+        if (!config_find_method(rest, length, &method))
+            return fail(err, EXIT_USAGE, "--method: no method '%.*s'", (int)length, rest);
+        text_add(names, ",%s", config_of(method, samples, slices, steps).name);
         rest += length + (rest[length] == ',');
     }
     return true;
@@ -182,8 +180,7 @@ static bool choose_configs(struct bench *b, struct tool_error *err)
     text_free(&names);
     for (size_t i = 0; ok && o->bent_normals && i < b->configs.count; i++) {
         const struct config *c = &b->configs.rows[i];
-        if (c->method != VKAO_SSAO_GTAO && c->method != VKAO_SSAO_VBAO &&
-            c->method != VKAO_SSAO_RAYMARCH)
+        if (!config_reads(c->method, "bent_normals"))
             ok = fail(err, EXIT_USAGE, "--bent-normals: %s has none", c->name);
     }
     return ok;
