@@ -38,7 +38,8 @@ vec2 tile_noise(uvec2 texel, uint slices, uint index)
     return vec2(unit_float(turn + index * 3242174889u), unit_float(jitter + index * 2447445414u));
 }
 
-/* cos and sin of pi u, u in [0,1): off by less than 7e-6. The exact ones cost a driver in software ten times that. */
+/* cos and sin of pi u, u in [0,1). The exact ones cost a driver in software ten times that. The polynomials fit sin(pi v)
+ * and cos(pi v) over [-.5, .5] for the least largest error: 5.9e-7, with the rounding of floats 7.5e-7, and 6.8e-6. */
 real half_turn_x(real u)
 {
     real v = u - 0.5, v2 = v * v;

@@ -104,8 +104,9 @@
 #define VKAO_GLSL_SPECULAR_NONE 0
 #define VKAO_GLSL_SPECULAR_FROM_AO 1
 
-/* What vbao guesses of the scene between its samples and behind them, and where it samples; lengths are fractions of
- * the radius, cosines those of the angle to the eye. Found by coordinate search on solid and thin scenes together. */
+/* What vbao guesses of the scene between its samples and behind them, and where it samples. Lengths
+ * are fractions of the radius, cosines those of the angle to the eye. Found by coordinate search, as
+ * tools/bench/fit-vbao does it, on solid and thin scenes together. */
 #define VKAO_VBAO_REACH_SMOOTH 0.80    /* how far the last step goes: the smooth falloff hides what lies beyond */
 #define VKAO_VBAO_REACH_THRESHOLD 1.08 /* samples beyond stand for what lies before them */
 #define VKAO_STEP_LINEAR 0.50          /* distance of step t is q (LINEAR + (1 - LINEAR) q), q = (t + jitter) / steps */

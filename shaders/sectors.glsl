@@ -12,7 +12,9 @@
 
 const float SECTORS = 31.0;
 
-/* g(c) = c (G1 + G3 c^2). Largest error .0053: below half a sector. */
+/* c (G1 + G3 c^2) fits g(c) over [-1, 1]. Its largest error is .0053. On the side that the normal leans to that moves a
+ * sector bound by .21 of a sector at most. On the other side sectors are small: there it moves by .0104 of the slice's
+ * integral at most. */
 const float G1 = 1.0225, G3 = -0.232;
 
 reals g(reals c)

@@ -35,7 +35,7 @@ reals mirrored(float height, real up, vec2 at, real across, real along)
     return both(height * up) + SIDES * both(at.x * across + at.y * along);
 }
 
-/* cos and sin of 2 pi u. */
+/* cos and sin of 2 pi u, off by less than 1.4e-5. */
 Real2 full_turn(real u)
 {
     real x = half_turn_x(u), y = half_turn_y(u);

@@ -94,7 +94,7 @@ bool stage_clock_read(const struct stage_clock *clock, double wall_ms, double ms
     if (!clock->pool)
         return true;
     if (clock->marks > STAGE_CLOCK_MARKS)
-        return fail(err, EXIT_BUG, "%d labels in one recording", clock->marks);
+        return fail(err, EXIT_BUG, "%d marks in one recording", clock->marks);
     VkResult result = vkGetQueryPoolResults(gpu->device, clock->pool, 0, (uint32_t)clock->marks,
                                             sizeof ticks, ticks, sizeof ticks[0],
                                             VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);

@@ -27,9 +27,9 @@ enum { STAGE_CLOCK_MARKS = 64 };
 
 struct stage_clock {
     struct gpu *gpu;
-    VkQueryPool pool;                     /* VK_NULL_HANDLE: the queue has no timestamps */
-    VkCommandBuffer cmd;                  /* while it runs */
-    int marks;                            /* written so far */
+    VkQueryPool pool;                    /* VK_NULL_HANDLE: the queue has no timestamps */
+    VkCommandBuffer cmd;                 /* while it runs */
+    int marks;                           /* written so far */
     enum stage after[STAGE_CLOCK_MARKS]; /* whose time begins at that mark */
 };
 

@@ -1,7 +1,7 @@
-/* SPDX-License-Identifier: MIT
- *
- * How much scratch memory frames take, in the words of vkao_frame_scratch. */
-#include "speed.h"
+/* SPDX-License-Identifier: MIT */
+#include "memory.h"
+
+#include "engine.h"
 
 #include <vulkan/vulkan.h>
 
@@ -21,17 +21,17 @@ enum { KINDS = sizeof kinds / sizeof kinds[0] };
 static bool query(const vkao_context *ctx, const struct kind *kind, VkExtent2D extent, double *mb,
                   struct tool_error *err)
 {
-    const struct speed_features features = {.composite = kind->ao_in_scratch,
-                                            .bent_normals = kind->bent_normals};
-    const struct config config = {.name = "default", .is_preset = true,
-                                  .quality = VKAO_QUALITY_DEFAULT};
+    const struct engine_features features = {.composite = kind->ao_in_scratch,
+                                             .bent_normals = kind->bent_normals};
+    const struct config config = {
+        .name = "default", .is_preset = true, .quality = VKAO_QUALITY_DEFAULT};
     VkMemoryRequirements need;
     vkao_images images;
     vkao_frame_info info;
     vkao_effect *effect = NULL;
-    vkao_effect_info effect_info = speed_effect_info(features, &config);
+    vkao_effect_info effect_info = engine_effect_info(features, &config);
     effect_info.half_resolution = kind->half_resolution;
-    speed_frame_info(features, extent, NULL, &images, &info);
+    engine_frame_info(features, extent, NULL, &images, &info);
     if (kind->ao_in_scratch)
         images.ao = (vkao_image){0};
     vkao_result result = vkao_effect_create(ctx, &effect_info, &effect);
@@ -70,8 +70,8 @@ static bool add_kinds(const vkao_context *ctx, const VkExtent2D *sizes, size_t c
     return true;
 }
 
-bool speed_memory(const char *device, const VkExtent2D *sizes, size_t count, bool markdown,
-                  struct text *text, struct tool_error *err)
+bool memory_report(const char *device, const VkExtent2D *sizes, size_t count, bool markdown,
+                   struct text *text, struct tool_error *err)
 {
     const struct gpu_options options = {.device = device};
     struct gpu gpu;

@@ -1,12 +1,10 @@
-/* SPDX-License-Identifier: MIT
- *
- * The first frame of a process. Drivers compile shaders when a pipeline is made or first used, and
- * keep the result on disk; so every figure comes from a process of its own, whose cache is a fresh
- * directory (cold) or the same one again (warm). */
+/* SPDX-License-Identifier: MIT */
 #define _XOPEN_SOURCE 700 /* nftw */
-#include "speed.h"
+#include "start.h"
 
+#include "engine.h"
 #include "json.h"
+#include "runs.h"
 
 #include <errno.h>
 #include <ftw.h>
@@ -24,40 +22,39 @@ struct message {
 };
 
 /* Frames with their recording and waiting, but without images, which an engine has anyway. */
-static bool run_frames(struct speed_device *d, const struct config *config, const struct room *room,
+static bool run_frames(struct engine *e, const struct config *config, const struct room *room,
                        struct start_times *times, struct tool_error *err)
 {
-    struct speed_images images;
+    struct engine_images images;
     double ms[STAGES], start;
-    if (!speed_images_create(d, room, &images, err))
+    if (!engine_images_create(e, room, &images, err))
         return false;
-    start = speed_now_ms();
-    bool ok = speed_run_once(d, &images, config, ROOM_RADIUS, ms, err);
-    times->first = speed_now_ms() - start;
-    start = speed_now_ms();
-    ok = ok && speed_run_once(d, &images, config, ROOM_RADIUS, ms, err);
-    times->second = speed_now_ms() - start;
-    speed_images_destroy(d, &images);
+    start = runs_now_ms();
+    bool ok = engine_run(e, &images, config, ROOM_RADIUS, ms, err);
+    times->first = runs_now_ms() - start;
+    start = runs_now_ms();
+    ok = ok && engine_run(e, &images, config, ROOM_RADIUS, ms, err);
+    times->second = runs_now_ms() - start;
+    engine_images_destroy(e, &images);
     return ok;
 }
 
 static void run_child(const char *device, const struct config *config, VkExtent2D extent,
                       struct message *m)
 {
-    const struct speed_features none = {0};
-    struct speed_device d;
+    const struct engine_features none = {0};
+    struct engine e;
     struct room room = {0};
-    const double start = speed_now_ms();
-    bool ok = speed_device_create(device, none, &d, &m->err);
-    m->times.device = speed_now_ms() - start;
-    if (ok && speed_device_compile(&d, config, 1, &m->err) &&
-        speed_size_check(&d, extent, &m->err) &&
+    const double start = runs_now_ms();
+    bool ok = engine_create(device, none, &e, &m->err);
+    m->times.device = runs_now_ms() - start;
+    if (ok && engine_compile(&e, config, 1, &m->err) && engine_check_size(&e, extent, &m->err) &&
         room_create(extent.width, extent.height, 0, &room, &m->err)) {
-        snprintf(m->device, sizeof m->device, "%s", d.gpu.properties.deviceName);
-        m->times.context = d.context_ms;
-        run_frames(&d, config, &room, &m->times, &m->err);
+        snprintf(m->device, sizeof m->device, "%s", e.gpu.properties.deviceName);
+        m->times.context = e.compile_ms;
+        run_frames(&e, config, &room, &m->times, &m->err);
     }
-    speed_device_destroy(&d);
+    engine_destroy(&e);
     room_free(&room);
 }
 
@@ -118,10 +115,10 @@ enum { TIMES = 4 }; /* members of start_times */
 
 static struct start_times median_of(float values[TIMES][MAX_RUNS], unsigned runs)
 {
-    return (struct start_times){.device = speed_median(values[0], runs),
-                                .context = speed_median(values[1], runs),
-                                .first = speed_median(values[2], runs),
-                                .second = speed_median(values[3], runs)};
+    return (struct start_times){.device = runs_median(values[0], runs),
+                                .context = runs_median(values[1], runs),
+                                .first = runs_median(values[2], runs),
+                                .second = runs_median(values[3], runs)};
 }
 
 static void keep(float values[TIMES][MAX_RUNS], unsigned run, const struct start_times *times)
@@ -152,9 +149,9 @@ static bool run_pair(const char *device, const struct config *config, VkExtent2D
     return ok;
 }
 
-bool speed_start_measure(const char *device, const struct config *config, VkExtent2D extent,
-                         unsigned runs, char device_name[256], struct speed_start *start,
-                         struct tool_error *err)
+bool start_measure(const char *device, const struct config *config, VkExtent2D extent,
+                   unsigned runs, char device_name[256], struct start *start,
+                   struct tool_error *err)
 {
     static float cold_ms[TIMES][MAX_RUNS], warm_ms[TIMES][MAX_RUNS];
     for (unsigned run = 0; run < runs; run++) {
@@ -165,7 +162,7 @@ bool speed_start_measure(const char *device, const struct config *config, VkExte
         keep(warm_ms, run, &warm.times);
         snprintf(device_name, 256, "%s", cold.device);
     }
-    snprintf(start->name, sizeof start->name, "%s", config->name);
+    start->config = config;
     start->cold = median_of(cold_ms, runs);
     start->warm = median_of(warm_ms, runs);
     return true;
@@ -173,25 +170,23 @@ bool speed_start_measure(const char *device, const struct config *config, VkExte
 
 /* --- Reports --- */
 
-static void add_start(const struct speed_start *start, bool is_warm, bool markdown,
-                      struct text *text)
+static void add_start(const struct start *start, bool is_warm, bool markdown, struct text *text)
 {
     const struct start_times *t = is_warm ? &start->warm : &start->cold;
     text_add(text,
              markdown ? "| %s | %s | %.1f | %.1f | %.1f | %.1f | %.1f |\n"
                       : "%-18s%-6s%11.1f%12.1f%14.1f%14.1f%12.1f\n",
-             start->name, is_warm ? "warm" : "cold", t->device, t->context, t->first, t->second,
-             t->context + t->first - t->second);
+             start->config->name, is_warm ? "warm" : "cold", t->device, t->context, t->first,
+             t->second, t->context + t->first - t->second);
 }
 
-void speed_start_report(const struct speed_start *starts, size_t count, const struct speed *speed,
-                        VkExtent2D extent, bool markdown, struct text *text)
+void start_report(const struct start *starts, size_t count, const char *device, VkExtent2D extent,
+                  unsigned runs, bool markdown, struct text *text)
 {
     text_add(text,
-             "%s%s, %u x %u, milliseconds, medians of %u processes; cold: with an empty shader "
+             "%s, %u x %u, milliseconds, medians of %u processes; cold: with an empty shader "
              "cache%s\n",
-             speed->device, speed->threads, extent.width, extent.height, speed->runs,
-             markdown ? ":" : "");
+             device, extent.width, extent.height, runs, markdown ? ":" : "");
     text_add(text, markdown
                        ? "\n| setting | cache | device | context | first frame | second frame | "
                          "overhead |\n|---|---|---:|---:|---:|---:|---:|\n"
@@ -202,16 +197,16 @@ void speed_start_report(const struct speed_start *starts, size_t count, const st
             add_start(&starts[i], warm, markdown, text);
 }
 
-cJSON *speed_start_json(const struct speed_start *starts, size_t count, unsigned runs)
+cJSON *start_json(const struct start *starts, size_t count, unsigned runs)
 {
     cJSON *list = cJSON_CreateArray();
     for (size_t i = 0; i < 2 * count; i++) {
-        const struct speed_start *start = &starts[i / 2];
+        const struct start *start = &starts[i / 2];
         const struct start_times *t = i % 2 ? &start->warm : &start->cold;
-        char name[SPEED_NAME + 16];
+        char name[64];
         cJSON *object = cJSON_CreateObject();
         cJSON_AddItemToArray(list, object);
-        snprintf(name, sizeof name, "%s start-%s", start->name, i % 2 ? "warm" : "cold");
+        snprintf(name, sizeof name, "%s start-%s", start->config->name, i % 2 ? "warm" : "cold");
         cJSON_AddStringToObject(object, "config", name);
         cJSON_AddStringToObject(object, "stage", stage_name(STAGE_TOTAL));
         json_add_number(object, "median_ms", t->context + t->first);
