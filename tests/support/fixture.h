@@ -7,7 +7,7 @@
 #define VKAO_TESTS_FIXTURE_H_
 
 #include "gpu.h"
-#include "setting.h"
+#include "stage_setting.h"
 #include "lens.h"
 #include "ref_view.h"
 #include "scenes.h"

@@ -32,7 +32,7 @@ static const struct config default_set[] = {
 };
 enum { DEFAULT_COUNT = sizeof default_set / sizeof default_set[0] };
 
-/* What the two numbers of a setting are. The limits are those of struct ao_ssao. */
+/* What the two numbers of a setting are. The limits are those of vkao_effect_info. */
 static const struct method_row {
     const char *name;
     bool has_samples, has_slices, has_steps;
@@ -157,26 +157,22 @@ bool configs_choose(const char *option, const char *names, struct config_list *l
 
 void config_apply(const struct config *config, struct ao_job *job)
 {
-    job->ssao = ao_ssao_default();
-    job->blur = ao_blur_default();
-    job->half_resolution = false;
+    vkao_effect_info *effect = &job->setting.effect;
+    job->setting = setting_default();
     if (config->is_preset) {
-        VkBool32 half_resolution = VK_FALSE;
-        /* The table holds no quality that the library does not know. */
-        (void)ao_preset(config->quality, &half_resolution, &job->ssao, &job->blur);
-        job->half_resolution = half_resolution;
+        setting_apply_preset(&job->setting, config->quality);
         return;
     }
-    job->ssao.method = config->method;
+    effect->method = config->method;
     if (config->samples)
-        job->ssao.sample_count = config->samples;
+        effect->sample_count = config->samples;
     if (config->slices)
-        job->ssao.slice_count = config->slices;
+        effect->slice_count = config->slices;
     if (config->steps)
-        job->ssao.step_count = config->steps;
+        effect->step_count = config->steps;
     /* Averaging takes the noise away without taking detail along. */
     if (config->is_yardstick)
-        job->blur.radius = 0;
+        effect->blur_radius = 0;
 }
 
 void config_describe(const struct config *config, char *text, size_t size)
@@ -184,10 +180,10 @@ void config_describe(const struct config *config, char *text, size_t size)
     struct ao_job job = {0};
     const struct method_row *row = &methods[config->method];
     config_apply(config, &job);
-    unsigned first = row->has_slices ? job.ssao.slice_count : job.ssao.sample_count;
-    const char *half = job.half_resolution ? ", half resolution" : "";
+    unsigned first = row->has_slices ? job.setting.effect.slice_count : job.setting.effect.sample_count;
+    const char *half = job.setting.effect.half_resolution ? ", half resolution" : "";
     if (row->has_steps)
-        snprintf(text, size, "%s %u x %u%s", row->name, first, job.ssao.step_count, half);
+        snprintf(text, size, "%s %u x %u%s", row->name, first, job.setting.effect.step_count, half);
     else
         snprintf(text, size, "%s %u%s", row->name, first, half);
 }

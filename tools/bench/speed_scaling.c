@@ -51,7 +51,7 @@ static bool add_samples(struct speed *speed, const struct config *config, VkExte
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
         char name[64];
         struct config_list list;
-        unsigned first = is_raymarch ? job.ssao.sample_count : job.ssao.slice_count;
+        unsigned first = is_raymarch ? job.setting.effect.sample_count : job.setting.effect.slice_count;
         if (has_samples)
             snprintf(name, sizeof name, "%s-%u", method, counts[i]);
         else

@@ -199,7 +199,8 @@ static bool check_budget(const struct exr_info *info, const struct gbuffer_optio
 {
     const struct role *normal = &g->roles.kind[ROLE_NORMAL], *color = &g->roles.kind[ROLE_COLOR];
     const struct placement placement = placement_of(&g->data_window, &g->display_window);
-    const uint64_t work_texels = ((uint64_t)g->width + placement.left) * (g->height + placement.top);
+    const uint64_t work_texels =
+        ((uint64_t)g->width + placement.left) * (g->height + placement.top);
     uint64_t texel_bytes = sizeof(float),
              for_a_while = info->parts[g->roles.kind[ROLE_DEPTH].part].decode_bytes;
     if (!budget_allows_pixels(&options->budget, info->path, g->width, g->height, err))
@@ -208,11 +209,10 @@ static bool check_budget(const struct exr_info *info, const struct gbuffer_optio
         add_vector(info, g, normal, &texel_bytes, &for_a_while);
     if (options->want_color)
         add_vector(info, g, color, &texel_bytes, &for_a_while);
-    const uint64_t work =
-        work_texels * (options->work_texel_bytes +
-                       (normal->found ? options->work_normals_texel_bytes : 0));
-    const uint64_t bytes = options->held_bytes + work_texels * texel_bytes +
-                           (for_a_while > work ? for_a_while : work);
+    const uint64_t work = work_texels * (options->work_texel_bytes +
+                                         (normal->found ? options->work_normals_texel_bytes : 0));
+    const uint64_t bytes =
+        options->held_bytes + work_texels * texel_bytes + (for_a_while > work ? for_a_while : work);
     return budget_allows_memory(&options->budget, info->path, g->width, g->height, bytes, err);
 }
 

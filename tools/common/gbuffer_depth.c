@@ -104,12 +104,15 @@ static double view_z(const struct gbuffer *g, size_t texel)
     double d = (double)g->depth[texel];
     const float *m = g->view.projection;
     switch (g->view.depth_encoding) {
-    case VKAO_DEPTH_DISTANCE: return d / ray_length(g, texel);
-    case VKAO_DEPTH_INVERSE_Z: return 1.0 / d;
+    case VKAO_DEPTH_DISTANCE:
+        return d / ray_length(g, texel);
+    case VKAO_DEPTH_INVERSE_Z:
+        return 1.0 / d;
     case VKAO_DEPTH_PROJECTED:
         return g->camera.type == CAMERA_ORTHOGRAPHIC ? ((double)m[14] - d) / (double)m[10]
                                                      : (double)m[14] / (d + (double)m[10]);
-    default: return d;
+    default:
+        return d;
     }
 }
 
@@ -173,7 +176,8 @@ static bool check_planes(const struct gbuffer *g, const char *path, struct tool_
         return fail(err, EXIT_CHANNELS, "%s: device depth needs both planes", path);
     }
     bool infinite = isinf(n) || isinf(f);
-    if (!(n < f || n > f) || fmin(n, f) < least_z || (!infinite && fmax(n, f) > largest_z) || (infinite && (g->camera.type == CAMERA_ORTHOGRAPHIC)))
+    if (!(n < f || n > f) || fmin(n, f) < least_z || (!infinite && fmax(n, f) > largest_z) ||
+        (infinite && (g->camera.type == CAMERA_ORTHOGRAPHIC)))
         return fail(err, EXIT_CHANNELS, "%s: planes at %g and %g give no projection", path, n, f);
     return true;
 }

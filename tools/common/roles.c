@@ -278,7 +278,7 @@ static void make_label(const struct search *s, const struct hit *hit, char label
     bool with_part = multi && (!dot || needs_part_name(s, hit->part, channel));
     int length = hit->channel_count == 1 ? (int)strlen(channel) : dot ? (int)(dot - channel) : 0;
     if (length == 0)
-        snprintf(label, ROLE_LABEL_MAX, "%s", multi ? part->name : "(no layer)");
+        snprintf(label, ROLE_LABEL_MAX, "%s", multi ? part->name : ROLE_NO_LAYER);
     else
         snprintf(label, ROLE_LABEL_MAX, "%s%s%.*s", with_part ? part->name : "",
                  with_part ? "/" : "", length, channel);

@@ -105,7 +105,7 @@ static bool build_command(const struct viewer *v, const struct save_names *n, st
                         v->view == VIEW_COMPOSITE && v->live ? VIEW_AO : v->view, command, unsaid);
     if (shows_colour(v))
         text_add(command, " --mode comp");
-    if (v->view == VIEW_BENT && method_has_bent(v->settings[v->active].ssao.method))
+    if (v->view == VIEW_BENT && method_has_bent(v->settings[v->active].effect.method))
         text_add(command, " --bent-normals");
     text_add(command, " --pixel-type float --overwrite always -o ");
     text_add_quoted(command, n->exr);

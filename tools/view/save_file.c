@@ -98,18 +98,14 @@ static bool vkao_draws(enum view_kind view)
 /* The options as vkao would have parsed them from the command line. */
 static struct options output_options(const struct viewer *v, const struct save_names *n)
 {
-    const struct setting s = setting_for_view(&v->settings[v->active], v->view);
     struct options o = v->source.options;
     o.mode = shows_colour(v) ? OUTPUT_COMP : OUTPUT_AO;
     o.pixel_type = EXR_FLOAT;
     o.output = n->exr;
     o.part_name = NULL;
     o.overwrite = 0;
-    o.ssao = s.ssao;
-    o.blur = s.blur;
-    o.composite = s.composite;
-    o.half_resolution = s.half_resolution;
-    o.bent_normals = false;
+    o.setting = setting_as_said(&v->settings[v->active], v->view);
+    o.setting.effect.bent_normals = save_result(v)->shape.bent;
     return o;
 }
 
@@ -160,7 +156,8 @@ bool save_file_values(struct viewer *viewer, const struct save_names *names, str
     files.views[0] = l->files.views[l->view];
     files.view_count = 1;
     r.name = files.views[0].name;
-    r.ssao = options.ssao;
+    r.setting = options.setting;
+    ao_view_describe(&l->gbuffer.view, &r.setting.effect);
     const struct plan_frame frame = {
         .input = input, .output = exr, .preview = vkao_draws(v->view) ? png : NULL};
     bool ok = take_values(v, &r, err) && output_write(&options, &frame, &files, &r, device, err) &&

@@ -114,8 +114,8 @@ unsigned viewer_images_there(const struct viewer *viewer)
 void side_title(const struct viewer *viewer, enum side side, char *text, size_t size)
 {
     const struct setting *s = &viewer->settings[side];
-    snprintf(text, size, "%c %s%s", side == SIDE_A ? 'A' : 'B', method_name(s->ssao.method),
-             s->half_resolution ? " half" : "");
+    snprintf(text, size, "%c %s%s", side == SIDE_A ? 'A' : 'B', method_name(s->effect.method),
+             s->effect.half_resolution ? " half" : "");
 }
 
 /* --- Files --- */
@@ -142,18 +142,18 @@ static void complete_settings(struct viewer *viewer)
     for (int i = 0; i < SIDES; i++) {
         struct setting *s = &viewer->settings[i];
         const struct gbuffer *g = &viewer->source.now.gbuffer;
-        if (!(s->ssao.radius > 0) && viewer->live)
-            s->ssao.radius = live_scene_radius(viewer->live->kind);
-        else if (!(s->ssao.radius > 0))
-            s->ssao.radius = viewer->source.radius;
+        if (!(s->params.radius > 0) && viewer->live)
+            s->params.radius = live_scene_radius(viewer->live->kind);
+        else if (!(s->params.radius > 0))
+            s->params.radius = viewer->source.radius;
         if (!viewer->live && !viewer->bias_is_given[i])
-            s->ssao.bias = automatic_bias(g, s->ssao.radius, s->ssao.bias);
+            s->params.bias = automatic_bias(g, s->params.radius, s->params.bias);
         /* The colour of a live scene is its indirect light. */
-        if (viewer->live && s->composite.mode == VKAO_COMPOSITE_MULTIPLY)
-            s->composite.mode = VKAO_COMPOSITE_INDIRECT;
+        if (viewer->live && s->effect.composite_mode == VKAO_COMPOSITE_MULTIPLY)
+            s->effect.composite_mode = VKAO_COMPOSITE_INDIRECT;
         double far = viewer->live ? viewer->live->camera.distance * 2 : g->max_z;
         if (far > 0)
-            s->composite.debug_distance = (float)far;
+            s->params.debug_distance = (float)far;
     }
 }
 
@@ -170,9 +170,9 @@ bool viewer_load(struct viewer *viewer, size_t frame, size_t view)
     }
     for (int i = 0; other_files && i < SIDES; i++) {
         if (viewer->arguments->options.radius_is_auto)
-            viewer->settings[i].ssao.radius = 0;
+            viewer->settings[i].params.radius = 0;
         if (!viewer->bias_is_given[i])
-            viewer->settings[i].ssao.bias = viewer->arguments->settings[i].ssao.bias;
+            viewer->settings[i].params.bias = viewer->arguments->settings[i].params.bias;
     }
     if (other_files)
         complete_settings(viewer);
