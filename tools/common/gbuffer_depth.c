@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "gbuffer_internal.h"
+#include "median.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -33,7 +34,7 @@ static bool stored_median(const struct gbuffer *g, double *median)
     for (size_t i = 0; i < gbuffer_texels(g); i += step)
         if (is_valid(g->depth[i]))
             values[count++] = (double)g->depth[i];
-    *median = gbuffer_median(values, count);
+    *median = median_of(values, count);
     free(values);
     return true;
 }
@@ -137,7 +138,7 @@ static bool measure(struct gbuffer *g)
         if (i % step == 0)
             values[count++] = z;
     }
-    g->median_z = count ? gbuffer_median(values, count) : g->min_z;
+    g->median_z = count ? median_of(values, count) : g->min_z;
     g->background_share = 1.0 - (double)foreground / (double)gbuffer_texels(g);
     free(values);
     return true;

@@ -104,9 +104,6 @@ const vkao_parameter *option_parameter(const struct option_row *row);
 /* Of a parameter too. */
 struct option_range option_range(const struct option_row *row);
 
-/* Words of --compression. */
-const char *const *option_compressions(size_t *count);
-
 extern const char options_example[];
 /* The text of --help, at most 80 columns; and the options as the man page's source has them. */
 void options_help(struct text *text);

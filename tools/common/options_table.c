@@ -268,21 +268,11 @@ bool apply_normal(struct options *options, const struct option_row *row, const c
     return true;
 }
 
-const char *const *option_compressions(size_t *count)
-{
-    static const char *const names[] = {"none",  "rle", "zips", "zip",  "piz",
-                                        "pxr24", "b44", "b44a", "dwaa", "dwab"};
-    *count = sizeof names / sizeof *names;
-    return names;
-}
-
 bool apply_compression(struct options *options, const struct option_row *row, const char *argument,
                        struct tool_error *err)
 {
-    size_t count;
-    const char *const *names = option_compressions(&count);
-    for (size_t i = 0; i < count; i++)
-        if (strcmp(names[i], argument) == 0)
+    for (size_t i = 0; i < EXR_COMPRESSIONS; i++)
+        if (strcmp(exr_compression_names[i], argument) == 0)
             return apply_text(options, row, argument, err);
     return fail(err, EXIT_USAGE, "--%s is '%s', want %s", row->name, argument, row->help);
 }

@@ -356,12 +356,10 @@ static bool read_camera(struct reader r, const cJSON *root, struct camera *camer
 
 static bool read_compression(const struct reader *r, const cJSON *root, const char **compression)
 {
-    size_t count;
     uint32_t index;
-    const char *const *names = option_compressions(&count);
-    if (!read_word(r, root, "compression", names, count, &index))
+    if (!read_word(r, root, "compression", exr_compression_names, EXR_COMPRESSIONS, &index))
         return false;
-    *compression = names[index];
+    *compression = exr_compression_names[index];
     return true;
 }
 
