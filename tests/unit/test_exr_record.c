@@ -22,20 +22,33 @@ static double uniform(void)
     return (state >> 8) / 16777216.0;
 }
 
-/* Anything that the table allows, floats with all of their digits. */
+static bool is_one_of(const char *name, const char *const *names, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (strcmp(name, names[i]) == 0)
+            return true;
+    return false;
+}
+
+/* Anything that the table allows and options can ask for, floats with all of their digits. */
 static struct setting any_setting(void)
 {
+    static const char *const fixed[] = {"depth_bits",   "noisy_ao", "composite_mode",
+                                        "multi_bounce", "specular", "debug_distance"};
     struct setting s = setting_default();
     uint32_t count;
     const vkao_parameter *all = vkao_parameters(&count);
     for (uint32_t i = 0; i < count; i++) {
         const vkao_parameter *p = &all[i];
+        if (is_one_of(p->name, fixed, sizeof fixed / sizeof *fixed))
+            continue;
         const double most = fmin(p->most, 1e6), value = p->least + (most - p->least) * uniform();
         float numbers[3] = {(float)value, (float)uniform(), (float)uniform()};
         uint32_t word = (uint32_t)(value + 0.5);
         const bool is_number = p->type == VKAO_PARAMETER_FLOAT || p->type == VKAO_PARAMETER_COLOR;
         memcpy(parameter_of(&s, p), is_number ? (const void *)numbers : &word, parameter_bytes(p));
     }
+    s.effect.bent_normals = s.effect.bent_normals && method_has_bent(s.effect.method);
     return s;
 }
 
@@ -195,8 +208,31 @@ static void damaged_values_are_named_with_file_field_and_range(void **unused)
     refuse("\"zip\"", "\"7z\"",
            "a.exr: vkao/params: 'compression' is '7z', want none, rle, zips, zip, piz, pxr24, b44, "
            "b44a, dwaa or dwab");
+    refuse("\"noisy_ao\":false", "\"noisy_ao\":true",
+           "a.exr: vkao/params: 'parameters.noisy_ao' is true, want 0");
+    refuse("\"composite_mode\":\"multiply\"", "\"composite_mode\":\"view-z\"",
+           "a.exr: vkao/params: 'parameters.composite_mode' is 'view-z', want multiply");
+    refuse("\"depth_bits\":0", "\"depth_bits\":17",
+           "a.exr: vkao/params: 'parameters.depth_bits' is 17, want 0");
     refuse("\"parameters\":{", "\"parameters\":7,\"x\":{",
            "a.exr: vkao/params: 'parameters' is 7, want an object { ... }");
+}
+
+static void bent_normals_need_their_method(void **unused)
+{
+    (void)unused;
+    struct setting s = setting_default();
+    const struct gbuffer g = any_gbuffer();
+    const struct options o = {.compression = "zip", .pixel_type = EXR_HALF};
+    struct record r;
+    struct tool_error err = {0};
+    s.effect.bent_normals = VK_TRUE;
+    s.effect.method = VKAO_SSAO_HBAO;
+    char *json = record_write(&o, &s, "", &g, "device");
+    assert_false(record_parse(json, "a.exr", &r, &err));
+    assert_string_equal(err.message, "a.exr: vkao/params: 'parameters.bent_normals' is true, want "
+                                     "false with this method");
+    free(json);
 }
 
 static void other_versions_are_refused(void **unused)
@@ -238,6 +274,7 @@ int main(void)
         cmocka_unit_test(every_parameter_of_the_table_is_in_it),
         cmocka_unit_test(record_reads_back_to_the_bit),
         cmocka_unit_test(damaged_values_are_named_with_file_field_and_range),
+        cmocka_unit_test(bent_normals_need_their_method),
         cmocka_unit_test(other_versions_are_refused),
         cmocka_unit_test(what_is_no_record_is_refused),
     };

@@ -88,8 +88,9 @@ static void every_option_reaches_its_member(void **state)
 /* What has no option of its own: images decide it, --quality, --mode, or the tools have no such image. */
 static void every_parameter_has_an_option_but_these(void **state)
 {
-    static const char *const others[] = {"half_resolution", "noisy_ao", "composite_mode",
-                                         "multi_bounce",    "specular", "debug_distance"};
+    static const char *const others[] = {"half_resolution", "depth_bits",   "noisy_ao",
+                                         "composite_mode",  "multi_bounce", "specular",
+                                         "debug_distance"};
     uint32_t count;
     const vkao_parameter *all = vkao_parameters(&count);
     (void)state;

@@ -152,6 +152,8 @@ static bool wrong(const struct reader *r, const char *key, const cJSON *item, co
         snprintf(is, sizeof is, "%.9g", item->valuedouble);
     else if (cJSON_IsString(item))
         snprintf(is, sizeof is, "'%.100s'", item->valuestring);
+    else if (cJSON_IsBool(item))
+        snprintf(is, sizeof is, cJSON_IsTrue(item) ? "true" : "false");
     else if (item)
         snprintf(is, sizeof is, "something else");
     fail_hint(r->err, "the record is damaged: give --like a file as vkao wrote it, or the settings "
@@ -256,6 +258,35 @@ static bool read_parameter(const struct reader *r, const cJSON *object, const vk
     return true;
 }
 
+/* What no option sets is the library's default in everything that vkao writes. The preset sets half_resolution. */
+static bool can_be_asked_for(const vkao_parameter *p)
+{
+    return option_of_parameter(p) || parameter_is_of_images(p) ||
+           p == parameter_named("half_resolution");
+}
+
+/* No option would make such a setting, and the library might refuse it. */
+static bool check_setting(const struct reader *r, const cJSON *object,
+                          const struct setting *setting)
+{
+    const struct setting standard = setting_default();
+    const char *bent = parameter_named("bent_normals")->name;
+    uint32_t count;
+    const vkao_parameter *all = vkao_parameters(&count);
+    for (uint32_t i = 0; i < count; i++) {
+        if (can_be_asked_for(&all[i]) || parameter_equals(&all[i], setting, &standard))
+            continue;
+        struct text wanted = {0};
+        parameter_add_value(&wanted, &all[i], &standard);
+        wrong(r, all[i].name, cJSON_GetObjectItemCaseSensitive(object, all[i].name),
+              wanted.data ? wanted.data : "the default");
+        text_free(&wanted);
+        return false;
+    }
+    return !setting->effect.bent_normals || method_has_bent(setting->effect.method) ||
+           wrong(r, bent, cJSON_GetObjectItemCaseSensitive(object, bent), "false with this method");
+}
+
 static bool read_parameters(struct reader r, const cJSON *root, struct setting *setting)
 {
     uint32_t count;
@@ -268,7 +299,7 @@ static bool read_parameters(struct reader r, const cJSON *root, struct setting *
     for (uint32_t i = 0; i < count; i++)
         if (!read_parameter(&r, object, &parameters[i], setting))
             return false;
-    return true;
+    return check_setting(&r, object, setting);
 }
 
 /* In (low, high). */

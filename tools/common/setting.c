@@ -133,8 +133,9 @@ void parameter_copy(const vkao_parameter *p, struct setting *to, const struct se
 bool parameter_is_of_images(const vkao_parameter *p)
 {
     static const size_t offsets[] = {
-        offsetof(vkao_effect_info, depth_encoding),  offsetof(vkao_effect_info, depth_bits),
-        offsetof(vkao_effect_info, normal_encoding), offsetof(vkao_effect_info, bent_encoding),
+        offsetof(vkao_effect_info, depth_encoding),
+        offsetof(vkao_effect_info, normal_encoding),
+        offsetof(vkao_effect_info, bent_encoding),
         offsetof(vkao_effect_info, projection),
     };
     for (size_t i = 0; p->is_compiled && i < sizeof offsets / sizeof *offsets; i++)

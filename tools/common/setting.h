@@ -67,7 +67,7 @@ bool parameter_equals(const vkao_parameter *parameter, const struct setting *a,
                       const struct setting *b);
 void parameter_copy(const vkao_parameter *parameter, struct setting *to,
                     const struct setting *from);
-/* Whether the images decide it, and nobody else. */
+/* Whether it is what ao_view_describe sets. */
 bool parameter_is_of_images(const vkao_parameter *parameter);
 
 /* What people may ask for: the range of the table, without a zero that stands for the default. */

@@ -26,11 +26,12 @@ static bool is_at(const vkao_parameter *p, size_t offset)
     return parameter_offset(p) == offset;
 }
 
-/* The view decides whether there are bent normals; nobody asks for AO before the blur as an image of its own. */
+/* The view decides whether there are bent normals; no file says how many bits its depth once had, and nobody asks for AO
+ * before the blur as an image of its own. */
 static bool is_shown(const vkao_parameter *p)
 {
-    return !parameter_is_of_images(p) && !is_at(p, EFFECT(bent_normals)) &&
-           !is_at(p, EFFECT(noisy_ao));
+    return !parameter_is_of_images(p) && !is_at(p, EFFECT(depth_bits)) &&
+           !is_at(p, EFFECT(bent_normals)) && !is_at(p, EFFECT(noisy_ao));
 }
 
 static enum param_group group_of(const vkao_parameter *p)
