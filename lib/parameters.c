@@ -76,11 +76,13 @@ static const vkao_parameter parameters[] = {
     {CHOICE(sphere_form, form_words), .help = "rescaled: a wall is open; literal: the textbook's",
      .stages = VKAO_STAGE_SSAO, .methods = METHOD(SPHERE)},
     {COMPILED(sample_count, UINT), .help = "points or rays per texel", .most = 1024, .standard = 16,
-     .stages = VKAO_STAGE_SSAO, .methods = METHOD(SPHERE) | METHOD(HEMISPHERE) | METHOD(RAYMARCH)},
+     .zero_is_standard = VK_TRUE, .stages = VKAO_STAGE_SSAO,
+     .methods = METHOD(SPHERE) | METHOD(HEMISPHERE) | METHOD(RAYMARCH)},
     {COMPILED(slice_count, UINT), .help = "directions per texel, each to both sides", .most = 64,
-     .standard = 1, .stages = VKAO_STAGE_SSAO, .methods = SLICED},
+     .standard = 1, .zero_is_standard = VK_TRUE, .stages = VKAO_STAGE_SSAO, .methods = SLICED},
     {COMPILED(step_count, UINT), .help = "samples on each side of a slice, or on a ray", .most = 256,
-     .standard = 8, .stages = VKAO_STAGE_SSAO, .methods = SLICED | METHOD(RAYMARCH)},
+     .standard = 8, .zero_is_standard = VK_TRUE, .stages = VKAO_STAGE_SSAO,
+     .methods = SLICED | METHOD(RAYMARCH)},
     {COMPILED(blur_radius, UINT), .help = "texels on each side; 0: intensity and power alone",
      .most = 16, .standard = 3, .stages = VKAO_STAGE_BLUR},
     {COMPILED(blur_normal_power, FLOAT),
@@ -100,7 +102,7 @@ static const vkao_parameter parameters[] = {
     {FREE(bias, FLOAT, "radii"), .help = "how far the scene must stand in front to block", .most = 1,
      .standard = 0.005, .stages = VKAO_STAGE_SSAO},
     {FREE(thickness, FLOAT, ""), .help = "of what is seen, relative to the measured default",
-     .most = 8, .standard = 1, .stages = VKAO_STAGE_SSAO,
+     .most = 8, .standard = 1, .zero_is_standard = VK_TRUE, .stages = VKAO_STAGE_SSAO,
      .methods = METHOD(VBAO) | METHOD(RAYMARCH)},
     {FREE(blocking_scale, FLOAT, "1 / scene units"), .help = "the constant of the literal form",
      .above_least = VK_TRUE, .most = FLT_MAX, .standard = 50, .stages = VKAO_STAGE_SSAO,
@@ -116,7 +118,8 @@ static const vkao_parameter parameters[] = {
     {FREE(tint, COLOR, ""), .help = "linear colour of full occlusion", .most = 1,
      .stages = VKAO_STAGE_COMPOSITE},
     {FREE(debug_distance, FLOAT, "scene units"), .help = "what the depth view shows as white",
-     .most = FLT_MAX, .standard = 100, .stages = VKAO_STAGE_COMPOSITE},
+     .most = FLT_MAX, .standard = 100, .zero_is_standard = VK_TRUE,
+     .stages = VKAO_STAGE_COMPOSITE},
 };
 /* clang-format on */
 enum { PARAMETER_COUNT = sizeof parameters / sizeof parameters[0] };
@@ -325,6 +328,26 @@ static vkao_result check_parameter(const struct vkao_logger *log, const char *na
     }
 }
 
+static bool is_zero(const vkao_parameter *p, const void *structure)
+{
+    const unsigned char *at = (const unsigned char *)structure + p->offset;
+    float number;
+    uint32_t word;
+    memcpy(&number, at, sizeof number);
+    memcpy(&word, at, sizeof word);
+    return p->type == VKAO_PARAMETER_FLOAT ? !(number > 0.0f) : word == 0;
+}
+
+/* Zeros that stand for a default become it. After the checks: nothing is negative. */
+static void fill_zeros(VkBool32 is_compiled, void *structure)
+{
+    for (int i = 0; i < PARAMETER_COUNT; ++i) {
+        const vkao_parameter *p = &parameters[i];
+        if (p->is_compiled == is_compiled && p->zero_is_standard && is_zero(p, structure))
+            put(structure, p);
+    }
+}
+
 static vkao_result check_all(const struct vkao_logger *log, const char *name, VkBool32 is_compiled,
                              const void *structure)
 {
@@ -402,13 +425,9 @@ vkao_result vkao_effect_info_check(const struct vkao_logger *log, const vkao_eff
     result = check_all(log, "effect", VK_TRUE, out);
     if (result == VKAO_SUCCESS)
         result = check_combination(log, out);
-    /* Zeros that stand for a default. */
-    const vkao_effect_info standard = vkao_effect_info_default();
+    fill_zeros(VK_TRUE, out);
     out->struct_size = sizeof *out;
-    out->ao_format = out->ao_format ? out->ao_format : standard.ao_format;
-    out->sample_count = out->sample_count ? out->sample_count : standard.sample_count;
-    out->slice_count = out->slice_count ? out->slice_count : standard.slice_count;
-    out->step_count = out->step_count ? out->step_count : standard.step_count;
+    out->ao_format = out->ao_format ? out->ao_format : VK_FORMAT_R8_UNORM;
     if (!out->bent_encoding)
         out->bent_encoding = out->normal_encoding ? out->normal_encoding : VKAO_NORMALS_XYZ_SNORM;
     return result;
@@ -420,8 +439,6 @@ vkao_result vkao_params_check(const struct vkao_logger *log, const vkao_params *
     vkao_result result = vkao_import(log, VKAO_STRUCT_PARAMS, "params", in, out);
     if (result == VKAO_SUCCESS)
         result = check_all(log, "params", VK_FALSE, out);
-    const vkao_params standard = vkao_params_default();
-    out->thickness = out->thickness > 0.0f ? out->thickness : standard.thickness;
-    out->debug_distance = out->debug_distance > 0.0f ? out->debug_distance : standard.debug_distance;
+    fill_zeros(VK_FALSE, out);
     return result;
 }

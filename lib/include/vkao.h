@@ -510,6 +510,8 @@ typedef struct vkao_parameter {
     VkBool32 is_compiled; /* VK_TRUE: a member of vkao_effect_info; else of vkao_params */
     uint32_t offset;      /* of the member */
     VkBool32 above_least; /* VK_TRUE: least itself is out of range */
+    VkBool32 zero_is_standard; /* VK_TRUE: 0 stands for the default */
+    uint32_t padding;          /* zero */
     double least, most;   /* range; a CHOICE counts from 0 to most */
     double standard;      /* default */
     const char *const *choices; /* words of a CHOICE, most + 1 of them; else NULL */

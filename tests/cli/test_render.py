@@ -142,8 +142,9 @@ def mode_ao_writes_one_half_channel_with_zip(scratch):
     raw = read_raw(scratch.bytes('ao.exr'))[0]
     equal(COMPRESSIONS[raw.attributes['compression'][1][0]], 'zip', 'compression')
     equal(raw.text('vkao/source'), 'in.exr', 'vkao/source')
-    parameters = json.loads(raw.text('vkao/params'))
-    equal((parameters['method'], parameters['radius'], parameters['camera']['fov_x_deg']),
+    record = json.loads(raw.text('vkao/params'))
+    used = record['parameters']
+    equal((used['method'], used['radius'], record['camera']['fov_x_deg']),
           ('vbao', RADIUS, FOV), 'vkao/params')
 
 

@@ -47,9 +47,7 @@ static vkao_image image_of(VkFormat format)
 
 void fuzz_check_job(const struct fuzz_job *job)
 {
-    const struct ao_ssao ssao = ao_ssao_default();
-    const struct ao_blur blur = ao_blur_default();
-    const struct ao_composite composite = ao_composite_default();
+    const struct setting setting = job->setting ? *job->setting : setting_default();
     if (!context)
         create_context();
     const size_t objects = fake.object_count;
@@ -58,21 +56,16 @@ void fuzz_check_job(const struct fuzz_job *job)
     images.normals = image_of(VK_FORMAT_R32G32B32A32_SFLOAT);
     images.ao = image_of(VK_FORMAT_R32_SFLOAT);
     images.color = images.output = image_of(VK_FORMAT_R32G32B32A32_SFLOAT);
-    if (job->bent_normals)
+    if (setting.effect.bent_normals)
         images.bent_normals = image_of(VK_FORMAT_R32G32B32A32_SFLOAT);
-    const struct ao_ssao *used = job->ssao ? job->ssao : &ssao;
-    const struct ao_blur *used_blur = job->blur ? job->blur : &blur;
-    const struct ao_composite *used_composite = job->composite ? job->composite : &composite;
-    vkao_effect_info effect_info =
-        ao_effect(VKAO_STAGE_ALL, job->view, used, used_blur, used_composite);
-    effect_info.half_resolution = job->half_resolution;
-    effect_info.bent_normals = job->bent_normals;
+    vkao_effect_info effect_info = setting.effect;
+    effect_info.stages = VKAO_STAGE_ALL;
+    ao_view_describe(job->view, &effect_info);
     effect_info.ao_format = VK_FORMAT_R32_SFLOAT;
     vkao_frame_info info = vkao_frame_info_default();
     info.extent = (VkExtent2D){job->width, job->height};
     info.images = &images;
     const vkao_view view = ao_library_view(job->view);
-    const vkao_params params = ao_params(used, used_blur, used_composite);
     vkao_effect *effect = NULL;
     vkao_frame *frame = NULL;
     last_error[0] = '\0';
@@ -80,7 +73,7 @@ void fuzz_check_job(const struct fuzz_job *job)
     if (result == VKAO_SUCCESS)
         result = vkao_frame_create(effect, &info, &frame);
     FUZZ_CHECK(result == VKAO_SUCCESS, "%ux%u: %s", job->width, job->height, last_error);
-    result = vkao_cmd_record(frame, fake_command_buffer(&fake), &view, &params);
+    result = vkao_cmd_record(frame, fake_command_buffer(&fake), &view, &setting.params);
     FUZZ_CHECK(result == VKAO_SUCCESS, "%ux%u: %s", job->width, job->height, last_error);
     vkao_frame_destroy(frame);
     vkao_effect_destroy(effect);

@@ -9,11 +9,8 @@
 
 struct fuzz_job {
     uint32_t width, height;
-    bool half_resolution, bent_normals;
     const struct ao_view *view;
-    const struct ao_ssao *ssao; /* NULL = defaults, as the two below */
-    const struct ao_blur *blur;
-    const struct ao_composite *composite;
+    const struct setting *setting; /* NULL = defaults */
 };
 /* Breaks a promise unless the library records all stages of the job, over a driver that computes
  * nothing. */

@@ -326,11 +326,9 @@ static void presets_forget_what_memory_held(void **state)
             struct picture *p = &pictures[e];
             struct chance settings = chance_of(7000 + i),
                           chance = chance_of(8000 + COUNT(edges) * i + e);
-            VkBool32 half;
             make(p, &settings, &chance, &edges[e], FULL);
             const float sharpness = p->blur.sharpness;
-            check_vkao(ao_preset((vkao_quality)(i % 4), &half, &p->ssao, &p->blur));
-            p->half_resolution = half;
+            picture_preset(p, (vkao_quality)(i % 4));
             p->blur.sharpness = e % 2 ? sharpness : p->blur.sharpness;
         }
         snprintf(what, sizeof what, "%u: preset %u", i, i % 4);

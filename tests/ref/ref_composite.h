@@ -4,7 +4,7 @@
 #ifndef VKAO_TESTS_REF_COMPOSITE_H_
 #define VKAO_TESTS_REF_COMPOSITE_H_
 
-#include "setting.h"
+#include "stage_setting.h"
 
 /* One texel: RGBA in, RGBA out. color and direct are read as the mode needs them. */
 void ref_composite(const struct ao_composite *params, double ao, const double color[4],

@@ -5,7 +5,7 @@
 #ifndef VKAO_TESTS_REF_VIEW_H_
 #define VKAO_TESTS_REF_VIEW_H_
 
-#include "setting.h"
+#include "stage_setting.h"
 
 #include <stdbool.h>
 

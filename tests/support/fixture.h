@@ -7,7 +7,7 @@
 #define VKAO_TESTS_FIXTURE_H_
 
 #include "gpu.h"
-#include "setting.h"
+#include "stage_setting.h"
 #include "lens.h"
 #include "ref_view.h"
 #include "scenes.h"
@@ -100,6 +100,8 @@ struct picture_gpu {
 
 /* Default parameters, no slots. */
 void picture_init(struct picture *p, uint32_t width, uint32_t height, vkao_stage_flags stages);
+/* What vkao_preset decides. */
+void picture_preset(struct picture *p, vkao_quality quality);
 void picture_free(struct picture *p);
 uint32_t picture_channels(enum picture_slot slot);
 size_t picture_texels(const struct picture *p);

@@ -18,6 +18,22 @@ void picture_init(struct picture *p, uint32_t width, uint32_t height, vkao_stage
     p->composite = ao_composite_default();
 }
 
+void picture_preset(struct picture *p, vkao_quality quality)
+{
+    vkao_effect_info effect = vkao_effect_info_default();
+    vkao_params params = vkao_params_default();
+    check_vkao(vkao_preset(quality, &effect, &params));
+    p->half_resolution = effect.half_resolution;
+    p->ssao.method = effect.method;
+    p->ssao.slice_count = effect.slice_count;
+    p->ssao.step_count = effect.step_count;
+    p->ssao.bias = params.bias;
+    p->ssao.thickness = params.thickness;
+    p->blur.radius = effect.blur_radius;
+    p->blur.normal_power = effect.blur_normal_power;
+    p->blur.sharpness = params.sharpness;
+}
+
 void picture_free(struct picture *p)
 {
     for (int i = 0; i < SLOT_COUNT; ++i)

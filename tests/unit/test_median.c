@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "gbuffer_internal.h"
+#include "median.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -102,7 +102,7 @@ static void killers_are_sorted(void **state)
     assert_true(rounds > MEDIAN_MOST_ROUNDS);
     memcpy(sorted, a.values, sizeof sorted);
     qsort(sorted, MOST, sizeof *sorted, compare);
-    assert_memory_equal(&(double){gbuffer_median(a.values, MOST)}, &sorted[MOST / 2],
+    assert_memory_equal(&(double){median_of(a.values, MOST)}, &sorted[MOST / 2],
                         sizeof *sorted);
 }
 
@@ -116,7 +116,7 @@ static void median_is_what_sorting_says(void **state)
                 values[i] = value(kind, i, n);
             memcpy(sorted, values, sizeof sorted);
             qsort(sorted, n, sizeof *sorted, compare);
-            assert_memory_equal(&(double){gbuffer_median(values, n)}, &sorted[n / 2],
+            assert_memory_equal(&(double){median_of(values, n)}, &sorted[n / 2],
                                 sizeof *sorted);
             /* and none got lost */
             qsort(values, n, sizeof *values, compare);
@@ -128,7 +128,7 @@ static void median_is_what_sorting_says(void **state)
 static void nothing_has_no_median(void **state)
 {
     (void)state;
-    assert_true(gbuffer_median(NULL, 0) <= 0.0 && gbuffer_median(NULL, 0) >= 0.0);
+    assert_true(median_of(NULL, 0) <= 0.0 && median_of(NULL, 0) >= 0.0);
 }
 
 int main(void)

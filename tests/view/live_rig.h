@@ -8,13 +8,13 @@
 #include "fixture.h"
 #include "scene.h"
 
-enum { RIG_FLIGHTS = 2 };
+enum { RIG_FLIGHTS = 2, RIG_PROJECTIONS = 2 };
 
 struct rig_flight {
     struct live_target target;
     struct gpu_image ao, output;
-    vkao_effect *effect;
-    vkao_frame *frame;
+    vkao_effect *effects[RIG_PROJECTIONS]; /* by vkao_projection */
+    vkao_frame *frames[RIG_PROJECTIONS];
     VkCommandBuffer cmd; /* null while nothing is pending */
     VkFence fence;
 };

@@ -34,16 +34,6 @@ enum { DEFAULT_COUNT = sizeof default_set / sizeof default_set[0] };
 
 /* --- What the library's tables say of the numbers of a setting --- */
 
-static const vkao_parameter *parameter_named(const char *name)
-{
-    uint32_t count;
-    const vkao_parameter *rows = vkao_parameters(&count);
-    for (uint32_t i = 0; i < count; i++)
-        if (strcmp(rows[i].name, name) == 0)
-            return &rows[i];
-    return NULL;
-}
-
 bool config_reads(vkao_ssao_method method, const char *name)
 {
     const vkao_parameter *row = parameter_named(name);
@@ -187,26 +177,22 @@ bool configs_choose(const char *option, const char *names, struct config_list *l
 
 void config_apply(const struct config *config, struct ao_job *job)
 {
-    job->ssao = ao_ssao_default();
-    job->blur = ao_blur_default();
-    job->half_resolution = false;
+    vkao_effect_info *effect = &job->setting.effect;
+    job->setting = setting_default();
     if (config->is_preset) {
-        VkBool32 half_resolution = VK_FALSE;
-        /* The table holds no quality that the library does not know. */
-        (void)ao_preset(config->quality, &half_resolution, &job->ssao, &job->blur);
-        job->half_resolution = half_resolution;
+        setting_apply_preset(&job->setting, config->quality);
         return;
     }
-    job->ssao.method = config->method;
+    effect->method = config->method;
     if (config->samples)
-        job->ssao.sample_count = config->samples;
+        effect->sample_count = config->samples;
     if (config->slices)
-        job->ssao.slice_count = config->slices;
+        effect->slice_count = config->slices;
     if (config->steps)
-        job->ssao.step_count = config->steps;
+        effect->step_count = config->steps;
     /* Averaging takes the noise away without taking detail along. */
     if (config->is_yardstick)
-        job->blur.radius = 0;
+        effect->blur_radius = 0;
 }
 
 void config_describe(const struct config *config, char *text, size_t size)
@@ -214,11 +200,12 @@ void config_describe(const struct config *config, char *text, size_t size)
     struct ao_job job = {0};
     config_apply(config, &job);
     unsigned first =
-        config_reads(config->method, "slice_count") ? job.ssao.slice_count : job.ssao.sample_count;
-    const char *half = job.half_resolution ? ", half resolution" : "";
+        config_reads(config->method, "slice_count") ? job.setting.effect.slice_count
+                                                   : job.setting.effect.sample_count;
+    const char *half = job.setting.effect.half_resolution ? ", half resolution" : "";
     if (config_reads(config->method, "step_count"))
-        snprintf(text, size, "%s %u x %u%s", config_method_name(config), first, job.ssao.step_count,
-                 half);
+        snprintf(text, size, "%s %u x %u%s", config_method_name(config), first,
+                 job.setting.effect.step_count, half);
     else
         snprintf(text, size, "%s %u%s", config_method_name(config), first, half);
 }

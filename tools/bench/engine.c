@@ -35,11 +35,11 @@ static vkao_stage_flags stages_of(struct engine_features features)
 vkao_effect_info engine_effect_info(struct engine_features features, const struct config *config)
 {
     const struct ao_view view = room_view((VkExtent2D){1920, 1080});
-    const struct ao_composite composite = ao_composite_default();
     struct ao_job job = {0};
     config_apply(config, &job);
-    vkao_effect_info info = ao_effect(stages_of(features), &view, &job.ssao, &job.blur, &composite);
-    info.half_resolution = job.half_resolution;
+    vkao_effect_info info = job.setting.effect;
+    info.stages = stages_of(features);
+    ao_view_describe(&view, &info);
     info.bent_normals = features.bent_normals;
     info.ao_format = ao_format;
     return info;
@@ -228,15 +228,13 @@ static const vkao_frame *frame_of(const struct engine *e, const struct engine_im
 static vkao_result record(struct engine *e, const struct engine_images *images,
                           const struct config *config, float radius, VkCommandBuffer cmd)
 {
-    const struct ao_composite composite = ao_composite_default();
     const struct ao_view room = room_view(images->extent);
     const vkao_view view = ao_library_view(&room);
     struct ao_job job = {0};
     config_apply(config, &job);
-    job.ssao.radius = radius;
-    const vkao_params params = ao_params(&job.ssao, &job.blur, &composite);
+    job.setting.params.radius = radius;
     stage_clock_start(&e->clock, cmd);
-    vkao_result result = vkao_cmd_record(frame_of(e, images, config), cmd, &view, &params);
+    vkao_result result = vkao_cmd_record(frame_of(e, images, config), cmd, &view, &job.setting.params);
     stage_clock_stop(&e->clock);
     return result;
 }

@@ -138,11 +138,11 @@ static bool run_once(struct bench *b, struct scene *scene, const struct ao_job *
 
 static struct ao_job make_job(const struct config *config, const struct scene *scene, int falloff)
 {
-    struct ao_job job = {.composite = ao_composite_default()};
+    struct ao_job job = {0};
     scene_fill_job(scene, &job);
     config_apply(config, &job);
-    job.ssao.radius = scene->radius;
-    job.ssao.falloff = (vkao_falloff)falloff;
+    job.setting.params.radius = scene->radius;
+    job.setting.effect.falloff = (vkao_falloff)falloff;
     return job;
 }
 
@@ -169,7 +169,7 @@ static bool compare_with_full(struct bench *b, struct scene *scene, struct ao_jo
                               const float *half, struct quality_cell *cell, struct tool_error *err)
 {
     struct ao_result full;
-    job.half_resolution = false;
+    job.setting.effect.half_resolution = false;
     if (!run_once(b, scene, &job, &full, err))
         return false;
     const struct image_pair pair = {.width = scene->gbuffer.width,
@@ -198,7 +198,7 @@ static bool measure(struct bench *b, struct scene *scene, const struct config *c
     if (ok)
         cell->ms = metrics_quantile(times, b->options->runs, 0.5);
     ok = ok && score(scene, falloff, result.ao, raymarch, cell, err);
-    if (ok && job.half_resolution)
+    if (ok && job.setting.effect.half_resolution)
         ok = compare_with_full(b, scene, job, result.ao, cell, err);
     free(times);
     ao_result_free(&result);
@@ -234,7 +234,7 @@ static bool converge(struct bench *b, struct scene *scene, const struct config *
     cell->ms = 0;
     for (unsigned p = 0; ok && p < passes; p++) {
         struct ao_result result;
-        job.ssao.noise_index = p;
+        job.setting.params.noise_index = p;
         ok = run_once(b, scene, &job, &result, err);
         for (size_t i = 0; ok && i < texels; i++) {
             sums[i] += (double)result.ao[i];

@@ -39,9 +39,9 @@ static bool add_samples(struct timings *timings, const struct config *config, Vk
     struct ao_job job = {0};
     config_apply(config, &job);
     for (size_t i = 0; i < sizeof counts / sizeof counts[0]; i++) {
-        const unsigned samples = has_steps ? job.ssao.sample_count : counts[i];
+        const unsigned samples = has_steps ? job.setting.effect.sample_count : counts[i];
         const struct config other =
-            config_of(config->method, samples, job.ssao.slice_count, counts[i]);
+            config_of(config->method, samples, job.setting.effect.slice_count, counts[i]);
         if (!add(timings, by_samples, counts[i], LARGEST, &other, extent, timings->radius, err))
             return false;
     }

@@ -144,7 +144,7 @@ static bool choose_sizes(struct bench *b, const char *names, struct tool_error *
 /* --method and its numbers, in the names of settings. */
 static bool name_methods(const struct speed_options *o, struct text *names, struct tool_error *err)
 {
-    const struct ao_ssao params = ao_ssao_default();
+    const vkao_effect_info params = vkao_effect_info_default();
     const unsigned slices = o->slices ? o->slices : params.slice_count;
     const unsigned steps = o->steps ? o->steps : params.step_count;
     const unsigned samples = o->samples ? o->samples : params.sample_count;

@@ -84,9 +84,13 @@ void ao_session_destroy(struct ao_session *session)
 
 static const VkFormat ao_format = VK_FORMAT_R32_SFLOAT;
 
-static vkao_stage_flags job_stages(const struct ao_job *job)
+vkao_effect_info ao_job_effect(const struct ao_job *job)
 {
-    return VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (job->color ? VKAO_STAGE_COMPOSITE : 0u);
+    vkao_effect_info effect = job->setting.effect;
+    effect.stages = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (job->color ? VKAO_STAGE_COMPOSITE : 0u);
+    effect.ao_format = ao_format;
+    ao_view_describe(&job->view, &effect);
+    return effect;
 }
 
 static bool create_frame(struct ao_session *session, const struct ao_job *job,
@@ -105,7 +109,7 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
         [IMAGE_AO] = {true, ao_format, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
         [IMAGE_OUTPUT] = {job->color != NULL, VK_FORMAT_R32G32B32A32_SFLOAT,
                           VK_IMAGE_USAGE_STORAGE_BIT},
-        [IMAGE_BENT] = {job->bent_normals, VK_FORMAT_R32G32B32A32_SFLOAT,
+        [IMAGE_BENT] = {job->setting.effect.bent_normals, VK_FORMAT_R32G32B32A32_SFLOAT,
                         VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
     };
     VkExtent2D extent = {job->width, job->height};
@@ -125,7 +129,7 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
         images.color = gpu_image_slot(&session->images[IMAGE_COLOR]);
         images.output = gpu_image_slot(&session->images[IMAGE_OUTPUT]);
     }
-    if (job->bent_normals)
+    if (job->setting.effect.bent_normals)
         images.bent_normals = gpu_image_slot(&session->images[IMAGE_BENT]);
     vkao_result result = vkao_frame_create(session->effect,
                                            &(vkao_frame_info){
@@ -143,14 +147,9 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
 }
 
 /* An effect for this job, if that of the last one does not fit. */
-static bool fit_effect(struct ao_session *session, const struct ao_job *job,
-                       struct tool_error *err)
+static bool fit_effect(struct ao_session *session, const struct ao_job *job, struct tool_error *err)
 {
-    vkao_effect_info info = ao_effect(job_stages(job), &job->view, &job->ssao, &job->blur,
-                                      job->color ? &job->composite : NULL);
-    info.half_resolution = job->half_resolution;
-    info.bent_normals = job->bent_normals;
-    info.ao_format = ao_format;
+    vkao_effect_info info = ao_job_effect(job);
     /* Messages of validation are counted in one thread. */
     info.parallel = session->gpu->messenger ? NULL : parallel_run;
     if (session->effect && memcmp(&session->compiled, &info, sizeof info) == 0)
@@ -217,8 +216,7 @@ static bool record_and_run(struct ao_session *session, const struct ao_job *job,
         vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, session->timestamps, 0);
     }
     const vkao_view view = ao_library_view(&job->view);
-    const vkao_params params = ao_params(&job->ssao, &job->blur, &job->composite);
-    vkao_result result = vkao_cmd_record(session->frame, cmd, &view, &params);
+    vkao_result result = vkao_cmd_record(session->frame, cmd, &view, &job->setting.params);
     if (session->timestamps)
         vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, session->timestamps, 1);
     double start = now_ms();
@@ -266,9 +264,10 @@ static bool run(struct ao_session *session, const struct ao_job *job, struct ao_
     result->ao = download(session, IMAGE_AO, texels, err);
     if (result->ao && job->color)
         result->output = download(session, IMAGE_OUTPUT, texels, err);
-    if (result->ao && job->bent_normals)
+    if (result->ao && job->setting.effect.bent_normals)
         result->bent = download(session, IMAGE_BENT, texels, err);
-    return result->ao && (result->output || !job->color) && (result->bent || !job->bent_normals);
+    return result->ao && (result->output || !job->color) &&
+           (result->bent || !job->setting.effect.bent_normals);
 }
 
 bool ao_run(struct ao_session *session, const struct ao_job *job, struct ao_result *result,

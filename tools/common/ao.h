@@ -15,11 +15,7 @@ struct ao_job {
     const float *normals; /* width * height * 4 (xyz and padding), or NULL; what view.normal_encoding says */
     const float *color;   /* width * height * 4 linear RGBA, or NULL = no composite */
     struct ao_view view;
-    struct ao_ssao ssao;
-    struct ao_blur blur;
-    struct ao_composite composite; /* used if color is given */
-    bool half_resolution;            /* as vkao_effect_info.half_resolution */
-    bool bent_normals;               /* compute result.bent */
+    struct setting setting; /* the job itself decides stages, encodings, projection and ao_format */
 };
 
 struct ao_result {
@@ -43,5 +39,8 @@ void ao_session_destroy(struct ao_session *session);
  * the library refuses view or parameters, whose reason it prints. */
 bool ao_run(struct ao_session *session, const struct ao_job *job, struct ao_result *result, struct tool_error *err);
 void ao_result_free(struct ao_result *result);
+
+/* What a job is compiled for. */
+vkao_effect_info ao_job_effect(const struct ao_job *job);
 
 #endif

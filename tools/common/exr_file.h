@@ -18,6 +18,9 @@ extern "C" {
 
 enum exr_pixel_type { EXR_UINT = 0, EXR_HALF = 1, EXR_FLOAT = 2 };
 
+enum { EXR_COMPRESSIONS = 10 };
+extern const char *const exr_compression_names[EXR_COMPRESSIONS];
+
 struct exr_box {
     int32_t x_min, y_min, x_max, y_max;
 };
@@ -42,8 +45,7 @@ struct exr_part {
     char *name;              /* "" in single-part files without one */
     char *view;              /* "" if the part belongs to no view */
     char *type;              /* "scanlineimage", "tiledimage", "deepscanline", "deeptile" */
-    /* "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab" */
-    const char *compression;
+    const char *compression; /* one of exr_compression_names */
     const char *line_order;  /* "increasing", "decreasing", "random" */
     struct exr_box data_window, display_window;
     float pixel_aspect;

@@ -170,7 +170,6 @@ inline int64_t divide_up(int64_t a, int64_t b)
 }
 
 extern const char *const damaged_hint;
-extern const char *const compression_names[10];
 extern const char *const line_order_names[3];
 
 } // namespace exr

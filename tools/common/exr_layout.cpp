@@ -10,12 +10,12 @@
 #include <cstring>
 #include <map>
 
+const char *const exr_compression_names[EXR_COMPRESSIONS] = {
+    "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"};
+
 namespace exr {
 
-const char *const compression_names[10] = {"none",  "rle", "zips", "zip",  "piz",
-                                           "pxr24", "b44", "b44a", "dwaa", "dwab"};
 const char *const line_order_names[3] = {"increasing", "decreasing", "random"};
-const char *const damaged_hint = "render or copy the file again";
 
 namespace {
 
@@ -310,7 +310,7 @@ void check_sizes(const input_stream &stream, const part_layout &part)
               "%s: truncated or damaged: %" PRId64 " bytes cannot hold %" PRId64 "x%" PRId64
               " pixels of %" PRId64 " bytes with compression %s",
               stream.fileName(), file_bytes, width, part.data.height(), part.pixel_bytes,
-              compression_names[part.compression]);
+              exr_compression_names[part.compression]);
     /* OpenEXR allocates whole tiles, also for images smaller than one. */
     if (part.tiled && part.chunk_bytes > 4 * part.level_bytes + tile_slack_bytes)
         raise(EXIT_INPUT, damaged_hint,

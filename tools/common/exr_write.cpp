@@ -167,8 +167,8 @@ void copy_attributes(const Imf::Header *from, const Imf::Header *first, Imf::Hea
 
 Imf::Compression compression_number(const char *path, const char *name)
 {
-    for (int i = 0; i < int(std::size(compression_names)); i++) {
-        if (strcmp(compression_names[i], name) == 0)
+    for (int i = 0; i < int(EXR_COMPRESSIONS); i++) {
+        if (strcmp(exr_compression_names[i], name) == 0)
             return Imf::Compression(i);
     }
     raise(EXIT_OUTPUT, nullptr, "%s: unknown compression '%s'", path, name);

@@ -1,36 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * What tools and tests let people set, by stage, as panels and command lines show it; and what the library makes of it: an
- * effect to compile, a view and params to record with. */
+ * All that decides the AO of a G-buffer, in the library's own structs; its members by the library's table of parameters, so
+ * that command line, panel, record and man page need no other. */
 #ifndef VKAO_TOOLS_SETTING_H_
 #define VKAO_TOOLS_SETTING_H_
 
+#include "text.h"
 #include "vkao.h"
 
-#ifdef __cplusplus
-extern "C" {
-#endif
-
-/* Members as in vkao_effect_info and vkao_params. */
-struct ao_ssao {
-    vkao_ssao_method method;
-    vkao_falloff falloff;
-    vkao_sphere_form sphere_form;
-    uint32_t sample_count, slice_count, step_count, noise_index;
-    float radius, bias, thickness, blocking_scale;
-};
-
-struct ao_blur {
-    uint32_t radius;
-    float normal_power, sharpness, intensity, power;
-};
-
-struct ao_composite {
-    vkao_composite_mode mode;
-    VkBool32 multi_bounce;
-    vkao_specular specular;
-    float strength, tint[3], debug_distance;
-};
+/* --- What images show --- */
 
 /* vkao_view and what images hold. */
 struct ao_view {
@@ -41,26 +19,68 @@ struct ao_view {
     float projection[16], normal_to_view[9];
 };
 
-struct ao_ssao ao_ssao_default(void);
-struct ao_blur ao_blur_default(void);
-struct ao_composite ao_composite_default(void);
 struct ao_view ao_view_default(void);
-
-/* vkao_preset. Each pointer may be NULL. */
-vkao_result ao_preset(vkao_quality quality, VkBool32 *half_resolution, struct ao_ssao *ssao,
-                      struct ao_blur *blur);
-
-/* What is compiled. blur and composite may be NULL where no stage needs them. The rest of the effect is the caller's:
- * half_resolution, ao_format, bent_normals and so on. */
-vkao_effect_info ao_effect(vkao_stage_flags stages, const struct ao_view *view,
-                           const struct ao_ssao *ssao, const struct ao_blur *blur,
-                           const struct ao_composite *composite);
-/* What is recorded. Each pointer may be NULL. */
-vkao_params ao_params(const struct ao_ssao *ssao, const struct ao_blur *blur,
-                      const struct ao_composite *composite);
 vkao_view ao_library_view(const struct ao_view *view);
+/* The members of an effect that images decide: encodings and projection. */
+void ao_view_describe(const struct ao_view *view, vkao_effect_info *effect);
 
-#ifdef __cplusplus
+/* --- What is wanted of them --- */
+
+struct setting {
+    vkao_effect_info effect;
+    vkao_params params;
+};
+
+struct setting setting_default(void);
+/* What vkao_preset decides; the rest stays. */
+void setting_apply_preset(struct setting *setting, vkao_quality quality);
+
+enum { QUALITY_COUNT = VKAO_QUALITY_BEST + 1 };
+extern const char *const quality_names[QUALITY_COUNT];
+
+const char *method_name(vkao_ssao_method method);
+/* Whether VKAO_STAGE_BLUR can write bent normals after it. */
+bool method_has_bent(vkao_ssao_method method);
+
+/* Of the library: "0.2.0". */
+enum { VERSION_BYTES = 16 };
+void version_string(char version[VERSION_BYTES]);
+
+/* --- One parameter --- */
+
+/* NULL if there is none of that name, or at that offset in struct setting. */
+const vkao_parameter *parameter_named(const char *name);
+const vkao_parameter *parameter_at(size_t offset);
+size_t parameter_offset(const vkao_parameter *parameter);
+
+static inline void *parameter_of(struct setting *setting, const vkao_parameter *parameter)
+{
+    return (char *)setting + parameter_offset(parameter);
 }
-#endif
+static inline const void *parameter_of_const(const struct setting *setting,
+                                             const vkao_parameter *parameter)
+{
+    return (const char *)setting + parameter_offset(parameter);
+}
+size_t parameter_bytes(const vkao_parameter *parameter);
+bool parameter_equals(const vkao_parameter *parameter, const struct setting *a,
+                      const struct setting *b);
+void parameter_copy(const vkao_parameter *parameter, struct setting *to,
+                    const struct setting *from);
+/* Whether it is what ao_view_describe sets. */
+bool parameter_is_of_images(const vkao_parameter *parameter);
+
+/* What people may ask for: the range of the table, without a zero that stands for the default. */
+struct parameter_range {
+    double low, high; /* high: INFINITY if only finite numbers end it */
+    bool low_is_excluded;
+};
+struct parameter_range parameter_range(const vkao_parameter *parameter);
+
+/* A number in as few digits as bring it back, a word, 'R,G,B'; switches are 0 and 1. */
+void parameter_add_value(struct text *text, const vkao_parameter *parameter,
+                         const struct setting *setting);
+/* As few digits as text_to_number and a cast make the same float of. */
+void text_add_float(struct text *text, float value);
+
 #endif

@@ -14,44 +14,49 @@ static bool library_ok(struct tool_error *err, const char *call, vkao_result res
 
 /* --- Frame and images --- */
 
-static struct ao_composite composite_of(const struct inputs *inputs, const struct setting *setting,
-                                        enum view_kind view)
+/* What of the composite the images and the view allow. */
+static void fit_composite(vkao_effect_info *e, const struct inputs *inputs, enum view_kind view)
 {
-    struct ao_composite p = setting->composite;
     const bool color = inputs->images.color.format != VK_FORMAT_UNDEFINED;
     if (view == VIEW_DEPTH)
-        p.mode = VKAO_COMPOSITE_VIEW_Z;
+        e->composite_mode = VKAO_COMPOSITE_VIEW_Z;
     else if (view == VIEW_NORMALS)
-        p.mode = VKAO_COMPOSITE_NORMALS;
+        e->composite_mode = VKAO_COMPOSITE_NORMALS;
     else if (view == VIEW_BENT)
-        p.mode = VKAO_COMPOSITE_BENT_NORMALS;
-    else if (!color || (p.mode == VKAO_COMPOSITE_INDIRECT && !inputs->images.direct.format))
-        p.mode = color ? VKAO_COMPOSITE_MULTIPLY : VKAO_COMPOSITE_AO_ONLY;
+        e->composite_mode = VKAO_COMPOSITE_BENT_NORMALS;
+    else if (!color ||
+             (e->composite_mode == VKAO_COMPOSITE_INDIRECT && !inputs->images.direct.format))
+        e->composite_mode = color ? VKAO_COMPOSITE_MULTIPLY : VKAO_COMPOSITE_AO_ONLY;
     if (view != VIEW_COMPOSITE || !inputs->images.albedo.format)
-        p.multi_bounce = VK_FALSE;
+        e->multi_bounce = VK_FALSE;
     if (view != VIEW_COMPOSITE || !inputs->images.specular.format || !inputs->view.normal_encoding)
-        p.specular = VKAO_SPECULAR_NONE;
-    return p;
+        e->specular = VKAO_SPECULAR_NONE;
 }
 
 static struct shape shape_of(const struct inputs *inputs, const struct setting *setting,
                              enum view_kind view)
 {
-    const struct setting used = setting_for_view(setting, view);
-    const struct ao_composite composite = composite_of(inputs, setting, view);
+    const vkao_effect_info standard = vkao_effect_info_default();
     struct shape s;
     memset(&s, 0, sizeof s);
     s.extent = inputs->extent;
-    s.bent = view == VIEW_BENT && method_has_bent(setting->ssao.method);
+    s.bent = view == VIEW_BENT && method_has_bent(setting->effect.method);
     s.composite = view == VIEW_COMPOSITE || view == VIEW_DEPTH || view == VIEW_NORMALS || s.bent;
     s.inputs = inputs->images;
     if (view != VIEW_COMPOSITE) {
         const vkao_image none = {0};
         s.inputs.color = s.inputs.direct = s.inputs.albedo = s.inputs.specular = none;
     }
-    s.effect = ao_effect(VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (s.composite ? VKAO_STAGE_COMPOSITE : 0u),
-                         &inputs->view, &used.ssao, &used.blur, s.composite ? &composite : NULL);
-    s.effect.half_resolution = used.half_resolution;
+    s.effect = setting_for_view(setting, view).effect;
+    s.effect.stages = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (s.composite ? VKAO_STAGE_COMPOSITE : 0u);
+    ao_view_describe(&inputs->view, &s.effect);
+    if (s.composite) {
+        fit_composite(&s.effect, inputs, view);
+    } else { /* nothing is compiled anew when it changes */
+        s.effect.composite_mode = standard.composite_mode;
+        s.effect.multi_bounce = standard.multi_bounce;
+        s.effect.specular = standard.specular;
+    }
     s.effect.bent_normals = s.bent;
     s.effect.ao_format = VK_FORMAT_R32_SFLOAT;
     return s;
@@ -85,16 +90,17 @@ bool computation_create(struct computation *c, struct gpu *gpu, const vkao_conte
         images.bent_normals = gpu_image_slot(&c->bent);
     if (shape.composite)
         images.output = gpu_image_slot(&c->output);
-    ok = ok &&
-         library_ok(err, "vkao_effect_create", vkao_effect_create(ctx, &shape.effect, &c->effect)) &&
-         library_ok(err, "vkao_frame_create",
-                    vkao_frame_create(c->effect,
-                                      &(vkao_frame_info){
-                                          .struct_size = sizeof(vkao_frame_info),
-                                          .extent = shape.extent,
-                                          .images = &images,
-                                      },
-                                      &c->frame));
+    ok =
+        ok &&
+        library_ok(err, "vkao_effect_create", vkao_effect_create(ctx, &shape.effect, &c->effect)) &&
+        library_ok(err, "vkao_frame_create",
+                   vkao_frame_create(c->effect,
+                                     &(vkao_frame_info){
+                                         .struct_size = sizeof(vkao_frame_info),
+                                         .extent = shape.extent,
+                                         .images = &images,
+                                     },
+                                     &c->frame));
     if (!ok)
         computation_destroy(c);
     return ok;
@@ -141,9 +147,7 @@ bool computation_record(const struct computation *c, VkCommandBuffer cmd,
     const VkPipelineStageFlags readers =
         VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
     const struct setting s = setting_for_view(setting, view);
-    const struct ao_composite composite = composite_of(inputs, &s, view);
     const vkao_view library_view = ao_library_view(&inputs->view);
-    const vkao_params recorded = ao_params(&s.ssao, &s.blur, &composite);
     if (pool)
         vkCmdResetQueryPool(cmd, pool, query, STAGES + 1);
     /* The display and the probe of earlier frames read the results -> vkao writes them. */
@@ -155,7 +159,7 @@ bool computation_record(const struct computation *c, VkCommandBuffer cmd,
     vkao_result result = VKAO_SUCCESS;
     for (uint32_t i = 0; i < STAGES; i++) {
         if (result == VKAO_SUCCESS && (stages[i] != VKAO_STAGE_COMPOSITE || c->shape.composite))
-            result = vkao_cmd_stage(c->frame, cmd, stages[i], &library_view, &recorded);
+            result = vkao_cmd_stage(c->frame, cmd, stages[i], &library_view, &s.params);
         stamp(cmd, pool, query + i + 1);
     }
     /* vkao wrote the results -> the display and the probe read them. */

@@ -6,9 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { MAX_OPTIONS = 96, COLUMNS = 80, HELP_COLUMN = 30 };
-
-static const char example[] = "example: vkao beauty.####.exr -o ao.####.exr --frames 1001-1100";
+const char options_example[] = "example: vkao beauty.####.exr -o ao.####.exr --frames 1001-1100";
 
 static const struct {
     const char *name;
@@ -22,45 +20,6 @@ static const char *command_name(enum command command)
         if (commands[i].command == command)
             return commands[i].name;
     return "";
-}
-
-/* --- Help --- */
-
-static void add_option(struct text *text, const struct option_row *row)
-{
-    char left[80], help[512];
-    char letter[8] = "    ";
-    if (row->letter)
-        snprintf(letter, sizeof letter, "-%c, ", row->letter);
-    int used = snprintf(left, sizeof left, "  %s--%s%s%s", letter, row->name,
-                        row->argument ? " " : "", row->argument ? row->argument : "");
-    bool tell = row->fallback && strcmp(row->fallback, "auto") != 0 && row->apply != apply_text;
-    snprintf(help, sizeof help, "%s%s%s%s", row->help, tell ? " (default: " : "",
-             tell ? row->fallback : "", tell ? ")" : "");
-    if (used + 2 > HELP_COLUMN)
-        text_add(text, "%s\n%*s", left, HELP_COLUMN, "");
-    else
-        text_add(text, "%-*s", HELP_COLUMN, left);
-    text_add_wrapped(text, help, HELP_COLUMN, COLUMNS);
-}
-
-void options_help(struct text *text)
-{
-    text_add(text, "Usage: vkao [render] INPUT.exr -o OUTPUT.exr [OPTION]...\n"
-                   "       vkao inspect INPUT.exr [--json] [OPTION]...\n"
-                   "       vkao devices [--json]\n"
-                   "\n"
-                   "Ambient occlusion from the depth and the normals of OpenEXR files. INPUT and\n"
-                   "OUTPUT may hold a frame token: ####, %%04d or $F4.\n");
-    for (size_t i = 0; i < option_table_count; i++) {
-        if (option_table[i].heading)
-            text_add(text, "\n%s:\n", option_table[i].heading);
-        add_option(text, &option_table[i]);
-    }
-    text_add(text,
-             "\nExit status: 0 done, 1 some frames failed, 2 usage, 3 input, 4 channels or\n"
-             "conventions, 5 Vulkan device, 6 output, 33 out of memory.\n\n%s\n",
-             example);
 }
 
 /* --- Parsing --- */
@@ -78,7 +37,7 @@ static bool fail_unknown(const char *argument, struct tool_error *err)
             best = option_table[i].name;
         }
     }
-    fail_hint(err, "%s", best ? example : "'vkao --help' lists the options");
+    fail_hint(err, "%s", best ? options_example : "'vkao --help' lists the options");
     if (best)
         return fail(err, EXIT_USAGE, "unknown option '--%s' (did you mean --%s?)", name, best);
     return fail(err, EXIT_USAGE, "unknown option '--%s'", name);
@@ -90,7 +49,7 @@ static bool fail_option(char **argv, struct tool_error *err)
     if (optopt == 0 || optopt >= MAX_OPTIONS * 256)
         return fail_unknown(argv[optind - 1], err);
     if (strncmp(argv[optind - 1], "--", 2) == 0) {
-        fail_hint(err, "%s", example);
+        fail_hint(err, "%s", options_example);
         return fail(err, EXIT_USAGE, "option '%s' takes no argument", argv[optind - 1]);
     }
     fail_hint(err, "'vkao --help' lists the options");
@@ -99,7 +58,7 @@ static bool fail_option(char **argv, struct tool_error *err)
 
 static bool fail_argument(char **argv, struct tool_error *err)
 {
-    fail_hint(err, "%s", example);
+    fail_hint(err, "%s", options_example);
     return fail(err, EXIT_USAGE, "option '%s' needs an argument", argv[optind - 1]);
 }
 
@@ -136,13 +95,7 @@ static const struct option_row *row_of(int code)
 
 static bool apply_defaults(struct options *options, struct tool_error *err)
 {
-    *options = (struct options){.command = COMMAND_RENDER,
-                                .ssao = ao_ssao_default(),
-                                .blur = ao_blur_default(),
-                                .composite = ao_composite_default()};
-    /* What --quality fills unless it is given. */
-    options->ssao.slice_count = options->ssao.step_count = 0;
-    options->ssao.thickness = 0.0f;
+    *options = (struct options){.command = COMMAND_RENDER, .asked = setting_default()};
     for (size_t i = 0; i < option_table_count; i++) {
         const struct option_row *row = &option_table[i];
         if (row->fallback && !row->apply(options, row, row->fallback, err))
@@ -174,6 +127,7 @@ static bool parse_options(int argc, char **argv, struct options *options, struct
             fail_hint(err, "'vkao --help' explains the options");
             return false;
         }
+        options->given[row - option_table] = true;
     }
     return true;
 }
@@ -184,46 +138,22 @@ static bool fail_positional(const char *first, const char *second, struct tool_e
         if (text_distance(first, commands[i].name) <= 2)
             return fail(err, EXIT_USAGE, "unknown command '%s' (did you mean %s?)", first,
                         commands[i].name);
-    fail_hint(err, "quote patterns, so that the shell leaves them alone; %s", example);
+    fail_hint(err, "quote patterns, so that the shell leaves them alone; %s", options_example);
     return fail(err, EXIT_USAGE, "one INPUT at a time, got '%s' and '%s'", first, second);
-}
-
-/* The preset fills what was not given. Only vbao was chosen with it; the other methods take their samples as they are. */
-static void apply_quality(struct options *o)
-{
-    VkBool32 half_resolution = VK_FALSE;
-    struct ao_ssao ssao = o->ssao;
-    struct ao_blur blur = o->blur;
-    /* The table knows no other quality. */
-    (void)ao_preset((vkao_quality)o->quality, &half_resolution, &ssao, &blur);
-    o->half_resolution = half_resolution;
-    if (!o->ssao.slice_count)
-        o->ssao.slice_count = ssao.slice_count;
-    if (!o->ssao.step_count)
-        o->ssao.step_count = ssao.step_count;
-    if (!(o->ssao.thickness > 0.0f))
-        o->ssao.thickness = ssao.thickness;
-    if (o->blur.radius == BLUR_BY_QUALITY)
-        o->blur.radius = blur.radius;
-    if (o->blur.normal_power < 0.0f)
-        o->blur.normal_power = blur.normal_power;
 }
 
 static bool check_together(const struct options *o, struct tool_error *err)
 {
     if (o->command != COMMAND_DEVICES && !o->input) {
-        fail_hint(err, "%s", example);
+        fail_hint(err, "%s", options_example);
         return fail(err, EXIT_USAGE, "no INPUT given");
     }
     if (o->command == COMMAND_DEVICES && o->input)
         return fail(err, EXIT_USAGE, "'vkao devices' takes no INPUT, got '%s'", o->input);
     if (o->command == COMMAND_RENDER && !o->output) {
-        fail_hint(err, "%s", example);
+        fail_hint(err, "%s", options_example);
         return fail(err, EXIT_USAGE, "no output given: -o FILE");
     }
-    if (o->bent_normals && o->ssao.method != VKAO_SSAO_VBAO && o->ssao.method != VKAO_SSAO_GTAO &&
-        o->ssao.method != VKAO_SSAO_RAYMARCH)
-        return fail(err, EXIT_USAGE, "--bent-normals needs --method vbao, gtao or raymarch");
     if (o->gbuffer.camera.fov_deg > 0 && o->gbuffer.camera.ortho_width > 0)
         return fail(err, EXIT_USAGE, "--fov and --ortho exclude each other");
     return true;
@@ -251,7 +181,68 @@ bool options_parse(int argc, char **argv, struct options *options, struct tool_e
         options->input = argv[optind++];
     if (optind < argc)
         return fail_positional(options->input, argv[optind], err);
-    options->gbuffer.want_color = options->mode == OUTPUT_COMP;
-    apply_quality(options);
-    return check_together(options, err);
+    return check_together(options, err) && options_settle(options, NULL, err);
+}
+
+/* --- Options, preset and record together --- */
+
+bool option_is_given(const struct options *options, const char *name)
+{
+    for (size_t i = 0; i < option_table_count; i++)
+        if (strcmp(option_table[i].name, name) == 0)
+            return options->given[i];
+    return false;
+}
+
+/* The preset decides how much is computed, not what: only vbao was chosen with it, and the other methods take its samples
+ * as they are. */
+static void apply_quality(struct setting *s, int quality)
+{
+    const struct setting before = *s;
+    setting_apply_preset(s, (vkao_quality)quality);
+    s->effect.method = before.effect.method;
+    s->params.bias = before.params.bias;
+    s->params.sharpness = before.params.sharpness;
+}
+
+static bool is_left(const struct options *o, const char *name)
+{
+    for (size_t i = 0; i < option_table_count; i++)
+        if (strcmp(option_table[i].name, name) == 0)
+            return !o->given[i] || o->automatic[i];
+    return true;
+}
+
+static bool fail_bent_normals(struct tool_error *err)
+{
+    struct text list = {0};
+    text_add_list(&list, parameter_named("method")->choices,
+                  parameter_named("bent_normals")->methods, "or");
+    fail(err, EXIT_USAGE, "--bent-normals needs --method %s", list.data ? list.data : "");
+    text_free(&list);
+    return false;
+}
+
+bool options_settle(struct options *options, const struct setting *like, struct tool_error *err)
+{
+    struct options *o = options;
+    struct setting standard = setting_default();
+    apply_quality(&standard, o->quality);
+    o->setting = like ? *like : standard;
+    if (like && option_is_given(o, "quality"))
+        apply_quality(&o->setting, o->quality);
+    for (size_t i = 0; i < option_table_count; i++) {
+        const vkao_parameter *p = o->given[i] ? option_parameter(&option_table[i]) : NULL;
+        if (p)
+            parameter_copy(p, &o->setting, o->automatic[i] ? &standard : &o->asked);
+    }
+    o->radius_is_auto = is_left(o, "radius") && (!like || option_is_given(o, "radius"));
+    o->bias_is_given = like || !is_left(o, "bias");
+    o->gbuffer.want_color = o->mode == OUTPUT_COMP;
+    /* A record may bring another method. */
+    const bool all_is_known = like || !o->like;
+    if (all_is_known && o->setting.effect.bent_normals &&
+        !method_has_bent(o->setting.effect.method))
+        return fail_bent_normals(err);
+    return true;
 }

@@ -16,7 +16,7 @@ struct rendered_view {
     const char *name; /* "" or the view */
     struct gbuffer gbuffer;
     struct ao_result result;
-    struct ao_ssao ssao; /* as resolved: radius, bias */
+    struct setting setting; /* as used */
 };
 
 /* Whether the names of the new part and of the previews of several views are free, asked before any
@@ -27,10 +27,5 @@ bool output_check_names(const struct options *options, const struct plan_frame *
 bool output_write(const struct options *options, const struct plan_frame *frame,
                   const struct frame_source *source, const struct rendered_view *views,
                   const char *device, struct tool_error *err);
-
-/* The record that goes into the attribute vkao/params: JSON on one line, malloc'ed; NULL if memory
- * runs out. */
-char *output_params_json(const struct options *options, const struct rendered_view *view,
-                         const char *device);
 
 #endif

@@ -1,16 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Opening of files, and the errors of the exr_*.cpp files. */
+ * Bytes of a file, and the errors of the exr_*.cpp files. */
 #include "exr_internal.h"
 
-#include <Iex.h>
-#include <ImfChannelList.h>
-#include <ImfThreading.h>
+#include <OpenEXRConfig.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdarg>
-#include <cstdlib>
 #include <cstring>
 
 #include <fcntl.h>
@@ -18,6 +15,8 @@
 #include <unistd.h>
 
 namespace exr {
+
+const char *const damaged_hint = "render or copy the file again";
 
 void raise(exit_code code, const char *hint, const char *format, ...)
 {
@@ -152,111 +151,9 @@ uint64_t input_stream::get_u64()
     return low | uint64_t(uint32_t(get_i32())) << 32;
 }
 
-namespace {
-
-bool same_window(const Imath::Box2i &box, const window &w)
-{
-    return box.min.x == w.x_min && box.min.y == w.y_min && box.max.x == w.x_max &&
-           box.max.y == w.y_max;
-}
-
-bool same_channels(const Imf::ChannelList &list, const std::vector<channel_layout> &channels)
-{
-    size_t count = 0;
-    for (auto i = list.begin(); i != list.end(); ++i)
-        count++;
-    for (const channel_layout &c : channels) {
-        const Imf::Channel *other = list.findChannel(c.name.c_str());
-        if (!other || int(other->type) != c.type || other->xSampling != c.x_sampling ||
-            other->ySampling != c.y_sampling)
-            return false;
-    }
-    return count == channels.size();
-}
-
-bool same_tiles(const Imf::Header &header, const part_layout &part)
-{
-    if (!part.tiled)
-        return true;
-    if (!header.hasTileDescription())
-        return false;
-    const Imf::TileDescription &t = header.tileDescription();
-    return t.xSize == part.tile_width && t.ySize == part.tile_height &&
-           int(t.mode) == part.level_mode && int(t.roundingMode) == part.level_rounding;
-}
-
-/* What OpenEXR understood differently from the walk; NULL if nothing. */
-const char *find_difference(const Imf::Header &header, const part_layout &part)
-{
-    if (!same_window(header.dataWindow(), part.data))
-        return "data window";
-    if (!same_window(header.displayWindow(), part.display))
-        return "display window";
-    if (int(header.compression()) != part.compression)
-        return "compression";
-    if (header.hasType() && header.type() != part.type)
-        return "type";
-    if (header.hasName() && header.name() != part.name)
-        return "name";
-    if (!same_channels(header.channels(), part.channels))
-        return "channels";
-    return same_tiles(header, part) ? nullptr : "tiles";
-}
-
-/* No header may make the two disagree: a fuzzer stops here. Anybody else is told that the file is
- * damaged, which it is. */
-[[noreturn]] void disagree(const input_stream &stream, size_t part, const char *what)
-{
-#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
-    fprintf(stderr, "two readings of the headers disagree: part %zu: %s\n", part, what);
-    abort();
-#endif
-    raise(EXIT_INPUT, damaged_hint,
-          "%s: damaged header: two readings of part %zu disagree: %s", stream.fileName(), part,
-          what);
-}
-
-} // namespace
-
 } // namespace exr
 
-exr_input::exr_input(const char *path, const char *shown)
-    : stream(path, shown), layout(exr::read_layout(stream))
+const char *exr_library_version(void)
 {
-}
-
-int exr_input::useful_threads() const
-{
-    int64_t most = 1;
-    for (const exr::part_layout &part : layout.parts)
-        most = std::max(most, part.chunk_count);
-    return int(std::min(int64_t{exr::Imf::globalThreadCount()}, most));
-}
-
-/* No reconstruction: OpenEXR would search an unfinished file for chunks, and we would show an image
- * with holes. */
-std::unique_ptr<exr::Imf::MultiPartInputFile> exr_input::open()
-{
-    using namespace exr;
-    try {
-        stream.check_unchanged();
-        stream.seekg(0);
-        auto file =
-            std::make_unique<Imf::MultiPartInputFile>(stream, useful_threads(), false);
-        stream.check_unchanged();
-        if (file->parts() != int(layout.parts.size()))
-            disagree(stream, 0, "number of parts");
-        for (int i = 0; i < file->parts(); i++) {
-            const char *difference = find_difference(file->header(i), layout.parts[size_t(i)]);
-            if (difference)
-                disagree(stream, size_t(i), difference);
-            if (!file->partComplete(i))
-                raise(EXIT_INPUT, damaged_hint,
-                      "%s: truncated: part %d lacks chunks", stream.fileName(), i);
-        }
-        return file;
-    } catch (const Iex::BaseExc &e) {
-        raise(EXIT_INPUT, damaged_hint, "%s: damaged: %s", stream.fileName(),
-              library_message(e).c_str());
-    }
+    return OPENEXR_PACKAGE_STRING;
 }

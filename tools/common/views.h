@@ -8,6 +8,7 @@
 #include "error.h"
 #include "exr_file.h"
 #include "options.h"
+#include "record.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -16,12 +17,14 @@ enum { MAX_VIEWS = 16 };
 
 struct view {
     const char *name;            /* "" in files without views */
-    const struct camera *camera; /* of the camera file, or NULL */
+    const struct camera *camera; /* of the camera file or of the record, or NULL */
+    const struct record *record; /* of --like, or NULL */
 };
 
 struct frame_source {
     struct exr_info info;
     struct camera_set cameras;
+    struct record_set records;
     struct view views[MAX_VIEWS];
     size_t view_count;
 };
@@ -32,6 +35,9 @@ bool frame_source_open(const struct options *options, const char *path, const ch
 /* As above, up to the header alone. */
 bool frame_source_read_header(const char *path, struct frame_source *source,
                               struct tool_error *err);
+/* Before the views are chosen: what of them the record tells. */
+bool frame_source_read_like(const char *like_path, struct frame_source *source,
+                            struct tool_error *err);
 bool frame_source_choose_views(const struct options *options, const char *camera_path,
                                struct frame_source *source, struct tool_error *err);
 void frame_source_close(struct frame_source *source);

@@ -6,18 +6,20 @@
 #include <string.h>
 #include <sys/stat.h>
 
-enum path_kind { PATH_INPUT, PATH_OUTPUT, PATH_CAMERA, PATH_PREVIEW, PATH_KINDS };
+enum path_kind { PATH_INPUT, PATH_OUTPUT, PATH_CAMERA, PATH_LIKE, PATH_PREVIEW, PATH_KINDS };
 
 struct patterns {
     struct frame_pattern of[PATH_KINDS];
     bool given[PATH_KINDS];
 };
 
-static const char *const path_names[PATH_KINDS] = {"INPUT", "--output", "--camera", "--preview"};
+static const char *const path_names[PATH_KINDS] = {"INPUT", "--output", "--camera", "--like",
+                                                   "--preview"};
 
 static char **path_of(struct plan_frame *frame, enum path_kind kind)
 {
-    char **paths[PATH_KINDS] = {&frame->input, &frame->output, &frame->camera, &frame->preview};
+    char **paths[PATH_KINDS] = {&frame->input, &frame->output, &frame->camera, &frame->like,
+                                &frame->preview};
     return paths[kind];
 }
 
@@ -40,11 +42,11 @@ static bool parse_pattern(const char *path, bool is_read, struct frame_pattern *
 static bool parse_patterns(const struct options *o, struct patterns *patterns,
                            struct tool_error *err)
 {
-    const char *paths[PATH_KINDS] = {o->input, o->output, o->camera_file, o->preview};
+    const char *paths[PATH_KINDS] = {o->input, o->output, o->camera_file, o->like, o->preview};
     *patterns = (struct patterns){0};
     for (int k = 0; k < PATH_KINDS; k++) {
         patterns->given[k] = paths[k] != NULL;
-        bool is_read = k == PATH_INPUT || k == PATH_CAMERA;
+        bool is_read = k == PATH_INPUT || k == PATH_CAMERA || k == PATH_LIKE;
         if (paths[k] && !parse_pattern(paths[k], is_read, &patterns->of[k], err))
             return false;
     }
@@ -67,7 +69,7 @@ static bool check_tokens(const struct options *o, const struct patterns *pattern
                          struct tool_error *err)
 {
     static const enum path_kind needed[] = {PATH_INPUT, PATH_OUTPUT, PATH_PREVIEW};
-    const char *paths[PATH_KINDS] = {o->input, o->output, o->camera_file, o->preview};
+    const char *paths[PATH_KINDS] = {o->input, o->output, o->camera_file, o->like, o->preview};
     for (size_t i = 0; frames > 1 && i < sizeof needed / sizeof *needed; i++) {
         enum path_kind k = needed[i];
         if (!patterns->given[k] || frame_pattern_has_token(&patterns->of[k]))

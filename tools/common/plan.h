@@ -13,7 +13,7 @@
 struct plan_frame {
     int64_t number;
     char *input, *output;
-    char *camera, *preview; /* NULL if not asked for */
+    char *camera, *like, *preview; /* NULL if not asked for */
 };
 
 struct plan {

@@ -9,9 +9,20 @@ static void list_views(const struct exr_info *info, struct text *list)
         text_add(list, "%s%s", i ? ", " : "", roles_view_name(info, i));
 }
 
-static bool has_named_cameras(const struct camera_set *cameras)
+/* Of a camera file, or of the records. */
+static bool has_named_cameras(const struct frame_source *source)
 {
-    return cameras->count > 0 && cameras->views[0].name[0];
+    return (source->cameras.count > 0 && source->cameras.views[0].name[0]) ||
+           (source->records.count > 0 && source->records.records[0].view[0]);
+}
+
+/* The view that was asked for, NULL if none was: by an option, or by a record of only one. */
+static const char *wanted_view(const struct options *options, const struct frame_source *source)
+{
+    const struct record_set *set = &source->records;
+    if (options->view)
+        return options->view;
+    return set->count == 1 && set->records[0].view[0] ? set->records[0].view : NULL;
 }
 
 struct gbuffer_options view_options(const struct options *options, const struct view *view)
@@ -29,7 +40,14 @@ static bool add_view(struct frame_source *source, const char *name, const char *
         return fail(err, EXIT_CHANNELS, "%s: more than %d views; choose one with --view",
                     source->info.path, MAX_VIEWS);
     struct view *view = &source->views[source->view_count++];
-    *view = (struct view){.name = name};
+    *view = (struct view){.name = name, .record = record_set_find(&source->records, camera_name)};
+    if (source->records.count > 0 && !view->record) {
+        fail_hint(err, "choose a view with --view NAME");
+        return fail(err, EXIT_CHANNELS, "%s: the file of --like has no record of view '%s'",
+                    source->info.path, camera_name);
+    }
+    if (!camera_path && view->record)
+        view->camera = &view->record->camera;
     if (source->cameras.count == 0)
         return true;
     view->camera = camera_set_find(&source->cameras, camera_name);
@@ -78,19 +96,19 @@ static bool fail_many_views(const struct exr_info *info, struct tool_error *err)
     return false;
 }
 
-static bool add_named_view(const struct options *options, const char *camera_path,
-                           struct frame_source *source, struct tool_error *err)
+static bool add_named_view(const char *wanted, const char *camera_path, struct frame_source *source,
+                           struct tool_error *err)
 {
     const struct exr_info *info = &source->info;
     size_t count = roles_view_count(info);
     for (size_t i = 0; i < count; i++)
-        if (strcmp(roles_view_name(info, i), options->view) == 0)
-            return add_view(source, roles_view_name(info, i), options->view, camera_path, err);
-    if (count == 0 && has_named_cameras(&source->cameras))
-        return add_view(source, "", options->view, camera_path, err);
+        if (strcmp(roles_view_name(info, i), wanted) == 0)
+            return add_view(source, roles_view_name(info, i), wanted, camera_path, err);
+    if (count == 0 && has_named_cameras(source))
+        return add_view(source, "", wanted, camera_path, err);
     struct text list = {0};
     list_views(info, &list);
-    fail(err, EXIT_CHANNELS, "%s: no view '%s'; views: %s", info->path, options->view,
+    fail(err, EXIT_CHANNELS, "%s: no view '%s'; views: %s", info->path, wanted,
          list.data ? list.data : "none");
     text_free(&list);
     return false;
@@ -105,20 +123,21 @@ bool frame_source_choose_views(const struct options *options, const char *camera
     if (camera_path && source->cameras.count == 0 &&
         !camera_set_read(camera_path, &source->cameras, err))
         return false;
-    bool all = options->view && strcmp(options->view, "all") == 0;
-    if (options->view && !all)
-        return add_named_view(options, camera_path, source, err);
+    const char *wanted = wanted_view(options, source);
+    bool all = wanted && strcmp(wanted, "all") == 0;
+    if (wanted && !all)
+        return add_named_view(wanted, camera_path, source, err);
     if (count == 0)
         return add_view(source, "", "", camera_path, err);
     if (!all && count > 1 && options->gbuffer.roles.name[ROLE_DEPTH]) {
         if (!add_views_with_depth(options, camera_path, source, err))
             return false;
-        bool enough = source->view_count == 1 || has_named_cameras(&source->cameras);
+        bool enough = source->view_count == 1 || has_named_cameras(source);
         if (source->view_count > 0 && enough)
             return true;
         source->view_count = 0;
     }
-    if (!all && count > 1 && !has_named_cameras(&source->cameras))
+    if (!all && count > 1 && !has_named_cameras(source))
         return fail_many_views(info, err);
     for (size_t i = 0; i < count; i++) {
         const char *name = roles_view_name(info, i);
@@ -134,6 +153,12 @@ bool frame_source_read_header(const char *path, struct frame_source *source, str
     return exr_info_read(path, &source->info, err);
 }
 
+bool frame_source_read_like(const char *like_path, struct frame_source *source,
+                            struct tool_error *err)
+{
+    return record_set_read(like_path, &source->records, err);
+}
+
 bool frame_source_open(const struct options *options, const char *path, const char *camera_path,
                        struct frame_source *source, struct tool_error *err)
 {
@@ -145,5 +170,6 @@ void frame_source_close(struct frame_source *source)
 {
     exr_info_free(&source->info);
     camera_set_free(&source->cameras);
+    record_set_free(&source->records);
     *source = (struct frame_source){0};
 }

@@ -2,6 +2,7 @@
 #include "output.h"
 
 #include "png_file.h"
+#include "record.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,7 +18,7 @@ struct part_storage {
     char name[NAME_BYTES];
     struct exr_write channels[7];
     struct exr_string strings[STRINGS];
-    char *params;
+    char *params, version[VERSION_BYTES];
 };
 
 /* --- Names --- */
@@ -142,14 +143,11 @@ static bool fill_part(const struct options *o, const struct frame_source *source
                       struct tool_error *err)
 {
     const struct gbuffer *g = &view->gbuffer;
-    static char version[16];
-    uint32_t v = vkao_version();
-    snprintf(version, sizeof version, "%u.%u.%u", VK_API_VERSION_MAJOR(v), VK_API_VERSION_MINOR(v),
-             VK_API_VERSION_PATCH(v));
-    storage->params = output_params_json(o, view, device);
+    version_string(storage->version);
+    storage->params = record_write(o, &view->setting, view->name, g, device);
     if (!storage->params)
         return fail(err, EXIT_MEMORY, "%s: out of memory", source->info.path);
-    storage->strings[0] = (struct exr_string){"vkao/version", version};
+    storage->strings[0] = (struct exr_string){"vkao/version", storage->version};
     storage->strings[1] = (struct exr_string){"vkao/params", storage->params};
     storage->strings[2] = (struct exr_string){"vkao/source", file_name(source->info.path)};
     if (o->mode == OUTPUT_COMP)
@@ -186,8 +184,8 @@ static bool write_exr(const struct options *o, const struct plan_frame *frame,
         fail(err, EXIT_MEMORY, "%s: out of memory", frame->output);
     for (size_t i = 0; ok && i < source->view_count; i++)
         ok = fill_part(o, source, &views[i], device, &storage[i], &parts[i], err);
-    ok = ok && exr_write_file(frame->output, o->mode == OUTPUT_APPEND ? &source->info : NULL,
-                              parts, source->view_count, o->overwrite != 0, err);
+    ok = ok && exr_write_file(frame->output, o->mode == OUTPUT_APPEND ? &source->info : NULL, parts,
+                              source->view_count, o->overwrite != 0, err);
     for (size_t i = 0; storage && i < source->view_count; i++)
         free(storage[i].params);
     free(storage);
@@ -230,8 +228,8 @@ static bool prepare_preview(const struct options *o, const char *path,
         for (size_t c = 0; !grey && c < 3; c++)
             pixels[i * 3 + c] = to_byte(to_srgb(view->result.output[i * 4 + c]));
     }
-    bool ok = png_file_prepare(file, path, view->gbuffer.width, view->gbuffer.height,
-                               grey ? 1 : 3, pixels, o->overwrite != 0, err);
+    bool ok = png_file_prepare(file, path, view->gbuffer.width, view->gbuffer.height, grey ? 1 : 3,
+                               pixels, o->overwrite != 0, err);
     free(pixels);
     return ok;
 }

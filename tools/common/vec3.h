@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Vectors and 3x3 matrices of doubles, as much as the demo's ray tracer needs. */
-#ifndef VKAO_DEMO_VEC3_H_
-#define VKAO_DEMO_VEC3_H_
+ * Vectors and 3x3 matrices of doubles, as much as the ray tracer and the live scenes need. */
+#ifndef VKAO_TOOLS_VEC3_H_
+#define VKAO_TOOLS_VEC3_H_
 
 #include <math.h>
 
