@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""The README's engine example compiles as it stands.
+"""The README's engine example compiles as it stands, in C and in C++.
 
 usage: test_readme.py README.md INCLUDE_DIR [SYSTEM_INCLUDE_DIR...]
 """
@@ -30,25 +30,30 @@ def engine_example_is_there():
     assert "vkao_frame_create" in example() and "vkao_cmd_" in example()
 
 
-def engine_example_compiles_without_warning():
-    compiler = shutil.which("cc")
-    if not compiler:
-        raise Skip("no cc")
-    lines = example().splitlines()
-    includes = [line for line in lines if line.lstrip().startswith("#include")]
-    body = [line for line in lines if line not in includes]
-    source = "\n".join(['#include "readme_prelude.h"', *includes, "bool engine(void)", "{", *body])
-    if not re.search(r"\breturn\b[^;]*;\s*\Z", "\n".join(body)):
-        source += "\nreturn true;"
-    command = [compiler, "-std=c11", "-Wall", "-Wextra", "-Werror", "-fsyntax-only",
-               f"-I{INCLUDE}", f"-I{HERE}"]
-    for directory in filter(None, SYSTEM):
-        command += ["-isystem", directory]
-    done = subprocess.run([*command, "-xc", "-"], input=source + "\n}\n", capture_output=True,
-                          text=True)
-    assert done.returncode == 0, done.stderr
+def engine_example_compiles(compiler, language, standard):
+    def case():
+        if not shutil.which(compiler):
+            raise Skip(f"no {compiler}")
+        lines = example().splitlines()
+        includes = [line for line in lines if line.lstrip().startswith("#include")]
+        body = [line for line in lines if line not in includes]
+        source = "\n".join(['#include "readme_prelude.h"', *includes, "bool engine(void)", "{",
+                            *body])
+        if not re.search(r"\breturn\b[^;]*;\s*\Z", "\n".join(body)):
+            source += "\nreturn true;"
+        command = [compiler, f"-std={standard}", "-Wall", "-Wextra", "-Wpedantic", "-Werror",
+                   "-fsyntax-only", f"-I{INCLUDE}", f"-I{HERE}"]
+        for directory in filter(None, SYSTEM):
+            command += ["-isystem", directory]
+        done = subprocess.run([*command, f"-x{language}", "-"], input=source + "\n}\n",
+                              capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+    name = standard.replace("+", "p")
+    return f"engine_example_compiles_as_{name}_with_{compiler.replace('+', 'p')}", case
 
 
 if __name__ == "__main__":
-    run([(f.__name__, f) for f in (engine_example_is_there,
-                                   engine_example_compiles_without_warning)])
+    run([("engine_example_is_there", engine_example_is_there),
+         *(engine_example_compiles(compiler, language, standard) for compiler, language, standard in (
+             ("cc", "c", "c11"), ("c++", "c++", "c++17"), ("c++", "c++", "c++20"),
+             ("clang++", "c++", "c++17"), ("clang++", "c++", "c++20")))])
