@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""vkao from Python, with nothing but ctypes: defaults as structs, and the tables that describe them.
+"""vkao from Python, with nothing but ctypes: defaults, and the table that describes them.
 
 usage: bindings.py LIBVKAO.SO
 """

@@ -4,7 +4,7 @@
 
 usage: test_linking.py SOURCE_ROOT WORK_DIR MESON
 
-Meson builds the library alone and installs it into WORK_DIR, where a further run finds it; consumers
+Meson builds the library alone and installs it into WORK_DIR, where a further run finds it. Consumers
 know of the source tree only where they build it themselves.
 """
 
@@ -202,9 +202,10 @@ def rust_makes_an_effect_on_a_device_of_ash():
     need("cargo")
     source, target = os.path.join(HERE, "rust"), os.path.join(WORK, "rust")
     library = os.path.dirname(shared_library())
-    done = subprocess.run(["cargo", "fetch", "--locked"], cwd=source, capture_output=True, text=True)
-    if done.returncode:
-        raise Skip("cargo gets no crates: " + (done.stderr.strip().splitlines() or ["?"])[-1])
+    fetched = subprocess.run(["cargo", "fetch", "--locked"], cwd=source, capture_output=True,
+                             text=True)
+    if fetched.returncode:
+        raise Skip("cargo gets no crates: " + (fetched.stderr.strip().splitlines() or ["?"])[-1])
     execute(["cargo", "build", "--locked", "--offline", "--quiet"], cwd=source,
             env={"CARGO_TARGET_DIR": target,
                  "RUSTFLAGS": f"-L native={library} -C link-arg=-Wl,-rpath,{library}"})
@@ -235,7 +236,8 @@ def build_example(name, static, change=None):
     if change:
         with open(source, encoding="utf-8") as file:
             text = file.read()
-        assert text.count(change[0]) == 1, f"example.c has {text.count(change[0])} of {change[0]!r}"
+        count = text.count(change[0])
+        assert count == 1, f"example.c has {count} of {change[0]!r}"
         with open(source, "w", encoding="utf-8") as file:
             file.write(text.replace(*change))
     for stage in ("vert", "frag"):
@@ -304,8 +306,8 @@ if __name__ == "__main__":
         layers_miss("drawing_over_what_vkao_reads_is_noticed", "WRITE-AFTER-READ",
                     "{VK_SUBPASS_EXTERNAL, 0, compute,", f"{{VK_SUBPASS_EXTERNAL, 0, {NOTHING},"),
         layers_miss("reading_what_is_being_drawn_is_noticed", "READ-AFTER-WRITE",
-                    "{0, VK_SUBPASS_EXTERNAL, drawing, compute, written, VK_ACCESS_SHADER_READ_BIT,",
-                    "{0, VK_SUBPASS_EXTERNAL, drawing, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, 0, 0,"),
+                    "drawing, compute, written, VK_ACCESS_SHADER_READ_BIT,",
+                    "drawing, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, 0, 0,"),
         layers_miss("copying_what_vkao_writes_is_noticed", "READ-AFTER-WRITE",
                     "vkCmdPipelineBarrier(cmd, compute, transfer,",
                     "vkCmdPipelineBarrier(cmd, transfer, transfer,"),

@@ -66,6 +66,6 @@ def engine_example_compiles(compiler, language, standard):
 if __name__ == "__main__":
     run([("engine_example_is_there", engine_example_is_there),
          ("excerpts_are_the_installed_examples", excerpts_are_the_installed_examples),
-         *(engine_example_compiles(compiler, language, standard) for compiler, language, standard in (
+         *(engine_example_compiles(*row) for row in (
              ("cc", "c", "c11"), ("c++", "c++", "c++17"), ("c++", "c++", "c++20"),
              ("clang++", "c++", "c++17"), ("clang++", "c++", "c++20")))])

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""The shared library exports the header's functions and nothing else, and links no Vulkan; the static
-one has no name that could meet a name of its user's.
+"""The shared library exports the header's functions and nothing else, and links no Vulkan.
+The static one has no name that could meet a name of its user's.
 
 usage: test_symbols.py LIBRARY ARCHIVE HEADER
 """

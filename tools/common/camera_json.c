@@ -62,7 +62,7 @@ static bool read_matrix(const struct reader *r, const cJSON *rows, double m[16])
 static bool read_rotation(const struct reader *r, const cJSON *object, struct camera *camera)
 {
     const cJSON *rows = cJSON_GetObjectItemCaseSensitive(object, "world_to_view");
-    double m[16] = {0};
+    double m[16];
     if (!rows)
         return true;
     if (!read_matrix(r, rows, m))
