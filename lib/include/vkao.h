@@ -28,7 +28,8 @@
  *    to your own next use is yours. A copy that the library made counts as such a write.
  *  - After: images that were read are still being read by COMPUTE_SHADER. Whoever writes them next waits: the
  *    next frame's depth pass needs COMPUTE_SHADER in srcStageMask of its first external dependency, with
- *    dstStageMask EARLY_FRAGMENT_TESTS | COLOR_ATTACHMENT_OUTPUT. No access mask is needed for that.
+ *    dstStageMask EARLY_FRAGMENT_TESTS | COLOR_ATTACHMENT_OUTPUT, srcAccessMask 0, and for the change of layout
+ *    dstAccessMask DEPTH_STENCIL_ATTACHMENT_WRITE | COLOR_ATTACHMENT_WRITE.
  *  - Between vkao calls on one queue the library's own barriers order everything, scratch included, also
  *    across submits. Across queues, a semaphore is yours.
  *  - State left behind: compute pipeline, compute descriptor set 0, push constants. Nothing else changes.
