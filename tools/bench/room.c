@@ -103,8 +103,8 @@ static bool build_scene(struct trace_scene *scene)
 struct drawing {
     struct room *room;
     const struct trace_scene *scene;
-    struct vec3 first, right,
-        down; /* the way through the first texel's centre, and from texel to texel */
+    struct vec3 first;       /* the way from the eye through the first texel's centre */
+    struct vec3 right, down; /* from texel to texel */
 };
 
 static uint32_t pack_normal(struct vec3 n)
@@ -166,8 +166,8 @@ bool room_create(uint32_t width, uint32_t height, unsigned sky, struct room *roo
     size_t texels, bytes;
     *room = (struct room){.width = width, .height = height};
     if (size_multiply(width, height, &texels) && size_multiply(texels, 4, &bytes)) {
-        room->z = malloc(bytes);
-        room->normals = malloc(bytes);
+        room->z = calloc(1, bytes);
+        room->normals = calloc(1, bytes);
     }
     if (!room->z || !room->normals || !draw(room)) {
         room_free(room);
