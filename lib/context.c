@@ -182,8 +182,8 @@ vkao_result vkao_context_create(const vkao_context_info *caller_info, vkao_conte
         result = read_device(ctx);
     else
         result = vkao_refuse(&log, VKAO_ERROR_UNSUPPORTED,
-                             "context: the device has no %s; instance and device must be made for "
-                             "Vulkan 1.1 or later",
+                             "context.device has no %s: make it of an instance whose "
+                             "VkApplicationInfo.apiVersion is VK_API_VERSION_1_1 or later",
                              missing);
     if (result != VKAO_SUCCESS) {
         vkao_free(info.allocator, ctx);

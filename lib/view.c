@@ -78,6 +78,12 @@ static vkao_result read_projection(const struct vkao_logger *log, const vkao_vie
                            "(column-major, [0] %g [5] %g [10] %g [11] %g [14] %g [15] %g)",
                            (double)m[0], (double)m[5], (double)m[10], (double)m[11], (double)m[14],
                            (double)m[15]);
+    /* What lies between the planes lies in front of the eye, whichever is near. */
+    if (perspective && (0.5 * (double)m[11] - (double)m[10]) * (double)m[11] / (double)m[14] <= 0.0)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.projection puts depth 0.5 behind the eye ([10] %g [11] %g [14] %g): "
+                           "is it transposed? m[column * 4 + row] holds columns",
+                           (double)m[10], (double)m[11], (double)m[14]);
     /* Scale so that w is distance along the axis, or 1. */
     double w = perspective ? fabs((double)m[11]) : (double)m[15];
     *p = (struct projection){

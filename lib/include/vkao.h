@@ -38,7 +38,8 @@
  * Struct rule: set struct_size = sizeof (the *_default() functions do). A smaller struct of an earlier 0.2 is
  * accepted: its missing bytes read as zero, and zero always means the behaviour from before the field existed.
  * A larger struct is accepted only if the bytes that the library does not know are zero. A size that no version
- * can have is refused and nothing is read beyond it. No struct has implicit padding on 64-bit targets. Enums only
+ * can have is refused and nothing is read beyond it; so is a context info that is too short for its log, without a
+ * word. No struct has implicit padding on 64-bit targets. Enums only
  * grow.
  *
  * On any error nothing has been created or recorded, and *out is NULL.
@@ -262,7 +263,7 @@ typedef struct vkao_effect_info {
 
     /* --- What the images hold --- */
     vkao_depth_encoding depth_encoding;
-    /* Bits that a PROJECTED depth had before it was copied into an image of more: 16 or 24, fixed point. 0 = as the
+    /* Bits that a PROJECTED depth had before it was copied into an image of more: 16 or 24, fixed point; 32, float. 0 = as the
      * format of images.depth says. Too many let walls occlude themselves by the steps of the depth. */
     uint32_t depth_bits;
     vkao_projection projection; /* of the views to come */

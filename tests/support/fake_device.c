@@ -427,6 +427,15 @@ static VKAPI_ATTR void VKAPI_CALL fake_CmdEndDebugUtilsLabelEXT(VkCommandBuffer 
     fake_note(fake_of(cmd), "vkCmdEndDebugUtilsLabelEXT");
 }
 
+/* Known devices for Vulkan 1.1 by; the library has no command pool. */
+static VKAPI_ATTR void VKAPI_CALL fake_TrimCommandPool(VkDevice device, VkCommandPool pool,
+                                                       VkCommandPoolTrimFlags flags)
+{
+    (void)pool;
+    (void)flags;
+    fake_misuse(fake_of(device), "vkTrimCommandPool is called");
+}
+
 #define ENTRY(name)                                                                                \
     {                                                                                              \
         "vk" #name, (PFN_vkVoidFunction)fake_##name                                                \
@@ -463,4 +472,5 @@ const struct fake_entry fake_device_functions[FAKE_DEVICE_FUNCTIONS] = {
     ENTRY(BindBufferMemory),
     ENTRY(CreateBufferView),
     ENTRY(DestroyBufferView),
+    ENTRY(TrimCommandPool),
 };

@@ -121,6 +121,13 @@ static void transposed_projection_is_refused(void **state)
         transposed[i] = w.view.projection[i % 4 * 4 + i / 4];
     memcpy(w.view.projection, transposed, sizeof transposed);
     expect_all_refuse(&w, "view.projection", "transposed");
+    /* Infinite and reversed, with a near plane at 1: both are 1 then. */
+    static const float infinite[16] = {[0] = 1.0f, [5] = 1.0f, [11] = -1.0f, [14] = 1.0f},
+                       across[16] = {[0] = 1.0f, [5] = 1.0f, [11] = 1.0f, [14] = -1.0f};
+    memcpy(w.view.projection, infinite, sizeof infinite);
+    expect_all_accept(&w, "view.projection");
+    memcpy(w.view.projection, across, sizeof across);
+    expect_all_refuse(&w, "view.projection", "transposed");
     world_close(&w);
 }
 
