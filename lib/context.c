@@ -140,8 +140,7 @@ static vkao_result read_device(vkao_context *ctx)
     ctx->max_texels = properties.limits.maxTexelBufferElements;
     ctx->max_buffer = properties.limits.maxStorageBufferRange;
     ctx->granularity = properties.limits.bufferImageGranularity;
-    ctx->is_cpu =
-        properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && has_buffer_formats(ctx);
+    ctx->is_cpu = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && has_buffer_formats(ctx);
     return VKAO_SUCCESS;
 }
 

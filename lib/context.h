@@ -24,7 +24,8 @@ struct vkao_context {
     VkDeviceSize granularity;        /* between images and buffers in one memory */
     bool is_cpu;                     /* and can do what the CPU's passes want */
     bool has_16bit_storage;
-    /* Effects and frames that live. The only member that changes; a pointer, so that contexts can be const. */
+    /* Effects and frames that live. The only member that changes; a pointer, so that contexts can
+     * be const. */
     atomic_uint *live, live_count;
 };
 

@@ -7,7 +7,8 @@
 
 #include <string.h>
 
-/* May the counts of slices and steps be constants? vbao loops over slices if both are too many together. */
+/* May the counts of slices and steps be constants? vbao loops over slices if both are too many
+ * together. */
 static bool unrolls(const vkao_effect_info *e)
 {
     const uint32_t slices = e->method == VKAO_SSAO_VBAO ? 1 : e->slice_count;
@@ -50,9 +51,8 @@ static uint32_t needs_of(const struct vkao_program *program)
     const bool composite = e->stages & VKAO_STAGE_COMPOSITE,
                makes_ao = e->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
     const bool lit = composite && e->composite_mode <= VKAO_COMPOSITE_INDIRECT;
-    const bool reads_bent =
-        (composite && e->composite_mode == VKAO_COMPOSITE_BENT_NORMALS) ||
-        (lit && e->specular == VKAO_SPECULAR_FROM_BENT);
+    const bool reads_bent = (composite && e->composite_mode == VKAO_COMPOSITE_BENT_NORMALS) ||
+                            (lit && e->specular == VKAO_SPECULAR_FROM_BENT);
     const struct {
         bool is;
         enum vkao_resource resource;

@@ -19,7 +19,8 @@ bool vkao_format_is_srgb(VkFormat format);
 bool vkao_format_is_ao(VkFormat format);
 /* Depth formats and one-component floats. */
 bool vkao_format_is_depth(VkFormat format);
-/* Size of one step of a depth value in [0.5,1), and whether the format floats; 0 for other formats. */
+/* Size of one step of a depth value in [0.5,1), and whether the format floats; 0 for other
+ * formats. */
 float vkao_format_depth_step(VkFormat format, bool *floating);
 
 #endif

@@ -100,8 +100,8 @@ static vkao_result bind_scratch(vkao_frame *frame, const vkao_frame_info *info,
 
 /* --- Descriptors --- */
 
-/* What a use is of this frame: the caller's image or scratch. What a shader names but does not touch is some other image
- * of the same kind. */
+/* What a use is of this frame: the caller's image or scratch. What a shader names but does not
+ * touch is some other image of the same kind. */
 static vkao_image resolve(const vkao_frame *frame, const struct vkao_use *use)
 {
     const struct vkao_program *program = frame->program;
@@ -141,8 +141,8 @@ static void write_set(const vkao_frame *frame, uint32_t i)
             writes[k].pBufferInfo = &buffers[k];
         } else {
             const vkao_image image = resolve(frame, use);
-            images[k] = (VkDescriptorImageInfo){.imageView = image.view,
-                                                .imageLayout = image.layout};
+            images[k] =
+                (VkDescriptorImageInfo){.imageView = image.view, .imageLayout = image.layout};
             writes[k].pImageInfo = &images[k];
         }
     }
@@ -210,16 +210,15 @@ static vkao_result create_sets(vkao_frame *frame)
 
 /* --- Frames --- */
 
-/* Checks the info and fills the frame's description, without creating anything. `own`: where to plan the passes that use
- * images, for frames that the CPU's cannot hold. */
+/* Checks the info and fills the frame's description, without creating anything. `own`: where to
+ * plan the passes that use images, for frames that the CPU's cannot hold. */
 static vkao_result describe(const vkao_effect *effect, const vkao_frame_info *caller_info,
                             bool need_views, vkao_frame_info *info, struct vkao_program *own,
                             vkao_frame *frame)
 {
     const struct vkao_program *program = &effect->program;
     const vkao_context *ctx = program->ctx;
-    vkao_result result =
-        vkao_import(&ctx->log, VKAO_STRUCT_FRAME_INFO, "frame", caller_info, info);
+    vkao_result result = vkao_import(&ctx->log, VKAO_STRUCT_FRAME_INFO, "frame", caller_info, info);
     if (result == VKAO_SUCCESS)
         result = vkao_import(&ctx->log, VKAO_STRUCT_IMAGES, "frame.images", info->images,
                              &frame->images);
@@ -337,8 +336,8 @@ vkao_result vkao_frame_update(vkao_frame *frame, const vkao_images *images)
                          *is = vkao_slot_image(&known, i);
         if (was->format != is->format)
             return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                               "%s.format is %s, the frame was created with %s",
-                               vkao_slot_name(i), vkao_format_name(is->format, now),
+                               "%s.format is %s, the frame was created with %s", vkao_slot_name(i),
+                               vkao_format_name(is->format, now),
                                vkao_format_name(was->format, then));
         if (!was->image != !is->image)
             return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,

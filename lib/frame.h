@@ -5,7 +5,8 @@
 #include "effect.h"
 #include "scratch.h"
 
-/* What the CPU's passes keep of a frame: texels in a row of buffers and of the copied AO, and its bytes per texel. */
+/* What the CPU's passes keep of a frame: texels in a row of buffers and of the copied AO, and its
+ * bytes per texel. */
 struct vkao_rows {
     uint32_t stride, copied_stride;
     VkDeviceSize copied_texel;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The structs of vkao.h as tables: one row a member, from which checks, defaults, command lines and panels come. Each
- * refusal names field, value and range. */
+ * The structs of vkao.h as tables: one row a member, from which checks, defaults, command lines and
+ * panels come. Each refusal names field, value and range. */
 #include "parameters.h"
 
 #include "formats.h"
@@ -56,10 +56,12 @@ static const char *const specular_words[] = {"none", "from-ao", "from-bent"};
 
 /* clang-format off */
 static const vkao_parameter parameters[] = {
-    {SWITCH(half_resolution), .help = "a fourth of the work, then depth- and normal-aware upsampling",
+    {SWITCH(half_resolution),
+     .help = "a fourth of the work, then depth- and normal-aware upsampling",
      .stages = MAKES_AO},
     {CHOICE(depth_encoding, depth_words), .help = "what depth holds", .stages = MAKES_AO},
-    {COMPILED(depth_bits, UINT), .help = "of a projected depth before it was copied; 0: as the format",
+    {COMPILED(depth_bits, UINT),
+     .help = "of a projected depth before it was copied; 0: as the format",
      .most = 32, .stages = MAKES_AO},
     {CHOICE(projection, projection_words), .help = "of the camera", .stages = VKAO_STAGE_ALL},
     {CHOICE(normal_encoding, normal_words), .help = "what normals hold; none: from depth",
@@ -80,7 +82,8 @@ static const vkao_parameter parameters[] = {
      .methods = METHOD(SPHERE) | METHOD(HEMISPHERE) | METHOD(RAYMARCH)},
     {COMPILED(slice_count, UINT), .help = "directions per texel, each to both sides", .most = 64,
      .standard = 1, .zero_is_standard = VK_TRUE, .stages = VKAO_STAGE_SSAO, .methods = SLICED},
-    {COMPILED(step_count, UINT), .help = "samples on each side of a slice, or on a ray", .most = 256,
+    {COMPILED(step_count, UINT),
+     .help = "samples on each side of a slice, or on a ray", .most = 256,
      .standard = 8, .zero_is_standard = VK_TRUE, .stages = VKAO_STAGE_SSAO,
      .methods = SLICED | METHOD(RAYMARCH)},
     {COMPILED(blur_radius, UINT), .help = "texels on each side; 0: intensity and power alone",
@@ -88,7 +91,8 @@ static const vkao_parameter parameters[] = {
     {COMPILED(blur_normal_power, FLOAT),
      .help = "how strictly the blur stops where normals turn; 0: not at all", .most = 128,
      .stages = VKAO_STAGE_BLUR},
-    {CHOICE(composite_mode, mode_words), .help = "multiply: color * ao; indirect: direct + color * ao",
+    {CHOICE(composite_mode, mode_words),
+     .help = "multiply: color * ao; indirect: direct + color * ao",
      .stages = VKAO_STAGE_COMPOSITE},
     {SWITCH(multi_bounce), .help = "brighten by the light that bounces on; needs albedo",
      .stages = VKAO_STAGE_COMPOSITE},
@@ -99,7 +103,8 @@ static const vkao_parameter parameters[] = {
      .most = UINT32_MAX, .stages = VKAO_STAGE_SSAO},
     {FREE(radius, FLOAT, "scene units"), .help = "how far occluders reach", .above_least = VK_TRUE,
      .most = FLT_MAX, .standard = 0.5, .stages = VKAO_STAGE_SSAO},
-    {FREE(bias, FLOAT, "radii"), .help = "how far the scene must stand in front to block", .most = 1,
+    {FREE(bias, FLOAT, "radii"),
+     .help = "how far the scene must stand in front to block", .most = 1,
      .standard = 0.005, .stages = VKAO_STAGE_SSAO},
     {FREE(thickness, FLOAT, ""), .help = "of what is seen, relative to the measured default",
      .most = 8, .standard = 1, .zero_is_standard = VK_TRUE, .stages = VKAO_STAGE_SSAO,
@@ -107,11 +112,13 @@ static const vkao_parameter parameters[] = {
     {FREE(blocking_scale, FLOAT, "1 / scene units"), .help = "the constant of the literal form",
      .above_least = VK_TRUE, .most = FLT_MAX, .standard = 50, .stages = VKAO_STAGE_SSAO,
      .methods = METHOD(SPHERE)},
-    {FREE(sharpness, FLOAT, ""), .help = "how strictly the blur stops at depth edges; 0: not at all",
+    {FREE(sharpness, FLOAT, ""),
+     .help = "how strictly the blur stops at depth edges; 0: not at all",
      .most = 10000, .standard = 200, .stages = VKAO_STAGE_BLUR},
     {FREE(intensity, FLOAT, ""), .help = "scale of occlusion; 1 is physical", .most = 8,
      .standard = 1, .stages = VKAO_STAGE_BLUR},
-    {FREE(power, FLOAT, ""), .help = "exponent on visibility; 1 is physical", .above_least = VK_TRUE,
+    {FREE(power, FLOAT, ""),
+     .help = "exponent on visibility; 1 is physical", .above_least = VK_TRUE,
      .most = 8, .standard = 1, .stages = VKAO_STAGE_BLUR},
     {FREE(strength, FLOAT, ""), .help = "0: as if open everywhere", .most = 1, .standard = 1,
      .stages = VKAO_STAGE_COMPOSITE},
@@ -159,9 +166,8 @@ static void put_all(void *structure, VkBool32 is_compiled)
 
 vkao_effect_info vkao_effect_info_default(void)
 {
-    vkao_effect_info info = {.struct_size = sizeof info,
-                             .stages = MAKES_AO,
-                             .ao_format = VK_FORMAT_R8_UNORM};
+    vkao_effect_info info = {
+        .struct_size = sizeof info, .stages = MAKES_AO, .ao_format = VK_FORMAT_R8_UNORM};
     put_all(&info, VK_TRUE);
     return info;
 }
@@ -195,10 +201,11 @@ vkao_view vkao_view_default(void)
 struct preset {
     VkBool32 half_resolution;
     uint32_t slice_count, step_count, blur_radius;
-    /* Normals keep the blur off edges that depth does not show, thin slats in front of a wall; on a CPU they cost as much
-     * as the rest of the blur. */
+    /* Normals keep the blur off edges that depth does not show, thin slats in front of a wall; on a
+     * CPU they cost as much as the rest of the blur. */
     float normal_power;
-    /* Few steps miss some of the scene, for which thickness makes up a little; more steps need less of it. */
+    /* Few steps miss some of the scene, for which thickness makes up a little; more steps need less
+     * of it. */
     float thickness;
 };
 

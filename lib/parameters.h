@@ -19,7 +19,8 @@ enum vkao_struct {
     VKAO_STRUCT_COUNT
 };
 
-/* The struct rule of vkao.h: copies src into dst, which has `known` bytes. least: what the first 0.2 had. */
+/* The struct rule of vkao.h: copies src into dst, which has `known` bytes. least: what the first
+ * 0.2 had. */
 vkao_result vkao_import_sized(const struct vkao_logger *log, const char *name, const void *src,
                               void *dst, size_t least, size_t known);
 vkao_result vkao_import(const struct vkao_logger *log, enum vkao_struct which, const char *name,

@@ -125,8 +125,8 @@ static vkao_result create_form(const struct vkao_program *program, struct vkao_s
     VkSpecializationMapEntry entries[VKAO_SETTING_COUNT];
     for (uint32_t i = 0; i < VKAO_SETTING_COUNT; ++i) {
         constants[i] = program->constants[i];
-        entries[i] = (VkSpecializationMapEntry){i, i * (uint32_t)sizeof constants[0],
-                                                sizeof constants[0]};
+        entries[i] =
+            (VkSpecializationMapEntry){i, i * (uint32_t)sizeof constants[0], sizeof constants[0]};
     }
     constants[VKAO_SETTING_VERTICAL] = step->row->vertical;
     constants[VKAO_SETTING_TONED] = form & VKAO_FORM_TONED ? 1 : 0;

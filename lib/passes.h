@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Passes as data. A row says what a pass is made of, what it reads and writes, and over which texels it runs. A program is
- * a list of rows that were compiled for the settings of an effect; descriptor layouts, pipelines, lifetimes of scratch,
- * barriers and checks of the caller's images derive from it. */
+ * Passes as data. A row says what a pass is made of, what it reads and writes, and over which
+ * texels it runs. A program is a list of rows that were compiled for the settings of an effect;
+ * descriptor layouts, pipelines, lifetimes of scratch, barriers and checks of the caller's images
+ * derive from it. */
 #ifndef VKAO_PASSES_H_
 #define VKAO_PASSES_H_
 
@@ -12,7 +13,8 @@
 
 /* What passes read and write. */
 enum vkao_resource {
-    /* The caller's images, in the order of vkao_images. AO_NOISY and AO are scratch where the caller gives none. */
+    /* The caller's images, in the order of vkao_images. AO_NOISY and AO are scratch where the
+     * caller gives none. */
     VKAO_RESOURCE_DEPTH,
     VKAO_RESOURCE_NORMALS,
     VKAO_RESOURCE_AO_NOISY,
@@ -44,8 +46,14 @@ struct vkao_use {
     bool writes;
     VkFormat texels; /* of a part of the buffer as a texel buffer; UNDEFINED = storage buffer */
 };
-#define VKAO_READS(name, what) {VKAO_BINDING_##name, VKAO_RESOURCE_##what, false, VK_FORMAT_UNDEFINED}
-#define VKAO_WRITES(name, what) {VKAO_BINDING_##name, VKAO_RESOURCE_##what, true, VK_FORMAT_UNDEFINED}
+#define VKAO_READS(name, what)                                                                     \
+    {                                                                                              \
+        VKAO_BINDING_##name, VKAO_RESOURCE_##what, false, VK_FORMAT_UNDEFINED                      \
+    }
+#define VKAO_WRITES(name, what)                                                                    \
+    {                                                                                              \
+        VKAO_BINDING_##name, VKAO_RESOURCE_##what, true, VK_FORMAT_UNDEFINED                       \
+    }
 
 /* Over which texels a pass runs. */
 enum vkao_area {
@@ -74,8 +82,9 @@ struct vkao_pass {
     VkExtent2D texels; /* of an invocation */
     VkExtent2D group;  /* invocations of a workgroup */
     bool vertical;     /* VKAO_SETTING_VERTICAL */
-    bool with_next;    /* it and the next one run in turns: what either touches lives as long as both */
-    uint32_t forms;    /* 1, or the 2 or 4 with VKAO_FORM_* */
+    /* it and the next one run in turns: what either touches lives as long as both */
+    bool with_next;
+    uint32_t forms; /* 1, or the 2 or 4 with VKAO_FORM_* */
     /* Records it. NULL: one dispatch over the area. */
     void (*record)(const struct vkao_recording *recording, uint32_t pass);
 };
@@ -85,7 +94,8 @@ struct vkao_pass {
 /* A row, compiled. */
 struct vkao_step {
     const struct vkao_pass *row;
-    struct vkao_use uses[VKAO_MOST_USES + 1]; /* the row's, with resources that the effect puts in their place */
+    /* the row's, with resources that the effect puts in their place */
+    struct vkao_use uses[VKAO_MOST_USES + 1];
     uint32_t use_count;
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
@@ -101,7 +111,8 @@ struct vkao_program {
     uint32_t constants[VKAO_SETTING_COUNT];
     uint32_t count;
     struct vkao_step steps[VKAO_MOST_PASSES];
-    uint32_t needs; /* VKAO_BIT of the resources that are touched; others of the rows are stand-ins */
+    /* VKAO_BIT of the resources that are touched; others of the rows are stand-ins */
+    uint32_t needs;
 };
 
 /* Adds a row, yet to be compiled. */

@@ -35,7 +35,8 @@ void vkao_prepare_plan(struct vkao_program *program)
     vkao_program_add(program, &prepare);
 }
 
-/* What to divide by so that the matrix makes unit vectors of unit vectors: 1 for what floats make of a rotation. */
+/* What to divide by so that the matrix makes unit vectors of unit vectors: 1 for what floats make
+ * of a rotation. */
 static double normal_scale(const float rows[3][3])
 {
     double largest = 0.0, sum = 0.0;

@@ -23,11 +23,12 @@ static vkao_result check_view(const vkao_frame *frame, const vkao_view *view,
     if (result != VKAO_SUCCESS)
         return result;
     *out = (struct view_constants){.unproject = {1.0f, 1.0f, 0.0f, 0.0f}};
-    /* An effect that only composites needs no projection, unless it has specular light to occlude. */
+    /* An effect that only composites needs no projection, unless it has specular light to
+     * occlude. */
     if (!(e->stages & makes_ao) && !vkao_program_reads(program, VKAO_RESOURCE_SPECULAR))
         return vkao_view_rects(log, &known, frame->extent, &out->valid, &out->rect);
-    result = vkao_view_constants_init(log, &known, e, frame->extent, frame->images.depth.format,
-                                      out);
+    result =
+        vkao_view_constants_init(log, &known, e, frame->extent, frame->images.depth.format, out);
     if (result == VKAO_SUCCESS && e->half_resolution && ((out->valid.x0 | out->valid.y0) & 1u))
         result = vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                              "view.valid begins at (%u,%u), want even texels at half resolution",
@@ -35,8 +36,8 @@ static vkao_result check_view(const vkao_frame *frame, const vkao_view *view,
     return result;
 }
 
-/* Images of scratch that begin with a pass, or where first is true those that nothing was before: whatever they held is
- * dropped. */
+/* Images of scratch that begin with a pass, or where first is true those that nothing was before:
+ * whatever they held is dropped. */
 static uint32_t beginnings(const vkao_frame *frame, uint32_t pass, bool first,
                            VkImageMemoryBarrier out[VKAO_IMAGE_COUNT])
 {
@@ -61,7 +62,8 @@ static uint32_t beginnings(const vkao_frame *frame, uint32_t pass, bool first,
     return count;
 }
 
-/* Waits for whatever vkao work on this queue used the scratch memory last, and writes the constants. */
+/* Waits for whatever vkao work on this queue used the scratch memory last, and writes the
+ * constants. */
 static void begin(const struct vkao_recording *r, vkao_stage_flags stages,
                   const struct vkao_constants *constants)
 {
@@ -70,13 +72,12 @@ static void begin(const struct vkao_recording *r, vkao_stage_flags stages,
     const VkPipelineStageFlags compute = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
                                transfer = VK_PIPELINE_STAGE_TRANSFER_BIT;
     VkImageMemoryBarrier images[VKAO_IMAGE_COUNT];
-    const uint32_t count =
-        stages & VKAO_STAGE_PREPARE ? beginnings(r->frame, 0, true, images) : 0;
+    const uint32_t count = stages & VKAO_STAGE_PREPARE ? beginnings(r->frame, 0, true, images) : 0;
     const VkMemoryBarrier before = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
         .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
-        .dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT |
-                         VK_ACCESS_TRANSFER_WRITE_BIT,
+        .dstAccessMask =
+            VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
     };
     const VkMemoryBarrier after = {
         .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
@@ -164,16 +165,14 @@ static void record_passes(const struct vkao_recording *r, vkao_stage_flags stage
 }
 
 static vkao_result record(const vkao_frame *frame, VkCommandBuffer cmd, const char *call,
-                          vkao_stage_flags stages, const vkao_view *view,
-                          const vkao_params *params)
+                          vkao_stage_flags stages, const vkao_view *view, const vkao_params *params)
 {
     vkao_params known;
     struct vkao_recording r = {.frame = frame, .cmd = cmd};
     if (!frame)
         return VKAO_ERROR_INVALID_ARGUMENT;
     const vkao_effect_info *e = &frame->program->settings;
-    const vkao_stage_flags has =
-        e->stages | (e->stages & makes_ao ? VKAO_STAGE_PREPARE : 0u);
+    const vkao_stage_flags has = e->stages | (e->stages & makes_ao ? VKAO_STAGE_PREPARE : 0u);
     if (!cmd)
         return vkao_refuse(&frame->ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s: cmd is NULL", call);
     if (!stages || (stages & ~has))

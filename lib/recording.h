@@ -17,7 +17,8 @@ struct vkao_recording {
 /* The texels that a pass writes. */
 struct vkao_rect vkao_area(const struct vkao_recording *r, enum vkao_area area);
 
-/* What a command does and waits for. INDIRECT: shaders, and the reading of their dispatch's size. */
+/* What a command does and waits for. INDIRECT: shaders, and the reading of their dispatch's
+ * size. */
 enum vkao_access { VKAO_SHADERS, VKAO_TRANSFER, VKAO_INDIRECT };
 void vkao_barrier(const struct vkao_recording *r, enum vkao_access before, enum vkao_access after);
 

@@ -132,8 +132,7 @@ vkao_result vkao_scratch_create(const struct vkao_program *program,
     uint32_t count = 1;
     VkMemoryRequirements r;
     *out = (VkMemoryRequirements){.alignment = granularity, .memoryTypeBits = UINT32_MAX};
-    vkao_result result =
-        create_buffer(ctx, place_parts(program, plan, scratch), &scratch->buffer);
+    vkao_result result = create_buffer(ctx, place_parts(program, plan, scratch), &scratch->buffer);
     if (result != VKAO_SUCCESS)
         return result;
     ctx->vk.GetBufferMemoryRequirements(ctx->device, scratch->buffer, &r);
@@ -190,15 +189,16 @@ static vkao_result create_view(const vkao_context *ctx, const struct vkao_scratc
                                const struct vkao_use *use, VkBufferView *view)
 {
     const struct vkao_block *part = &scratch->blocks[use->resource];
-    VkResult result = ctx->vk.CreateBufferView(ctx->device,
-                                               &(VkBufferViewCreateInfo){
-                                                   .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
-                                                   .buffer = scratch->buffer,
-                                                   .format = use->texels,
-                                                   .offset = part->offset,
-                                                   .range = part->size,
-                                               },
-                                               ctx->allocator, view);
+    VkResult result =
+        ctx->vk.CreateBufferView(ctx->device,
+                                 &(VkBufferViewCreateInfo){
+                                     .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                     .buffer = scratch->buffer,
+                                     .format = use->texels,
+                                     .offset = part->offset,
+                                     .range = part->size,
+                                 },
+                                 ctx->allocator, view);
     if (result == VK_SUCCESS)
         return VKAO_SUCCESS;
     *view = VK_NULL_HANDLE;

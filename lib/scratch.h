@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a frame needs between its passes, in one block of device memory: images, and a buffer with the constants and what
- * the CPU's passes keep. Resources whose lifetimes do not meet share memory. */
+ * What a frame needs between its passes, in one block of device memory: images, and a buffer with
+ * the constants and what the CPU's passes keep. Resources whose lifetimes do not meet share
+ * memory. */
 #ifndef VKAO_SCRATCH_H_
 #define VKAO_SCRATCH_H_
 
@@ -23,8 +24,9 @@ struct vkao_scratch_image {
 
 struct vkao_scratch {
     struct vkao_scratch_image images[VKAO_IMAGE_COUNT];
-    struct vkao_block blocks[VKAO_RESOURCE_COUNT]; /* of images in the memory, of parts in the buffer */
-    struct vkao_block whole;                       /* the buffer in the memory */
+    /* of images in the memory, of parts in the buffer */
+    struct vkao_block blocks[VKAO_RESOURCE_COUNT];
+    struct vkao_block whole; /* the buffer in the memory */
     VkBuffer buffer;
     VkBufferView views[VKAO_MOST_PASSES][VKAO_MOST_USES]; /* of uses as texels */
 };
@@ -38,10 +40,12 @@ struct vkao_scratch_plan {
     VkDeviceSize parts[VKAO_RESOURCE_COUNT]; /* bytes, from VKAO_RESOURCE_CONSTANTS on */
 };
 
-/* Places blocks so that those that live at the same time do not overlap; returns the size of all. */
+/* Places blocks so that those that live at the same time do not overlap; returns the size of
+ * all. */
 VkDeviceSize vkao_place(struct vkao_block *blocks[], uint32_t count);
 
-/* Creates it, unbound, and tells the memory that it takes. On failure the rest is for vkao_scratch_destroy. */
+/* Creates it, unbound, and tells the memory that it takes. On failure the rest is for
+ * vkao_scratch_destroy. */
 vkao_result vkao_scratch_create(const struct vkao_program *program,
                                 const struct vkao_scratch_plan *plan, struct vkao_scratch *scratch,
                                 VkMemoryRequirements *out);

@@ -65,7 +65,8 @@ static bool read_layout(VkImageLayout layout)
     return false;
 }
 
-/* Must the caller give it? What the program makes itself it can keep in scratch, if nobody else is to see it. */
+/* Must the caller give it? What the program makes itself it can keep in scratch, if nobody else is
+ * to see it. */
 static bool is_required(const struct vkao_program *program, uint32_t slot)
 {
     const vkao_effect_info *e = &program->settings;
@@ -96,15 +97,15 @@ static vkao_result check_slot(const struct vkao_program *program, uint32_t i,
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
                            "%s.image is given, want it in images.ao only", name);
     if (!format_fits(slots[i].use, image->format))
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "%s.format is %s, want %s", name, is, wants[slots[i].use]);
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s.format is %s, want %s", name,
+                           is, wants[slots[i].use]);
     if (i == VKAO_RESOURCE_AO && writes && image->format != program->settings.ao_format)
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
                            "%s.format is %s, but effect.ao_format is %s", name, is,
                            vkao_format_name(program->settings.ao_format, other));
     if (writes ? image->layout != VK_IMAGE_LAYOUT_GENERAL : reads && !read_layout(image->layout))
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "%s.layout is %s, want %s", name, vkao_layout_name(image->layout, other),
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s.layout is %s, want %s", name,
+                           vkao_layout_name(image->layout, other),
                            writes ? "GENERAL" : "a read-only one or GENERAL");
     const VkFormatFeatureFlags want = (reads ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT : 0u) |
                                       (writes ? VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT : 0u);

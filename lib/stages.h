@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The stages of the image path, which GPUs have: each adds its rows to a program and fills its part of the constants. */
+ * The stages of the image path, which GPUs have: each adds its rows to a program and fills its part
+ * of the constants. */
 #ifndef VKAO_STAGES_H_
 #define VKAO_STAGES_H_
 

@@ -55,15 +55,17 @@ static vkao_result read_projection(const struct vkao_logger *log, const vkao_vie
     for (size_t i = 0; i < sizeof zero / sizeof zero[0]; ++i) {
         if (m[zero[i]] != 0.0f)
             return vkao_refuse(
-                log, VKAO_ERROR_INVALID_ARGUMENT,
-                "view.projection[%d] is %g, want 0: %s", zero[i], (double)m[zero[i]],
+                log, VKAO_ERROR_INVALID_ARGUMENT, "view.projection[%d] is %g, want 0: %s", zero[i],
+                (double)m[zero[i]],
                 zero[i] == 2 || zero[i] == 6
-                    ? "the near plane is oblique, or rows stand where columns should; of an oblique "
+                    ? "the near plane is oblique, or rows stand where columns should; of an "
+                      "oblique "
                       "view give VIEW_Z, which does not depend on planes, with the plain matrix"
                     : "sheared and rotated projections are not supported, and m[column * 4 + row] "
                       "holds columns");
     }
-    /* -near far / (far - near), or near, stands where w's factor of z should, and that where the former should. */
+    /* -near far / (far - near), or near, stands where w's factor of z should, and that where the
+     * former should. */
     if (m[15] == 0.0f && fabsf(m[11]) != 1.0f && fabsf(m[14]) == 1.0f)
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "view.projection is transposed: [11] is %g and [14] is %g, want [11] 1 "
@@ -80,10 +82,11 @@ static vkao_result read_projection(const struct vkao_logger *log, const vkao_vie
                            (double)m[15]);
     /* What lies between the planes lies in front of the eye, whichever is near. */
     if (perspective && (0.5 * (double)m[11] - (double)m[10]) * (double)m[11] / (double)m[14] <= 0.0)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "view.projection puts depth 0.5 behind the eye ([10] %g [11] %g [14] %g): "
-                           "is it transposed? m[column * 4 + row] holds columns",
-                           (double)m[10], (double)m[11], (double)m[14]);
+        return vkao_refuse(
+            log, VKAO_ERROR_INVALID_ARGUMENT,
+            "view.projection puts depth 0.5 behind the eye ([10] %g [11] %g [14] %g): "
+            "is it transposed? m[column * 4 + row] holds columns",
+            (double)m[10], (double)m[11], (double)m[14]);
     /* Scale so that w is distance along the axis, or 1. */
     double w = perspective ? fabs((double)m[11]) : (double)m[15];
     *p = (struct projection){
@@ -182,16 +185,17 @@ static void read_unproject(const struct projection *p, const vkao_view *view,
     out->reference_z = p->orthographic ? (float)fabs(2.0 / p->x_scale) : 0.0f;
 }
 
-/* The far plane read back from a float matrix is off by up to this much, relative to far / near; what lies that close
- * to it is background too. */
+/* The far plane read back from a float matrix is off by up to this much, relative to far / near;
+ * what lies that close to it is background too. */
 static float far_limit(double near, double far)
 {
     double ratio = near > 0.0 ? far / near : 1.0;
     return (float)(far * (1.0 - fmin(0.5, 0x1p-22 * ratio)));
 }
 
-/* Device depth to view z. The step of the depth format tells how far z may be off: fixed-point steps are the same
- * everywhere, floating ones shrink towards 0, which is why reversed floating depth is accurate. */
+/* Device depth to view z. The step of the depth format tells how far z may be off: fixed-point
+ * steps are the same everywhere, floating ones shrink towards 0, which is why reversed floating
+ * depth is accurate. */
 static void read_depth(const struct projection *p, const vkao_effect_info *effect, VkFormat format,
                        struct view_constants *out)
 {
@@ -208,7 +212,8 @@ static void read_depth(const struct projection *p, const vkao_effect_info *effec
         double z0 = p->forward * -p->z_1 / p->z_z, z1 = p->forward * (1.0 - p->z_1) / p->z_z;
         out->far_depth = z1 > z0 ? 1.0f : 0.0f;
         double far = fmax(z0, z1), near = fmin(z0, z1);
-        /* Orthographic xy does not depend on z: moving the eye back keeps z positive and changes nothing. */
+        /* Orthographic xy does not depend on z: moving the eye back keeps z positive and changes
+         * nothing. */
         double shift = near > 0.0 ? 0.0 : 0.001 * (far - near) - near;
         out->linearize[0] = (float)(z0 + shift);
         out->linearize[1] = (float)(z1 - z0);
@@ -232,7 +237,8 @@ static void read_depth(const struct projection *p, const vkao_effect_info *effec
         } else if (isfinite(far) && far > 0.0) {
             out->far_z = far_limit(fmin(at_zero, at_one), far);
         }
-        /* The point and its occluder err by half a step each; a step is up to twice the format's above a power of two. */
+        /* The point and its occluder err by half a step each; a step is up to twice the format's
+         * above a power of two. */
         if (effect->depth_encoding != VKAO_DEPTH_PROJECTED || (floating && !one_is_far))
             out->depth_error[0] += (float)(2.0 * step);
     }
@@ -259,7 +265,7 @@ static vkao_result check_members(const struct vkao_logger *log, const vkao_view 
 }
 
 vkao_result vkao_view_rects(const struct vkao_logger *log, const vkao_view *view, VkExtent2D extent,
-                       struct vkao_rect *valid, struct vkao_rect *rect)
+                            struct vkao_rect *valid, struct vkao_rect *rect)
 {
     vkao_result result = check_members(log, view);
     return result == VKAO_SUCCESS ? resolve_rects(log, view, extent, valid, rect) : result;
@@ -278,10 +284,9 @@ vkao_result vkao_view_constants_init(const struct vkao_logger *log, const vkao_v
     if (result != VKAO_SUCCESS)
         return result;
     if (p.orthographic != (effect->projection == VKAO_PROJECTION_ORTHOGRAPHIC))
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "view.projection is %s, but effect.projection is %u",
-                           p.orthographic ? "orthographic" : "perspective",
-                           (unsigned)effect->projection);
+        return vkao_refuse(
+            log, VKAO_ERROR_INVALID_ARGUMENT, "view.projection is %s, but effect.projection is %u",
+            p.orthographic ? "orthographic" : "perspective", (unsigned)effect->projection);
     *out = (struct view_constants){.orthographic = p.orthographic};
     result = resolve_rects(log, view, extent, &out->valid, &out->rect);
     if (result != VKAO_SUCCESS)
@@ -315,7 +320,8 @@ struct view_constants vkao_view_halve(const struct view_constants *view)
     return half;
 }
 
-struct vkao_rect vkao_rect_grow(struct vkao_rect rect, uint32_t x, uint32_t y, struct vkao_rect bounds)
+struct vkao_rect vkao_rect_grow(struct vkao_rect rect, uint32_t x, uint32_t y,
+                                struct vkao_rect bounds)
 {
     struct vkao_rect grown = {
         .x0 = rect.x0 - bounds.x0 > x ? rect.x0 - x : bounds.x0,

@@ -20,8 +20,8 @@ bool vkao_vk_table_load(struct vk_table *vk, const vkao_context_info *info, cons
     VKAO_INSTANCE_FUNCTIONS(VKAO_LOAD_INSTANCE)
     VKAO_DEVICE_FUNCTIONS(VKAO_LOAD_DEVICE)
     VKAO_DEBUG_FUNCTIONS(VKAO_LOAD_DEBUG)
-    /* Never called. Whatever the device is, those of an instance for Vulkan 1.0 lack it, and with it what shaders here
-     * are compiled for. */
+    /* Never called. Whatever the device is, those of an instance for Vulkan 1.0 lack it, and with
+     * it what shaders here are compiled for. */
     if (!info->get_device_proc_addr(info->device, "vkTrimCommandPool"))
         *missing = "vkTrimCommandPool";
 #undef VKAO_LOAD_INSTANCE

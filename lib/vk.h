@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * All Vulkan plumbing: the function table through which every call goes, result mapping, formats, memory types. */
+ * All Vulkan plumbing: the function table through which every call goes, result mapping, formats,
+ * memory types. */
 #ifndef VKAO_VK_H_
 #define VKAO_VK_H_
 

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * One direction of the separable cross-bilateral blur (Petschnigg et al. 2004; Eisemann and Durand 2004). The weight
- * of tap k is blur_weight, times max(0, 1 - sharpness * |z_k - z - slope k| / z), slope being the smaller of the two
- * neighbour differences, times max(0, n.n_k)^normal_power. Continuing the slope keeps tilted walls in one piece where
- * a plain depth difference would cut them up. AO is not clamped on the way: one slice per texel often sees more than
- * its share, and a clamp would turn that noise into bias. With VKAO_LAST the result is final. */
+ * One direction of the separable cross-bilateral blur (Petschnigg et al. 2004; Eisemann and Durand
+ * 2004). The weight of tap k is blur_weight, times max(0, 1 - sharpness * |z_k - z - slope k| / z),
+ * slope being the smaller of the two neighbour differences, times max(0, n.n_k)^normal_power.
+ * Continuing the slope keeps tilted walls in one piece where a plain depth difference would cut
+ * them up. AO is not clamped on the way: one slice per texel often sees more than its share, and a
+ * clamp would turn that noise into bias. With VKAO_LAST the result is final. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -33,7 +34,8 @@ vec4 load_noisy(ivec2 texel)
 
 float local_slope(ivec2 texel, float z)
 {
-    return local_slope(surface_z(load_view_z(texel - AXIS)), z, surface_z(load_view_z(texel + AXIS)));
+    return local_slope(surface_z(load_view_z(texel - AXIS)), z,
+                       surface_z(load_view_z(texel + AXIS)));
 }
 
 vec4 blurred(ivec2 texel, float z)
@@ -68,7 +70,8 @@ void main()
         return;
     float z = load_view_z(texel);
     vec4 result = z > 0.0 ? blurred(texel, z) : vec4(0.0, 0.0, 0.0, 1.0);
-    result.w = is_sane(result.w) ? result.w : 1.0; /* an ao_noisy of the caller's may hold anything */
+    /* an ao_noisy of the caller's may hold anything */
+    result.w = is_sane(result.w) ? result.w : 1.0;
 #ifdef VKAO_LAST
     finish(texel, result, z == 0.0);
 #else

@@ -1,18 +1,21 @@
 /* SPDX-License-Identifier: MIT
  *
- * AO onto colour, in linear light; alpha is passed on. AO belongs on indirect light; multiplying all of it is the
- * approximation for pictures that come in one piece.
+ * AO onto colour, in linear light; alpha is passed on. AO belongs on indirect light; multiplying
+ * all of it is the approximation for pictures that come in one piece.
  *
- * Multi-bounce (Jimenez et al. 2016): light that leaves an occluded place by further bounces, by albedo p per channel,
- *     max(ao, ((a ao + b) ao + c) ao), a = 2.0404 p - 0.3324, b = -4.7951 p + 0.6417, c = 2.7552 p + 0.6903.
+ * Multi-bounce (Jimenez et al. 2016): light that leaves an occluded place by further bounces, by
+ * albedo p per channel,
+ *     max(ao, ((a ao + b) ao + c) ao), a = 2.0404 p - 0.3324, b = -4.7951 p + 0.6417, c = 2.7552 p
+ *     + 0.6903.
  * The polynomial is the paper's fit to path-traced scenes, over ao and p in [0, 1]. At ao 1 it is
- * within .0004 of 1.
- * Specular occlusion, either from AO and roughness r (Lagarde and de Rousiers, 'Moving Frostbite to PBR', 2014),
+ * within .0004 of 1. Specular occlusion, either from AO and roughness r (Lagarde and de Rousiers,
+ * 'Moving Frostbite to PBR', 2014),
  *     saturate((n.v + ao)^exp2(-16 r - 1) - 1 + ao),
- * or from the cone around the bent normal that AO opens, cut by the cone of the specular lobe (Oat and Sander,
- * 'Ambient Aperture Lighting', 2007).
+ * or from the cone around the bent normal that AO opens, cut by the cone of the specular lobe (Oat
+ * and Sander, 'Ambient Aperture Lighting', 2007).
  *
- * What light is multiplied by is finite whatever the images hold; the light itself is the caller's. */
+ * What light is multiplied by is finite whatever the images hold; the light itself is the
+ * caller's. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -48,7 +51,8 @@ vec3 multi_bounce(float ao, vec3 albedo)
  * the smaller cone at most. */
 float cone_overlap(float cos_open, float cos_lobe, float cos_between)
 {
-    float open = acos(cos_open), lobe = acos(cos_lobe), between = acos(clamp(cos_between, -1.0, 1.0));
+    float open = acos(cos_open), lobe = acos(cos_lobe),
+          between = acos(clamp(cos_between, -1.0, 1.0));
     float smaller = 1.0 - max(cos_open, cos_lobe), difference = abs(open - lobe);
     float x = 1.0 - clamp((between - difference) / max(open + lobe - difference, 1.0e-4), 0.0, 1.0);
     return smaller * x * x * (3.0 - 2.0 * x) / max(1.0 - cos_lobe, 1.0e-6);
@@ -70,8 +74,10 @@ float specular_occlusion(ivec2 texel, float ao, float roughness)
         return ao;
     /* AO is 1 - cos^2 of the cone that is open. The cosine of the lobe's is 10^-r^2: of a GGX lobe
      * with alpha = r^2, seen from above, it holds 99 % at r = .1, 75 % at .6 and 45 % at 1. */
-    float cos_lobe = min(exp2(-3.32193 * roughness * roughness), 0.9999); /* a mirror's cone has no solid angle */
-    return clamp(cone_overlap(sqrt(max(0.0, 1.0 - ao)), cos_lobe, dot(bent, reflect(-v, n))), 0.0, 1.0);
+    /* a mirror's cone has no solid angle */
+    float cos_lobe = min(exp2(-3.32193 * roughness * roughness), 0.9999);
+    return clamp(cone_overlap(sqrt(max(0.0, 1.0 - ao)), cos_lobe, dot(bent, reflect(-v, n))), 0.0,
+                 1.0);
 }
 
 vec4 lit(ivec2 texel, vec3 factor, float ao)
@@ -82,7 +88,8 @@ vec4 lit(ivec2 texel, vec3 factor, float ao)
         rgb += texelFetch(direct_image, texel, 0).rgb;
     if (SPECULAR != VKAO_GLSL_SPECULAR_NONE) {
         vec4 specular = texelFetch(specular_image, texel, 0);
-        rgb += specular.rgb * mix(1.0, specular_occlusion(texel, ao, share(specular.a, 1.0)), params.strength);
+        rgb += specular.rgb *
+               mix(1.0, specular_occlusion(texel, ao, share(specular.a, 1.0)), params.strength);
     }
     return vec4(rgb, color.a);
 }

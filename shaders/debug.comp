@@ -22,7 +22,8 @@ vec4 debug_view(ivec2 texel)
     ivec2 at = texel >> GRID_SHIFT;
     float z = load_view_z(at);
     if (COMPOSITE_MODE == VKAO_GLSL_COMPOSITE_VIEW_Z)
-        return vec4(vec3(min(z / params.debug_distance, 65504.0)), 1.0); /* what a 16-bit float holds */
+        /* what a 16-bit float holds */
+        return vec4(vec3(min(z / params.debug_distance, 65504.0)), 1.0);
     if (COMPOSITE_MODE == VKAO_GLSL_COMPOSITE_NOISY_AO)
         return vec4(vec3(z > 0.0 ? noisy_ao(at) : 1.0), 1.0);
     vec3 n = vec3(0.0);

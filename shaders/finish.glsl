@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The end of the line, whichever stage it falls to: intensity and power, bent normals in the caller's space and
- * encoding. They come after the blur because they are not linear: noise would turn into bias. */
+ * The end of the line, whichever stage it falls to: intensity and power, bent normals in the
+ * caller's space and encoding. They come after the blur because they are not linear: noise would
+ * turn into bias. */
 #ifndef VKAO_FINISH_GLSL_
 #define VKAO_FINISH_GLSL_
 
@@ -34,14 +35,15 @@ float final_ao(float visibility, bool background)
     return background ? 1.0 : ao;
 }
 
-/* result.w: visibility; result.xyz: mean visible direction in view space, of any length; that of background is zero, as
- * its normal is. */
+/* result.w: visibility; result.xyz: mean visible direction in view space, of any length; that of
+ * background is zero, as its normal is. */
 void finish(ivec2 texel, vec4 result, bool background)
 {
     imageStore(ao_out, texel, vec4(final_ao(result.w, background)));
 #ifndef VKAO_NO_BENT_NORMALS
     if (BENT_NORMALS) {
-        vec3 n = params.normal_x.xyz * result.x + params.normal_y.xyz * result.y + params.normal_z.xyz * result.z;
+        vec3 n = params.normal_x.xyz * result.x + params.normal_y.xyz * result.y +
+                 params.normal_z.xyz * result.z;
         float length2 = dot(n, n);
         vec4 zero = encode_normal(vec3(0.0, 0.0, 0.0), BENT_ENCODING);
         vec4 code = encode_normal(n * inversesqrt(max(length2, 1.0e-30)), BENT_ENCODING);

@@ -1,12 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * What hbao, gtao and vbao share. A slice is the half plane pair through the direction to the eye V and a direction on
- * screen; inside it, points have coordinates x along O, away from the shaded point, and y along V. Both sides are
- * marched outwards, together: of a vec2, .x is the side along O and .y the other. The cosine-weighted visibility of the
- * hemisphere is the mean over slices of
+ * What hbao, gtao and vbao share. A slice is the half plane pair through the direction to the eye V
+ * and a direction on screen; inside it, points have coordinates x along O, away from the shaded
+ * point, and y along V. Both sides are marched outwards, together: of a vec2, .x is the side along
+ * O and .y the other. The cosine-weighted visibility of the hemisphere is the mean over slices of
  *     L * integral of cos(theta - n) |sin theta| over the visible theta,
- * theta being the angle to V, n that of the normal projected into the slice, L the projection's length
- * (Jimenez et al., 'Practical Real-Time Strategies for Accurate Indirect Occlusion', 2016). */
+ * theta being the angle to V, n that of the normal projected into the slice, L the projection's
+ * length (Jimenez et al., 'Practical Real-Time Strategies for Accurate Indirect Occlusion',
+ * 2016). */
 #ifndef VKAO_HORIZON_GLSL_
 #define VKAO_HORIZON_GLSL_
 
@@ -14,10 +15,12 @@ const float PI = 3.14159265358979324;
 const vec2 SIDES = vec2(1.0, -1.0);
 
 struct Slice {
-    vec2 step;           /* direction on screen, in texels that one scene unit has at unit distance */
+    /* direction on screen, in texels that one scene unit has at unit distance */
+    vec2 step;
     float per_texel;     /* 1 / its length */
     float scale;         /* scene units -> the same at the shaded point */
-    vec2 to_x, to_y;     /* texels off the shaded point -> x and y in radii, per unit of view z in perspective */
+    /* texels off the shaded point -> x and y in radii, per unit of view z in perspective */
+    vec2 to_x, to_y;
     float eye, origin;   /* y is origin - eye * view z, and what to_y adds */
     vec3 outward;        /* O: unit, in the slice, at right angles to V */
     float normal_length; /* L */
@@ -32,21 +35,23 @@ Slice make_slice(float turn, vec3 position, vec3 normal, vec3 to_eye)
     s.step = d.xy * params.inverse_unproject;
     s.per_texel = inversesqrt(dot(s.step, s.step));
     s.scale = ORTHOGRAPHIC ? 1.0 : 1.0 / position.z;
-    /* As long as what is left of d without its share along V; 1 - (d.V)^2 is nothing at the edge of a field of view of
-     * nearly 180 degrees. */
+    /* As long as what is left of d without its share along V; 1 - (d.V)^2 is nothing at the edge of
+     * a field of view of nearly 180 degrees. */
     vec3 across = cross(d, to_eye);
     float inverse_length = inversesqrt(dot(across, across));
     s.outward = (d - dot(d, to_eye) * to_eye) * inverse_length;
     across *= inverse_length;
     float off = dot(normal, across), facing = dot(normal, to_eye);
-    /* A sample's texel lies off the slice by rounding. It is moved into it along the tangent plane, which keeps its
-     * height over that plane, so that a tilted wall still lies flat in the slice. */
+    /* A sample's texel lies off the slice by rounding. It is moved into it along the tangent plane,
+     * which keeps its height over that plane, so that a tilted wall still lies flat in the
+     * slice. */
     float moved = off / max(facing, VKAO_STEEPEST);
     vec2 radii = params.unproject.xy * params.inverse_radius;
     s.to_x = radii * s.outward.xy;
     s.to_y = radii * (to_eye.xy + across.xy * moved);
     s.eye = params.inverse_radius * (ORTHOGRAPHIC ? 1.0 : -1.0 / to_eye.z);
-    /* It is taken to lie as deep as its depth may be wrong: a wall must not occlude itself by the steps of a format. */
+    /* It is taken to lie as deep as its depth may be wrong: a wall must not occlude itself by the
+     * steps of a format. */
     s.origin = s.eye * position.z - 2.0 * params.inverse_radius * depth_error(position.z);
     s.normal_length = sqrt(max(1.0 - off * off, 1.0e-12));
     s.cos_n = clamp(facing / s.normal_length, 0.0, 1.0);
@@ -54,8 +59,8 @@ Slice make_slice(float turn, vec3 position, vec3 normal, vec3 to_eye)
     return s;
 }
 
-/* Distance of step t along the slice, a polynomial of t: q (LINEAR + (1 - LINEAR) q) of the reach, with
- * q = (t + jitter) / steps. Steps crowd near the point. */
+/* Distance of step t along the slice, a polynomial of t: q (LINEAR + (1 - LINEAR) q) of the reach,
+ * with q = (t + jitter) / steps. Steps crowd near the point. */
 struct Steps {
     float k0, k1, k2;
 };

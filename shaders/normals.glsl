@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * View-space normals: those that the caller gives, and where there is none to trust, those of the depth image. */
+ * View-space normals: those that the caller gives, and where there is none to trust, those of the
+ * depth image. */
 #ifndef VKAO_NORMALS_GLSL_
 #define VKAO_NORMALS_GLSL_
 
@@ -11,9 +12,10 @@ struct Neighbour {
     float z, side; /* side is -1 or 1: before or after */
 };
 
-/* Of the two pairs of neighbours, the one whose straight continuation meets the centre better. 1/z is what continues
- * straight on screen in perspective; both misses are fractions there, compared without dividing. Without a second
- * neighbour the first one alone decides, by how far it is off; without both, none is chosen. */
+/* Of the two pairs of neighbours, the one whose straight continuation meets the centre better. 1/z
+ * is what continues straight on screen in perspective; both misses are fractions there, compared
+ * without dividing. Without a second neighbour the first one alone decides, by how far it is off;
+ * without both, none is chosen. */
 Neighbour straight_neighbour(vec2 near_z, vec2 far_z, float z)
 {
     vec2 line = near_z - z, curve = 2.0 * near_z - far_z - z;
@@ -33,7 +35,8 @@ Neighbour straight_neighbour(vec2 near_z, vec2 far_z, float z)
     return Neighbour(before ? near_z.x : near_z.y, before ? -1.0 : 1.0);
 }
 
-/* Of the nearest pair, the one whose view z differs less: quickly found, and seldom wrong beside an edge. */
+/* Of the nearest pair, the one whose view z differs less: quickly found, and seldom wrong beside an
+ * edge. */
 Neighbour nearest_neighbour(vec2 near_z, float center_z)
 {
     vec2 miss = abs(near_z - center_z);
@@ -42,7 +45,8 @@ Neighbour nearest_neighbour(vec2 near_z, float center_z)
     return Neighbour(z > 0.0 ? z : center_z, before ? -1.0 : 1.0);
 }
 
-/* careful is what a depth image without normals takes; where a stored normal fails now and then, quick will do. */
+/* careful is what a depth image without normals takes; where a stored normal fails now and then,
+ * quick will do. */
 Neighbour neighbour_in(ivec2 texel, ivec2 axis, float center_z, bool careful)
 {
     vec2 near_z = vec2(load_view_z(texel - axis), load_view_z(texel + axis));
@@ -58,8 +62,9 @@ vec3 normal_from_depth(ivec2 texel, float center_z)
     const bool careful = NORMAL_ENCODING == VKAO_GLSL_NORMALS_FROM_DEPTH;
     Neighbour beside = neighbour_in(texel, ivec2(1, 0), center_z, careful);
     Neighbour below = neighbour_in(texel, ivec2(0, 1), center_z, careful);
-    /* Slopes of depth over what a texel is wide there: the cross product without its length, whose square leaves the
-     * range of floats in scenes that are small or large or seen through a keyhole. */
+    /* Slopes of depth over what a texel is wide there: the cross product without its length, whose
+     * square leaves the range of floats in scenes that are small or large or seen through a
+     * keyhole. */
     vec2 slope = vec2(beside.side * (beside.z - center_z), below.side * (below.z - center_z));
     slope *= params.inverse_unproject;
     if (!ORTHOGRAPHIC)
@@ -70,9 +75,10 @@ vec3 normal_from_depth(ivec2 texel, float center_z)
     return normalize(n);
 }
 
-/* The stored normal, or the surface's own. One that points away is turned if the back of its surface is what is seen.
- * Near outlines it is more often one that interpolation over a mesh has carried past the edge: turned, that would stand
- * across the surface, which would then hide itself. There depth decides. */
+/* The stored normal, or the surface's own. One that points away is turned if the back of its
+ * surface is what is seen. Near outlines it is more often one that interpolation over a mesh has
+ * carried past the edge: turned, that would stand across the surface, which would then hide itself.
+ * There depth decides. */
 vec3 trusted_normal(vec3 stored, vec3 own, vec3 center)
 {
     bool away = (ORTHOGRAPHIC ? stored.z : dot(stored, center)) > 0.0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What C and GLSL must agree on: bindings, workgroup sizes, settings, constants. Included by both. The C side asserts
- * sizes (lib/passes.c). */
+ * What C and GLSL must agree on: bindings, workgroup sizes, settings, constants. Included by both.
+ * The C side asserts sizes (lib/passes.c). */
 #ifndef VKAO_PARAMS_H_
 #define VKAO_PARAMS_H_
 
@@ -25,7 +25,8 @@
 #define VKAO_GROUP_WIDTH 16
 #define VKAO_GROUP_HEIGHT 8
 
-/* Set 0. A pass has those that its row names; the CPU's own come after these (shaders/cpu/layout.h). */
+/* Set 0. A pass has those that its row names; the CPU's own come after these
+ * (shaders/cpu/layout.h). */
 #define VKAO_BINDING_CONSTANTS 0
 #define VKAO_BINDING_DEPTH 1
 #define VKAO_BINDING_NORMALS 2
@@ -43,8 +44,8 @@
 #define VKAO_BINDING_OUTPUT 14
 #define VKAO_BINDING_CPU 15 /* the first of the CPU's */
 
-/* What a pass is compiled for: specialization constants, the same for all passes of an effect but for the last three.
- * shaders/settings.glsl declares them. */
+/* What a pass is compiled for: specialization constants, the same for all passes of an effect but
+ * for the last three. shaders/settings.glsl declares them. */
 #define VKAO_SETTING_DEPTH_ENCODING 0
 #define VKAO_SETTING_NORMAL_ENCODING 1
 #define VKAO_SETTING_BENT_ENCODING 2
@@ -53,7 +54,8 @@
 #define VKAO_SETTING_BENT_NORMALS 5
 #define VKAO_SETTING_THRESHOLD 6
 #define VKAO_SETTING_SPHERE_LITERAL 7
-#define VKAO_SETTING_SLICES 8 /* counts are 0 if loops are too long to unroll; then constants have them */
+#define VKAO_SETTING_SLICES                                                                        \
+    8 /* counts are 0 if loops are too long to unroll; then constants have them */
 #define VKAO_SETTING_STEPS 9
 #define VKAO_SETTING_SAMPLES 10
 #define VKAO_SETTING_BLUR_RADIUS 11
@@ -61,21 +63,23 @@
 #define VKAO_SETTING_COMPOSITE_MODE 13
 #define VKAO_SETTING_MULTI_BOUNCE 14
 #define VKAO_SETTING_SPECULAR 15
-#define VKAO_SETTING_PATH 16    /* the CPU's own */
+#define VKAO_SETTING_PATH 16     /* the CPU's own */
 #define VKAO_SETTING_VERTICAL 17 /* of the pass: one shader blurs in two directions */
 #define VKAO_SETTING_TONED 18    /* of the form: intensity or power is not 1 */
 #define VKAO_SETTING_COPIED 19   /* of the form, the CPU's own */
 #define VKAO_SETTING_COUNT 20
 
-/* Samples or steps in a row: loops longer than that take long to compile, and their overhead is small. */
+/* Samples or steps in a row: loops longer than that take long to compile, and their overhead is
+ * small. */
 #define VKAO_MOST_UNROLLED 64u
-/* Of vbao, whose steps are long: more than the first in all slices leave a CPU's instruction cache, and are looped over
- * instead, slice by slice and at most the second at once. GPUs, whose caches are no larger, get the same. */
+/* Of vbao, whose steps are long: more than the first in all slices leave a CPU's instruction cache,
+ * and are looped over instead, slice by slice and at most the second at once. GPUs, whose caches
+ * are no larger, get the same. */
 #define VKAO_VBAO_MOST_UNROLLED 16u
 #define VKAO_VBAO_MOST_AT_ONCE 8u
 
-/* View z outside this range is background: what squares of lengths, in radii and at any field of view, would take out of
- * the range of floats. far_z is at most the second. */
+/* View z outside this range is background: what squares of lengths, in radii and at any field of
+ * view, would take out of the range of floats. far_z is at most the second. */
 #define VKAO_NEAREST_Z 1.0e-15
 #define VKAO_FARTHEST_Z 1.0e15
 /* Visibility and mean directions are smaller; what is not, or is no number, is not theirs. */
@@ -105,49 +109,57 @@
 #define VKAO_GLSL_SPECULAR_FROM_AO 1
 
 /* What vbao guesses of the scene between its samples and behind them, and where it samples. Lengths
- * are fractions of the radius, cosines those of the angle to the eye. Found by coordinate search, as
- * tools/bench/fit-vbao does it, on solid and thin scenes together. */
-#define VKAO_VBAO_REACH_SMOOTH 0.80    /* how far the last step goes: the smooth falloff hides what lies beyond */
+ * are fractions of the radius, cosines those of the angle to the eye. Found by coordinate search,
+ * as tools/bench/fit-vbao does it, on solid and thin scenes together. */
+#define VKAO_VBAO_REACH_SMOOTH                                                                     \
+    0.80 /* how far the last step goes: the smooth falloff hides what lies beyond */
 #define VKAO_VBAO_REACH_THRESHOLD 1.08 /* samples beyond stand for what lies before them */
-#define VKAO_STEP_LINEAR 0.50          /* distance of step t is q (LINEAR + (1 - LINEAR) q), q = (t + jitter) / steps */
-#define VKAO_THICKNESS_BASE 0.19       /* thickness of what is seen */
-#define VKAO_THICKNESS_SLOPE 0.42      /* and what it gains per distance to the side */
-#define VKAO_THICKNESS_THRESHOLD 1.1   /* times that with the threshold: what is far away counts alike, and hides more */
-#define VKAO_VBAO_JOIN 1.0             /* rise over the tangent plane, per run, up to which two samples join */
-#define VKAO_VBAO_GAP_FRONT 0.55       /* share of the gap by which the front of a separate surface moves in */
-#define VKAO_VBAO_GAP_BACK 0.7         /* share of the gap by which its back moves out */
-#define VKAO_VBAO_ROUND 0.9            /* added before a sector bound is cut to an integer */
+#define VKAO_STEP_LINEAR                                                                           \
+    0.50 /* distance of step t is q (LINEAR + (1 - LINEAR) q), q = (t + jitter) / steps */
+#define VKAO_THICKNESS_BASE 0.19  /* thickness of what is seen */
+#define VKAO_THICKNESS_SLOPE 0.42 /* and what it gains per distance to the side */
+#define VKAO_THICKNESS_THRESHOLD                                                                   \
+    1.1 /* times that with the threshold: what is far away counts alike, and hides more */
+#define VKAO_VBAO_JOIN 1.0 /* rise over the tangent plane, per run, up to which two samples join */
+#define VKAO_VBAO_GAP_FRONT                                                                        \
+    0.55 /* share of the gap by which the front of a separate surface moves in */
+#define VKAO_VBAO_GAP_BACK 0.7 /* share of the gap by which its back moves out */
+#define VKAO_VBAO_ROUND 0.9    /* added before a sector bound is cut to an integer */
 
-/* Cosine to the eye at which tangent planes stop getting steeper in slices: less than that of the last texels that a
- * wall of 80 degrees has before its horizon. */
+/* Cosine to the eye at which tangent planes stop getting steeper in slices: less than that of the
+ * last texels that a wall of 80 degrees has before its horizon. */
 #define VKAO_STEEPEST 0.002
-/* Slope, in view space, at which normals that depth gives stop: their squares are floats at any field of view. */
+/* Slope, in view space, at which normals that depth gives stop: their squares are floats at any
+ * field of view. */
 #define VKAO_STEEPEST_FACET 1.0e9
 
-/* All that a recording says, in a uniform buffer that it fills first. Rectangles are half open, two 16-bit coordinates to
- * a word, x low: [0] = min, [1] = max. View xy is texel * unproject.xy + unproject.zw, times view z in perspective; texel
- * centres are integers. Inside the shaders view space has +z away from the eye, whatever the caller's hand. The image has
- * its own grid, and at half resolution the stages run on a coarser one. */
+/* All that a recording says, in a uniform buffer that it fills first. Rectangles are half open, two
+ * 16-bit coordinates to a word, x low: [0] = min, [1] = max. View xy is texel * unproject.xy +
+ * unproject.zw, times view z in perspective; texel centres are integers. Inside the shaders view
+ * space has +z away from the eye, whatever the caller's hand. The image has its own grid, and at
+ * half resolution the stages run on a coarser one. */
 struct vkao_constants {
     VKAO_VEC4(image_unproject);
     VKAO_VEC4(unproject); /* of the grid */
     VKAO_VEC4(normal_x);  /* rows of normal_to_view without what it scales by; .w is 0 */
     VKAO_VEC4(normal_y);
     VKAO_VEC4(normal_z);
-    VKAO_VEC4(tint); /* .w is 0 */
-    VKAO_UVEC4(path); /* the CPU's own */
+    VKAO_VEC4(tint);              /* .w is 0 */
+    VKAO_UVEC4(path);             /* the CPU's own */
     VKAO_VEC2(inverse_unproject); /* 1 / unproject.xy */
-    VKAO_VEC2(linearize); /* PROJECTED: .x / (.y - depth) in perspective, .x + .y * depth in orthographic views */
-    VKAO_VEC2(far_test);  /* PROJECTED: depth * .x >= .y is background */
+    /* PROJECTED: .x / (.y - depth) in perspective, .x + .y * depth in orthographic views */
+    VKAO_VEC2(linearize);
+    VKAO_VEC2(far_test);    /* PROJECTED: depth * .x >= .y is background */
     VKAO_VEC2(depth_error); /* uncertainty of a view z: .x + .y * z, times z in perspective */
     VKAO_UVEC2(image_valid);
     VKAO_UVEC2(valid); /* of the grid */
     VKAO_FLOAT(far_z); /* other encodings: view z of the far plane */
-    VKAO_FLOAT(reference_z); /* what sharpness is relative to in orthographic views; 0 = the texel's own z */
+    /* what sharpness is relative to in orthographic views; 0 = the texel's own z */
+    VKAO_FLOAT(reference_z);
     VKAO_FLOAT(radius);
     VKAO_FLOAT(inverse_radius);
-    VKAO_FLOAT(bias); /* scene units */
-    VKAO_FLOAT(bias_cosine); /* bias / radius */
+    VKAO_FLOAT(bias);           /* scene units */
+    VKAO_FLOAT(bias_cosine);    /* bias / radius */
     VKAO_FLOAT(blocking_scale); /* SPHERE */
     VKAO_FLOAT(thickness_base); /* VBAO, RAYMARCH: radii */
     VKAO_FLOAT(thickness_slope);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Depth of any encoding -> positive view z, once, so that no later tap divides. Background becomes 0. At half
- * resolution every second texel of every second row is taken as it is: an average of depths is no depth. */
+ * Depth of any encoding -> positive view z, once, so that no later tap divides. Background becomes
+ * 0. At half resolution every second texel of every second row is taken as it is: an average of
+ * depths is no depth. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

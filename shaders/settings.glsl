@@ -25,8 +25,8 @@ layout(constant_id = VKAO_SETTING_TONED) const bool TONED = false;
 
 layout(binding = VKAO_BINDING_CONSTANTS) uniform Constants { vkao_constants params; };
 
-/* These are at least 1. Loops over them test at their end, as a driver in software goes through a body once more to find
- * that no lane is left. */
+/* These are at least 1. Loops over them test at their end, as a driver in software goes through a
+ * body once more to find that no lane is left. */
 uint slice_count()
 {
     return SLICES != 0u ? SLICES : params.slices;
@@ -42,7 +42,8 @@ uint sample_count()
     return SAMPLES != 0u ? SAMPLES : params.samples;
 }
 
-/* Is it a number, and not absurdly large? By its bits: compilers may assume of floats that they are numbers. */
+/* Is it a number, and not absurdly large? By its bits: compilers may assume of floats that they are
+ * numbers. */
 bool is_sane(float v)
 {
     return (floatBitsToUint(v) & 0x7fffffffu) < floatBitsToUint(VKAO_LARGEST_RESULT);

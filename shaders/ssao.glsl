@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The frame of every SSAO method: a texel of the rect per invocation, background exactly 1. The includer defines
+ * The frame of every SSAO method: a texel of the rect per invocation, background exactly 1. The
+ * includer defines
  *     Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
  * in view space. Which texel an invocation has and where its result goes, invocation.glsl says. */
 #ifndef VKAO_SSAO_GLSL_
@@ -43,9 +44,10 @@ ivec2 nearest_texel(vec3 position)
     return ivec2(floor(project_to_texel(position) + 0.5));
 }
 
-/* Is the point at height point_height over the tangent plane behind the scene at occluder? Heights are compared, not
- * depths: the depth image knows the scene at texel centres only, and on a tilted wall half a texel sideways moves z,
- * but not the height, which is 0 all over the wall. A wall is open at any tilt that way. */
+/* Is the point at height point_height over the tangent plane behind the scene at occluder? Heights
+ * are compared, not depths: the depth image knows the scene at texel centres only, and on a tilted
+ * wall half a texel sideways moves z, but not the height, which is 0 all over the wall. A wall is
+ * open at any tilt that way. */
 bool stands_in_front(vec3 occluder, vec3 position, vec3 normal, float point_height)
 {
     return dot(normal, occluder - position) > point_height;
@@ -62,7 +64,8 @@ Visibility shade(ivec2 texel)
         return v;
     vec3 position = view_position(vec2(texel), z);
     v = visibility(texel, position, view_normal(texel, position));
-    /* Where numbers fail, by a radius of 1e-9 of the distance for one, nothing is known to occlude. */
+    /* Where numbers fail, by a radius of 1e-9 of the distance for one, nothing is known to
+     * occlude. */
     v.open = is_sane(v.open) ? v.open : 1.0;
     bvec3 sane = bvec3(is_sane(v.bent.x), is_sane(v.bent.y), is_sane(v.bent.z));
     v.bent = mix(vec3(0.0), v.bent, sane);

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Cosine-weighted horizons (Jimenez et al. 2016, equation 7): per slice and side the horizon cosine is the largest over
- * the samples, each faded towards the tangent plane by the falloff; with h1, h0 the two horizon angles,
+ * Cosine-weighted horizons (Jimenez et al. 2016, equation 7): per slice and side the horizon cosine
+ * is the largest over the samples, each faded towards the tangent plane by the falloff; with h1, h0
+ * the two horizon angles,
  *     slice = L * sum over both of (cos n + 2 h sin n - cos(2h - n)) / 4.
- * An open slice is L (cos n + n sin n), whose mean over the slices is 1: the occluded part alone is summed, so that an
- * open wall is exactly 1. The bent normal is algorithm 2 of the paper. */
+ * An open slice is L (cos n + n sin n), whose mean over the slices is 1: the occluded part alone is
+ * summed, so that an open wall is exactly 1. The bent normal is algorithm 2 of the paper. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -49,7 +50,8 @@ Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
         float h1 = min(h.x, n + 0.5 * PI), h0 = max(-h.y, n - 0.5 * PI);
         lost += s.normal_length * arc_lost(h0, h1, n, s.cos_n, s.sin_n);
         if (BENT_NORMALS)
-            bent += s.normal_length * (s.outward * arc_outward(h0, h1, n) + to_eye * arc_to_eye(h0, h1, n));
+            bent += s.normal_length *
+                    (s.outward * arc_outward(h0, h1, n) + to_eye * arc_to_eye(h0, h1, n));
         if (++k >= slice_count())
             break;
     }

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
- * Horizon-based ambient occlusion (Bavoil, Sainz and Dimitrov 2008), true-horizon form: marching outwards, each sample
- * that rises over the horizon so far adds the rise of its sine over the tangent plane, weighted by the falloff at its
- * own distance; visibility is 1 - the mean over directions. Measured on nine G-buffers with ray-traced truth at 1x8:
- * RMSE .087 (geometric mean), against .103 with squared sines, which are cosine-weighted in a slice of their own, and
- * .118 for the point form, max(0, sine - bias) * falloff averaged over samples. */
+ * Horizon-based ambient occlusion (Bavoil, Sainz and Dimitrov 2008), true-horizon form: marching
+ * outwards, each sample that rises over the horizon so far adds the rise of its sine over the
+ * tangent plane, weighted by the falloff at its own distance; visibility is 1 - the mean over
+ * directions. Measured on nine G-buffers with ray-traced truth at 1x8: RMSE .087 (geometric mean),
+ * against .103 with squared sines, which are cosine-weighted in a slice of their own, and .118 for
+ * the point form, max(0, sine - bias) * falloff averaged over samples. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Normal-oriented hemisphere (Filion and McNaughton, 'StarCraft II: Effects and Techniques', 2008), with a
- * cosine-weighted kernel in pairs of points: the directions of pair k of n lie over the point k of a Fibonacci disk and
- * over the one across it,
+ * Normal-oriented hemisphere (Filion and McNaughton, 'StarCraft II: Effects and Techniques', 2008),
+ * with a cosine-weighted kernel in pairs of points: the directions of pair k of n lie over the
+ * point k of a Fibonacci disk and over the one across it,
  *     r = sqrt((k + 1/2) / n), angle = k * golden angle + noise, height sqrt(1 - r^2),
- * so that the mean over k needs no weights. Of the two lengths one is of the shorter half; each half is stratified over
- * k by the golden ratio, and within its stratum a length moves with a second noise. Their distribution carries the
- * falloff, see point_length. A point is blocked if the scene stands in front of it; each blocked point counts by
- * range_weight. */
+ * so that the mean over k needs no weights. Of the two lengths one is of the shorter half; each
+ * half is stratified over k by the golden ratio, and within its stratum a length moves with a
+ * second noise. Their distribution carries the falloff, see point_length. A point is blocked if the
+ * scene stands in front of it; each blocked point counts by range_weight. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -39,10 +39,12 @@ Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
     uint pairs = (sample_count() + 1u) / 2u, k = 0u;
     float sum = 0.0;
     [[unroll]] for (;;) {
-        float r2 = (float(k) + 0.5) / float(pairs), angle = float(k) * GOLDEN_ANGLE + TWO_PI * noise.turn;
+        float r2 = (float(k) + 0.5) / float(pairs),
+              angle = float(k) * GOLDEN_ANGLE + TWO_PI * noise.turn;
         vec3 across = sqrt(r2) * (cos(angle) * t + sin(angle) * b), up = sqrt(1.0 - r2) * normal;
         vec2 lengths = params.radius * pair_lengths(k, pairs, noise.jitter);
-        sum += blocked(position, normal, lengths.x * (up + across)) + blocked(position, normal, lengths.y * (up - across));
+        sum += blocked(position, normal, lengths.x * (up + across)) +
+               blocked(position, normal, lengths.y * (up - across));
         if (++k >= pairs)
             break;
     }

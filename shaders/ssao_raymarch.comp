@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * The ray cast with a threshold distance, inside the depth image: cosine-distributed rays from the shaded point, marched
- * in equal steps to the radius, hit where the ray is behind the surface by less than the surface is thick. Unbiased for
- * its model of the scene, and slow: what the other methods are measured against. Rays are stratified by the golden ratio
- * and the noise; noise_index gives another set. */
+ * The ray cast with a threshold distance, inside the depth image: cosine-distributed rays from the
+ * shaded point, marched in equal steps to the radius, hit where the ray is behind the surface by
+ * less than the surface is thick. Unbiased for its model of the scene, and slow: what the other
+ * methods are measured against. Rays are stratified by the golden ratio and the noise; noise_index
+ * gives another set. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -30,7 +31,8 @@ float first_hit(vec3 position, vec3 normal, vec3 direction, float jitter)
         vec3 v = surface - position;
         float lateral = length(v - dot(v, to_eye) * to_eye);
         float behind = dot(to_eye, surface - point);
-        float depth = params.thickness_base * radius + params.thickness_slope * min(lateral, radius);
+        float depth =
+            params.thickness_base * radius + params.thickness_slope * min(lateral, radius);
         if (z > 0.0 && dot(normal, surface - point) > bias && behind > 0.0 && behind < depth) {
             d *= params.inverse_radius;
             return falloff_weight(vec2(d * d)).x;

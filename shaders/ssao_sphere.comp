@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: MIT
  *
- * Points in the full sphere around the shaded one (Mittring, 'Finding Next Gen: CryEngine 2', 2007), in two forms.
+ * Points in the full sphere around the shaded one (Mittring, 'Finding Next Gen: CryEngine 2',
+ * 2007), in two forms.
  *
- * Literal: a table of random vectors in the unit ball, rotated per texel about the view axis, times the radius; at
- * each point dz = blocking_scale * max(0, scene z - point z); the blocking factor is the mean of 1 / (1 + dz^2), and
- * visibility is 1 - factor. A point behind the scene blocks fully, one in front of it the less the further.
+ * Literal: a table of random vectors in the unit ball, rotated per texel about the view axis, times
+ * the radius; at each point dz = blocking_scale * max(0, scene z - point z); the blocking factor is
+ * the mean of 1 / (1 + dz^2), and visibility is 1 - factor. A point behind the scene blocks fully,
+ * one in front of it the less the further.
  *
- * Rescaled: half the sphere lies inside a flat wall, so visibility = min(1, 2 * (1 - blocked)): more than 50 % of the
- * points must be hidden before a texel darkens. Points come in antipodal pairs, so that a plane hides exactly one of each
- * pair; directions are stratified over the sphere, lengths as in point_length. Where the scene is out of range or
- * unknown a point counts as the plane would have it, which changes nothing. */
+ * Rescaled: half the sphere lies inside a flat wall, so visibility = min(1, 2 * (1 - blocked)):
+ * more than 50 % of the points must be hidden before a texel darkens. Points come in antipodal
+ * pairs, so that a plane hides exactly one of each pair; directions are stratified over the sphere,
+ * lengths as in point_length. Where the scene is out of range or unknown a point counts as the
+ * plane would have it, which changes nothing. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -25,11 +28,13 @@ vec3 ball_point(float u, float v, float w)
     return pow(w, 1.0 / 3.0) * vec3(ring * cos(TWO_PI * v), ring * sin(TWO_PI * v), z);
 }
 
-/* Point k of the literal form's table: the R3 sequence (Roberts 2018), powers of 0.81917 in fixed point. */
+/* Point k of the literal form's table: the R3 sequence (Roberts 2018), powers of 0.81917 in fixed
+ * point. */
 vec3 table_point(uint k)
 {
     k += 1u;
-    return ball_point(unit_float(k * 3518319155u), unit_float(k * 2882110345u), unit_float(k * 2360945575u));
+    return ball_point(unit_float(k * 3518319155u), unit_float(k * 2882110345u),
+                      unit_float(k * 2360945575u));
 }
 
 float literal_blocking(ivec2 texel, vec3 position)
@@ -87,7 +92,8 @@ float rescaled_blocking(ivec2 texel, vec3 position, vec3 normal)
 
 Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
 {
-    float open = SPHERE_LITERAL ? 1.0 - literal_blocking(texel, position)
-                                : min(1.0, 2.0 * (1.0 - rescaled_blocking(texel, position, normal)));
+    float open = SPHERE_LITERAL
+                     ? 1.0 - literal_blocking(texel, position)
+                     : min(1.0, 2.0 * (1.0 - rescaled_blocking(texel, position, normal)));
     return Visibility(vec3(0.0), open);
 }

@@ -1,19 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * Visibility bitmask (Therrien, Levesque and Gilet, 'Screen Space Indirect Lighting with Visibility Bitmask', 2023),
- * made cosine-correct. A sample hides the angles from its front edge to its back edge, thickness behind it, so that
- * light passes behind thin things. Angles are sectors of equal mass, see sectors.glsl. Samples come near to far and only
- * sectors that they hide first count, with the falloff at the hiding point: the definition of the ray-traced truths.
+ * Visibility bitmask (Therrien, Levesque and Gilet, 'Screen Space Indirect Lighting with Visibility
+ * Bitmask', 2023), made cosine-correct. A sample hides the angles from its front edge to its back
+ * edge, thickness behind it, so that light passes behind thin things. Angles are sectors of equal
+ * mass, see sectors.glsl. Samples come near to far and only sectors that they hide first count,
+ * with the falloff at the hiding point: the definition of the ray-traced truths.
  *
  * The depth image is sampled in few places; what lies between two samples of a side is guessed:
- *  - a sample is joined to the one before if the surface between them rises less than VKAO_VBAO_JOIN
- *    over the tangent plane, as any plane does; then all between is hidden;
- *  - if not, and if it rises over that plane, its front edge moves in by VKAO_VBAO_GAP_FRONT of the gap, as an edge lies
- *    somewhere in it;
- *  - what it hides counts by the distance to there, joined or not: the nearest that it stands for hides first;
- *  - its back edge moves out by VKAO_VBAO_GAP_BACK of the gap, as the surface goes on to somewhere before the next sample;
+ *  - a sample is joined to the one before if the surface between them rises less than
+ *    VKAO_VBAO_JOIN over the tangent plane, as any plane does; then all between is hidden;
+ *  - if not, and if it rises over that plane, its front edge moves in by VKAO_VBAO_GAP_FRONT of the
+ *    gap, as an edge lies somewhere in it;
+ *  - what it hides counts by the distance to there, joined or not: the nearest that it stands for
+ *    hides first;
+ *  - its back edge moves out by VKAO_VBAO_GAP_BACK of the gap, as the surface goes on to somewhere
+ *    before the next sample;
  *  - sky hides nothing; what follows it is looked at as after a sample of the tangent plane;
- *  - what is seen is as thick as VKAO_THICKNESS_BASE of the radius plus VKAO_THICKNESS_SLOPE of its lateral distance. */
+ *  - what is seen is as thick as VKAO_THICKNESS_BASE of the radius plus VKAO_THICKNESS_SLOPE of its
+ *    lateral distance. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -71,8 +75,9 @@ void hide(inout March march, Slice s, Masks m, float center_z, vec2 offset, vec2
 vec3 hidden(Slice s, ivec2 texel, float center_z, float jitter)
 {
     Masks m = make_masks(SIDES * s.sin_n, vec2(s.cos_n));
-    Steps steps =
-        make_steps(s, jitter, params.radius * (THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH));
+    Steps steps = make_steps(s, jitter,
+                             params.radius *
+                                 (THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH));
     const vec2 none = vec2(0.0);
     March march = March(ivec2(0), none, none, vec2(-2.0), none, none, none);
     uint t = 0u;

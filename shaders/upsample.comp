@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * AO of every second texel of every second row -> all texels: joint bilateral upsampling (Kopf et al. 2007). A texel
- * takes from the one, two or four half-resolution texels that it coincides with or lies between, by the depth and normal
- * weights of the blur. Depth is continued by the slope at the full-resolution texel. Where no neighbour lies on its
- * surface, the least wrong one decides. */
+ * AO of every second texel of every second row -> all texels: joint bilateral upsampling (Kopf et
+ * al. 2007). A texel takes from the one, two or four half-resolution texels that it coincides with
+ * or lies between, by the depth and normal weights of the blur. Depth is continued by the slope at
+ * the full-resolution texel. Where no neighbour lies on its surface, the least wrong one
+ * decides. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -26,7 +27,8 @@ float full_view_z(ivec2 texel)
 
 float slope_along(ivec2 texel, ivec2 axis, float z)
 {
-    return local_slope(surface_z(full_view_z(texel - axis)), z, surface_z(full_view_z(texel + axis)));
+    return local_slope(surface_z(full_view_z(texel - axis)), z,
+                       surface_z(full_view_z(texel + axis)));
 }
 
 vec4 upsampled(ivec2 texel, float z)

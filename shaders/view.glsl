@@ -17,7 +17,8 @@ ivec2 unpack_texel(uint packed_texel)
 
 bool in_rect(ivec2 texel, uvec2 rect)
 {
-    return all(greaterThanEqual(texel, unpack_texel(rect.x))) && all(lessThan(texel, unpack_texel(rect.y)));
+    return all(greaterThanEqual(texel, unpack_texel(rect.x))) &&
+           all(lessThan(texel, unpack_texel(rect.y)));
 }
 
 /* From where border_view_z counts: the first texel of the border. */
@@ -26,8 +27,8 @@ ivec2 border_texel(ivec2 texel)
     return texel - unpack_texel(params.valid.x) + 1;
 }
 
-/* View z, 0 = background or outside the valid texels: prepare writes a border of zeros around them, to which what is
- * outside is moved. As an unsigned number, what is too small is too large. */
+/* View z, 0 = background or outside the valid texels: prepare writes a border of zeros around them,
+ * to which what is outside is moved. As an unsigned number, what is too small is too large. */
 float border_view_z(ivec2 at)
 {
     ivec2 low = unpack_texel(params.valid.x) - 1, high = unpack_texel(params.valid.y);
@@ -49,8 +50,8 @@ vec3 decode_octahedral(vec2 e)
     return n;
 }
 
-/* A stored direction in its own space, unit length; zero if there is none to trust: none given, not finite, or
- * shorter than 0.5, which is what averaging over an edge leaves. */
+/* A stored direction in its own space, unit length; zero if there is none to trust: none given, not
+ * finite, or shorter than 0.5, which is what averaging over an edge leaves. */
 vec3 decode_direction(vec3 n, uint encoding)
 {
     if (encoding == VKAO_GLSL_NORMALS_XYZ_UNORM || encoding == VKAO_GLSL_NORMALS_OCT_UNORM)
@@ -91,7 +92,8 @@ vec3 direction_to_eye(vec3 position)
 /* Stored directions to view space. */
 vec3 to_view(vec3 stored)
 {
-    return vec3(dot(params.normal_x.xyz, stored), dot(params.normal_y.xyz, stored), dot(params.normal_z.xyz, stored));
+    return vec3(dot(params.normal_x.xyz, stored), dot(params.normal_y.xyz, stored),
+                dot(params.normal_z.xyz, stored));
 }
 
 #endif

@@ -42,7 +42,9 @@ static_assert(PART_END == (int)VKAO_RESOURCE_COUNT, "as passes.h counts");
 static_assert(VKAO_BINDING_Z == VKAO_BINDING_CPU, "the CPU's bindings come last");
 
 #define PART(name, part, does_write, format)                                                       \
-    {VKAO_BINDING_##name, (enum vkao_resource)PART_##part, does_write, VK_FORMAT_##format}
+    {                                                                                              \
+        VKAO_BINDING_##name, (enum vkao_resource)PART_##part, does_write, VK_FORMAT_##format       \
+    }
 #define READS_TEXELS(name, part, format) PART(name, part, false, format)
 #define WRITES_TEXELS(name, part, format) PART(name, part, true, format)
 #define READS_WORDS(name, part) PART(name, part, false, UNDEFINED)
@@ -60,11 +62,11 @@ static void record_prepare(const struct vkao_recording *r, uint32_t pass)
     vkao_rect_pack(valid, push.rect);
     vkao_bind(r, pass, &push, sizeof push);
     /* As many texels as it writes, border and padding included, moved to begin at 0. */
-    vkao_dispatch(r, pass,
-                  (struct vkao_rect){0, 0,
-                                     valid.x1 - valid.x0 + valid.x0 % VKAO_BLUR_X_WIDTH +
-                                         2 * VKAO_BUFFER_PAD,
-                                     valid.y1 - valid.y0 + 2 * VKAO_VIEW_Z_BORDER});
+    vkao_dispatch(
+        r, pass,
+        (struct vkao_rect){0, 0,
+                           valid.x1 - valid.x0 + valid.x0 % VKAO_BLUR_X_WIDTH + 2 * VKAO_BUFFER_PAD,
+                           valid.y1 - valid.y0 + 2 * VKAO_VIEW_Z_BORDER});
 }
 
 static VkDeviceSize part_offset(const struct vkao_recording *r, int part)
@@ -112,7 +114,8 @@ static void record_ssao(const struct vkao_recording *r, uint32_t pass)
                                           part_offset(r, PART_TILES));
 }
 
-/* Copied AO of a strip -> its image. Later vkao work, and whoever waits for it, sees the copy as one of its writes. */
+/* Copied AO of a strip -> its image. Later vkao work, and whoever waits for it, sees the copy as
+ * one of its writes. */
 static void record_copy(const struct vkao_recording *r, struct vkao_rect strip)
 {
     const vkao_frame *frame = r->frame;
@@ -138,8 +141,8 @@ static void record_direction(const struct vkao_recording *r, uint32_t pass, uint
     vkao_dispatch(r, pass, rect);
 }
 
-/* Both directions, down the image in strips, so that what lies between them fits a ring of rows. Each strip adds the rows
- * that the one before did not need. */
+/* Both directions, down the image in strips, so that what lies between them fits a ring of rows.
+ * Each strip adds the rows that the one before did not need. */
 static void record_blur(const struct vkao_recording *r, uint32_t pass)
 {
     static_assert(VKAO_STRIP_ROWS % VKAO_BLUR_Y_HEIGHT == 0 &&
@@ -227,8 +230,8 @@ static const struct vkao_pass tiles = {
     {                                                                                              \
         .name = "vkao ssao " #method, .label = "ssao", .stage = VKAO_STAGE_SSAO,                   \
         VKAO_CODE(vkao_ssao_##method##_cpu),                                                       \
-        .uses = {READS_Z, READS_NORMALS, VKAO_WRITES(TARGET, AO_NOISY),                            \
-                 READS_WORDS(TILES, TILES), WRITES_TEXELS(PACKED_WRITE, PACKED, codes)},           \
+        .uses = {READS_Z, READS_NORMALS, VKAO_WRITES(TARGET, AO_NOISY), READS_WORDS(TILES, TILES), \
+                 WRITES_TEXELS(PACKED_WRITE, PACKED, codes)},                                      \
         .area = VKAO_AREA_AROUND, .texels = {width, 1}, ROW_GROUP, .forms = 1,                     \
         .record = record_ssao,                                                                     \
     }
@@ -246,8 +249,8 @@ static const struct vkao_pass methods[] = {
     {                                                                                              \
         .name = "vkao ssao " #method, .label = "ssao", .stage = VKAO_STAGE_SSAO,                   \
         VKAO_CODE(vkao_ssao_##method##_16bit_cpu),                                                 \
-        .uses = {READS_Z, READS_NORMALS, VKAO_WRITES(TARGET, AO_NOISY),                            \
-                 READS_WORDS(TILES, TILES), WRITES_WORDS(PACKED_WORDS, PACKED)},                   \
+        .uses = {READS_Z, READS_NORMALS, VKAO_WRITES(TARGET, AO_NOISY), READS_WORDS(TILES, TILES), \
+                 WRITES_WORDS(PACKED_WORDS, PACKED)},                                              \
         .area = VKAO_AREA_AROUND, .texels = {VKAO_SSAO_TEXELS, 1}, ROW_GROUP, .forms = 1,          \
         .record = record_ssao,                                                                     \
     }
@@ -453,8 +456,8 @@ void vkao_cpu_parts(const struct vkao_program *program, VkExtent2D extent, bool 
     const uint32_t wide = VKAO_UPSAMPLE_WIDTH, most = VKAO_STRIP_ROWS;
     rows->copied_stride = (extent.width + wide - 1) / wide * wide;
     rows->copied_texel = find_format(program->settings.ao_format)->bytes;
-    parts[PART_COPIED] = rows->copied_texel * rows->copied_stride *
-                         (extent.height < most ? extent.height : most);
+    parts[PART_COPIED] =
+        rows->copied_texel * rows->copied_stride * (extent.height < most ? extent.height : most);
 }
 
 bool vkao_cpu_fits(const struct vkao_program *program, VkExtent2D extent)

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * The CPU's passes, in place of those of the image path: scratch is a buffer that shaders read several texels at a time
- * (shaders/cpu/layout.h says how they lie in it), SSAO runs in the tiles that have anything in them, and the blur goes down
- * the image in strips and hands its result over in rows. Nothing outside of this folder knows more of it than this. */
+ * The CPU's passes, in place of those of the image path: scratch is a buffer that shaders read
+ * several texels at a time (shaders/cpu/layout.h says how they lie in it), SSAO runs in the tiles
+ * that have anything in them, and the blur goes down the image in strips and hands its result over
+ * in rows. Nothing outside of this folder knows more of it than this. */
 #ifndef VKAO_CPU_H_
 #define VKAO_CPU_H_
 

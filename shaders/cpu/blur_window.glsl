@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The weights of blur.comp for many texels at once: a window of texels is loaded once, and all of its inner texels are
- * blurred from it. */
+ * The weights of blur.comp for many texels at once: a window of texels is loaded once, and all of
+ * its inner texels are blurred from it. */
 #ifndef VKAO_BLUR_WINDOW_GLSL_
 #define VKAO_BLUR_WINDOW_GLSL_
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * blur.comp, horizontally, from packed noisy AO to the ring: VKAO_BLUR_X_WIDTH texels of a row per invocation, from one
- * window of them and their neighbours. */
+ * blur.comp, horizontally, from packed noisy AO to the ring: VKAO_BLUR_X_WIDTH texels of a row per
+ * invocation, from one window of them and their neighbours. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -38,7 +38,8 @@ void blur(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
     float z[WINDOW], code[WINDOW], slope[WINDOW];
     vec4 normal[WINDOW];
     bool use_normals = NORMAL_POWER > 0.0;
-    int z_word = (z_row(texel.y) + texel.x - REACH) >> 2, code_word = (buffer_row(texel.y) + texel.x - REACH) >> 2;
+    int z_word = (z_row(texel.y) + texel.x - REACH) >> 2,
+        code_word = (buffer_row(texel.y) + texel.x - REACH) >> 2;
     [[unroll]] for (int j = 0; j < WINDOW / 4; ++j) {
         vec4 z4 = imageLoad(view_z4, z_word + j);
         int word = int(imageLoad(packed_ao, code_word + j).x);

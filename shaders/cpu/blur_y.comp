@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * blur.comp, vertically, from the ring to the AO image, or at half resolution to the buffer that upsampling reads:
- * VKAO_BLUR_Y_WIDTH columns of VKAO_BLUR_Y_HEIGHT rows per invocation. */
+ * blur.comp, vertically, from the ring to the AO image, or at half resolution to the buffer that
+ * upsampling reads: VKAO_BLUR_Y_WIDTH columns of VKAO_BLUR_Y_HEIGHT rows per invocation. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -33,8 +33,9 @@ vec4 load_codes(ivec2 texel)
 {
     int at = (ring_row(texel.y) * VKAO_STRIDE + VKAO_BUFFER_PAD + texel.x) >> 1;
     ivec2 word = ivec2(imageLoad(halfway, at).x, imageLoad(halfway, at + 1).x);
-    return vec4(ivec4(word.x & 0xffff, (word.x >> 16) & 0xffff, word.y & 0xffff, (word.y >> 16) & 0xffff) -
-                VKAO_CODE_OPEN);
+    return vec4(
+        ivec4(word.x & 0xffff, (word.x >> 16) & 0xffff, word.y & 0xffff, (word.y >> 16) & 0xffff) -
+        VKAO_CODE_OPEN);
 }
 
 vec4 slopes(vec4 before, vec4 z, vec4 after)
@@ -64,8 +65,8 @@ vec4 tap_weights(int k, int radius, vec4 z, vec4 slope, vec4 tap_z, vec4 tap_slo
 vec4 normal_weights(ivec2 texel, ivec2 tap)
 {
     vec4 w;
-    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i)
-        w[i] = normal_weight(window_normal(texel + ivec2(i, 0)), window_normal(tap + ivec2(i, 0)), NORMAL_POWER);
+    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) w[i] = normal_weight(
+        window_normal(texel + ivec2(i, 0)), window_normal(tap + ivec2(i, 0)), NORMAL_POWER);
     return w;
 }
 
@@ -105,10 +106,9 @@ void blur(ivec2 texel)
             if (k == 0)
                 continue;
             vec4 w = tap_weights(k, RADIUS, z[c], slope[c], z[c + k], slope[c + k]);
-            [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i)
-                if (use_normals)
-                    w[i] *= normal_weight(normal[VKAO_BLUR_Y_WIDTH * c + i], normal[VKAO_BLUR_Y_WIDTH * (c + k) + i],
-                                          NORMAL_POWER);
+            [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) if (use_normals) w[i] *=
+                normal_weight(normal[VKAO_BLUR_Y_WIDTH * c + i],
+                              normal[VKAO_BLUR_Y_WIDTH * (c + k) + i], NORMAL_POWER);
             sum += w * fine[c + k];
             weights += w;
         }

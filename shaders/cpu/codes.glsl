@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Tiles that SSAO of a CPU works on, and codes of AO in the buffer: VKAO_CODES of them in a word that is stored at once. */
+ * Tiles that SSAO of a CPU works on, and codes of AO in the buffer: VKAO_CODES of them in a word
+ * that is stored at once. */
 #ifndef VKAO_CODES_GLSL_
 #define VKAO_CODES_GLSL_
 

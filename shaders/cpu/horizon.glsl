@@ -7,10 +7,12 @@
 const float PI = 3.14159265358979324;
 
 struct Slice {
-    Real2 step;          /* direction on screen, in texels that one scene unit has at unit distance */
+    /* direction on screen, in texels that one scene unit has at unit distance */
+    Real2 step;
     real per_texel;      /* 1 / its length */
     real scale;          /* scene units -> the same at the shaded point */
-    Real2 to_x, to_y;    /* texels off the shaded point -> x and y in radii, per unit of view z in perspective */
+    /* texels off the shaded point -> x and y in radii, per unit of view z in perspective */
+    Real2 to_x, to_y;
     real center_z;       /* view z of the shaded point */
     real eye, origin;    /* y is origin - eye * view z, and what to_y adds */
     Real3 outward;       /* O: unit, in the slice, at right angles to V */
@@ -18,7 +20,8 @@ struct Slice {
     real cos_n, sin_n;   /* of the projected normal's angle from V, towards O */
 };
 
-/* Unit vector to the eye. It does not depend on view z: all that is made of it is ready before that is loaded. */
+/* Unit vector to the eye. It does not depend on view z: all that is made of it is ready before that
+ * is loaded. */
 Real3 eye_direction(ivec2 texel)
 {
     if (ORTHOGRAPHIC)
@@ -37,21 +40,25 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
     s.center_z = position.z;
     s.scale = ORTHOGRAPHIC ? real(1.0) : 1.0 / position.z;
     real along = d.x * to_eye.x + d.y * to_eye.y;
-    /* As long as what is left of d without its share along V; 1 - along^2 is nothing at the edge of a field of view of
-     * nearly 180 degrees. */
+    /* As long as what is left of d without its share along V; 1 - along^2 is nothing at the edge of
+     * a field of view of nearly 180 degrees. */
     Real3 across = Real3(d.y * to_eye.z, -d.x * to_eye.z, d.x * to_eye.y - d.y * to_eye.x);
     real inverse_o = inversesqrt(dot3(across, across));
-    s.outward = times(Real3(d.x - along * to_eye.x, d.y - along * to_eye.y, -along * to_eye.z), inverse_o);
+    s.outward =
+        times(Real3(d.x - along * to_eye.x, d.y - along * to_eye.y, -along * to_eye.z), inverse_o);
     across = times(across, inverse_o);
     real off = dot3(normal, across), facing = dot3(normal, to_eye), out_n = dot3(normal, s.outward);
-    /* A sample's texel lies off the slice by rounding. It is moved into it along the tangent plane, which keeps its
-     * height over that plane, so that a tilted wall still lies flat in the slice. */
+    /* A sample's texel lies off the slice by rounding. It is moved into it along the tangent plane,
+     * which keeps its height over that plane, so that a tilted wall still lies flat in the
+     * slice. */
     real moved = off / max(facing, real(VKAO_STEEPEST));
     vec2 radii = params.unproject.xy * params.inverse_radius;
     s.to_x = Real2(radii.x * s.outward.x, radii.y * s.outward.y);
-    s.to_y = Real2(radii.x * (to_eye.x + across.x * moved), radii.y * (to_eye.y + across.y * moved));
+    s.to_y =
+        Real2(radii.x * (to_eye.x + across.x * moved), radii.y * (to_eye.y + across.y * moved));
     s.eye = params.inverse_radius * (ORTHOGRAPHIC ? real(1.0) : -1.0 / to_eye.z);
-    /* It is taken to lie as deep as its depth may be wrong: a wall must not occlude itself by the steps of a format. */
+    /* It is taken to lie as deep as its depth may be wrong: a wall must not occlude itself by the
+     * steps of a format. */
     s.origin = s.eye * position.z - (2.0 * params.inverse_radius) * depth_error(position.z);
     real length2 = max(1.0 - off * off, real(1.0e-12)), inverse = inversesqrt(length2);
     s.normal_length = length2 * inverse;
@@ -75,8 +82,8 @@ Steps make_steps(Slice s, real jitter, float reach)
 {
     float n = 1.0 / float(step_count()), square = reach * (1.0 - VKAO_STEP_LINEAR) * n * n;
     float line = reach * VKAO_STEP_LINEAR * n;
-    return Steps(s.scale * (jitter * (line + square * jitter)), s.scale * (line + 2.0 * square * jitter),
-                 s.scale * square);
+    return Steps(s.scale * (jitter * (line + square * jitter)),
+                 s.scale * (line + 2.0 * square * jitter), s.scale * square);
 }
 
 /* At least 1 + t/2 texels. */
@@ -104,7 +111,8 @@ void slice_points(Slice s, Offset offset, reals z, out reals x, out reals y)
     reals dx = both(s.to_x.x * offset.x.number + s.to_x.y * offset.y.number);
     reals dy = SIDES * both(s.to_y.x * offset.x.number + s.to_y.y * offset.y.number);
     x = ORTHOGRAPHIC ? dx : z * dx;
-    y = ORTHOGRAPHIC ? both(s.origin) + dy - z * params.inverse_radius : both(s.origin) + z * (dy - both(s.eye));
+    y = ORTHOGRAPHIC ? both(s.origin) + dy - z * params.inverse_radius
+                     : both(s.origin) + z * (dy - both(s.eye));
 }
 
 #endif

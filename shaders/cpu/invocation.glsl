@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * SSAO of a CPU for methods that shade a texel at a time: of a tile from the list, as a code into the buffer or as a texel
- * into an image. */
+ * SSAO of a CPU for methods that shade a texel at a time: of a tile from the list, as a code into
+ * the buffer or as a texel into an image. */
 layout(local_size_x = VKAO_ROW_GROUP_WIDTH) in;
 #define VKAO_CODES 1
 #include "codes.glsl"

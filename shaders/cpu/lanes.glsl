@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Numbers of the two texels of a row that an invocation shades side by side, as a CPU's lanes have long chains of dependent
- * operations and nothing else to fill the gaps with. `real` is a number per texel, `reals` one per texel for each of the
- * two sides of a slice, first those of the side along O, then those of the other, or for each of a pair of points. */
+ * Numbers of the two texels of a row that an invocation shades side by side, as a CPU's lanes have
+ * long chains of dependent operations and nothing else to fill the gaps with. `real` is a number
+ * per texel, `reals` one per texel for each of the two sides of a slice, first those of the side
+ * along O, then those of the other, or for each of a pair of points. */
 #ifndef VKAO_LANES_GLSL_
 #define VKAO_LANES_GLSL_
 
@@ -55,7 +56,9 @@ bvec2 above(real a, real b)
 /* v, or where it is no number or absurdly large, what stands in for it. */
 real sane(real v, real otherwise)
 {
-    return mix(otherwise, v, lessThan(floatBitsToInt(v) & 0x7fffffff, ivec2(floatBitsToInt(VKAO_LARGEST_RESULT))));
+    return mix(
+        otherwise, v,
+        lessThan(floatBitsToInt(v) & 0x7fffffff, ivec2(floatBitsToInt(VKAO_LARGEST_RESULT))));
 }
 
 const reals SIDES = reals(real(1.0), real(-1.0));
@@ -66,7 +69,8 @@ reals both(real v)
     return reals(v, v);
 }
 
-/* max() and min() of numbers: those may have to look for NaN, which takes three instructions instead of one. */
+/* max() and min() of numbers: those may have to look for NaN, which takes three instructions
+ * instead of one. */
 reals greater(reals a, reals b)
 {
     return mix(b, a, greaterThan(a, b));
@@ -77,8 +81,9 @@ reals lesser(reals a, reals b)
     return mix(b, a, lessThan(a, b));
 }
 
-/* The nearest integer, as a number and with ROUND_BITS as an integer. A number below 2^22 plus ROUND has no room for a
- * fraction: its last bits are that integer. Whatever larger ones become, infinities and NaN too, lies in no image. */
+/* The nearest integer, as a number and with ROUND_BITS as an integer. A number below 2^22 plus
+ * ROUND has no room for a fraction: its last bits are that integer. Whatever larger ones become,
+ * infinities and NaN too, lies in no image. */
 struct Rounded {
     real number;
     whole bits;

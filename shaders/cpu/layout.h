@@ -1,34 +1,36 @@
 /* SPDX-License-Identifier: MIT
  *
- * What C and GLSL of the CPU's passes must agree on. A CPU takes several texels from a buffer at once, where an image gives
- * them one by one, and stores words faster than texels.
+ * What C and GLSL of the CPU's passes must agree on. A CPU takes several texels from a buffer at
+ * once, where an image gives them one by one, and stores words faster than texels.
  *
- * Rows of a buffer have VKAO_BUFFER_PAD texels of padding on each side, as the blur reads beyond the edge, and
- * begin at multiples of VKAO_BLUR_X_WIDTH. View z is a float per texel and has VKAO_VIEW_Z_BORDER rows above and below.
+ * Rows of a buffer have VKAO_BUFFER_PAD texels of padding on each side, as the blur reads beyond
+ * the edge, and begin at multiples of VKAO_BLUR_X_WIDTH. View z is a float per texel and has
+ * VKAO_VIEW_Z_BORDER rows above and below.
  *
- * Noisy AO is a byte per texel, its code: (ao + OFFSET) * SCALE. One slice per texel sees between -.55 and 2 of what a
- * whole hemisphere sees, 1 must be exact, and next to its noise the rounding is nothing. AO between the directions of
- * the blur is a 16-bit word per texel, 256 times that code. That buffer is a ring of VKAO_RING_ROWS rows: the blur goes
- * down the image in strips.
+ * Noisy AO is a byte per texel, its code: (ao + OFFSET) * SCALE. One slice per texel sees between
+ * -.55 and 2 of what a whole hemisphere sees, 1 must be exact, and next to its noise the rounding
+ * is nothing. AO between the directions of the blur is a 16-bit word per texel, 256 times that
+ * code. That buffer is a ring of VKAO_RING_ROWS rows: the blur goes down the image in strips.
  *
- * AO that is copied into its image has a buffer for one strip of the image's rows. They have no padding and begin at
- * multiples of VKAO_UPSAMPLE_WIDTH. SSAO has a list of the tiles that are not all sky. */
+ * AO that is copied into its image has a buffer for one strip of the image's rows. They have no
+ * padding and begin at multiples of VKAO_UPSAMPLE_WIDTH. SSAO has a list of the tiles that are not
+ * all sky. */
 #ifndef VKAO_CPU_LAYOUT_H_
 #define VKAO_CPU_LAYOUT_H_
 
 #include "params.h"
 
-/* A CPU runs the lanes of a group one row after the other. It is served best by rows of many texels, written in the order
- * of memory. */
+/* A CPU runs the lanes of a group one row after the other. It is served best by rows of many
+ * texels, written in the order of memory. */
 #define VKAO_ROW_GROUP_WIDTH 64
 
-/* The same memory as storage texel buffers, which a CPU reads with vector gathers and not lane by lane, and as storage
- * buffers, to which it writes faster. */
-#define VKAO_BINDING_Z 15            /* r32f */
-#define VKAO_BINDING_Z4 16           /* rgba32f */
+/* The same memory as storage texel buffers, which a CPU reads with vector gathers and not lane by
+ * lane, and as storage buffers, to which it writes faster. */
+#define VKAO_BINDING_Z 15  /* r32f */
+#define VKAO_BINDING_Z4 16 /* rgba32f */
 #define VKAO_BINDING_Z_WORDS 17
-#define VKAO_BINDING_PACKED_WRITE 18  /* r8ui: a code. r16ui: 2 codes */
-#define VKAO_BINDING_PACKED_READ4 19  /* r32ui: 4 codes */
+#define VKAO_BINDING_PACKED_WRITE 18 /* r8ui: a code. r16ui: 2 codes */
+#define VKAO_BINDING_PACKED_READ4 19 /* r32ui: 4 codes */
 #define VKAO_BINDING_PACKED_WORDS 20
 #define VKAO_BINDING_HALFWAY_READ2 21 /* r32ui: 2 fine codes */
 #define VKAO_BINDING_HALFWAY_WORDS 22
@@ -37,7 +39,8 @@
 #define VKAO_BINDING_STAGED_WORDS 25
 #define VKAO_BINDING_TILES 26 /* vkao_tiles_head, tiles */
 
-/* VKAO_SETTING_PATH: noisy AO goes through the buffer, else through an image; and the format of what is copied. */
+/* VKAO_SETTING_PATH: noisy AO goes through the buffer, else through an image; and the format of
+ * what is copied. */
 #define VKAO_PATH_PACKED 8u
 #define VKAO_PATH_FORMAT 7u
 #define VKAO_STAGED_UNORM8 1
@@ -49,7 +52,8 @@
 #define VKAO_CODE_SCALE 100.0
 #define VKAO_CODE_OFFSET 0.55
 #define VKAO_CODE_FINE 256.0
-#define VKAO_CODE_OPEN 39680 /* fine code of 1; numbers are relative to it, so that what is open stays exactly 1 */
+#define VKAO_CODE_OPEN                                                                             \
+    39680 /* fine code of 1; numbers are relative to it, so that what is open stays exactly 1 */
 #define VKAO_RING_ROWS 176
 #define VKAO_STRIP_ROWS 128 /* a ring holds a strip and the largest radius on both sides of it */
 
@@ -79,7 +83,7 @@ struct vkao_strip {
 
 struct vkao_tiling {
     VKAO_UVEC2(rect);
-    VKAO_UVEC2(tiles);        /* columns and rows of them */
+    VKAO_UVEC2(tiles); /* columns and rows of them */
     VKAO_UINT(tile_width);
     VKAO_UINT(tile_height);
     VKAO_UINT(strip_columns); /* of tiles */

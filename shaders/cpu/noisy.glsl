@@ -10,5 +10,6 @@ float noisy_ao(ivec2 texel)
     if ((PATH & VKAO_PATH_PACKED) == 0u)
         return texelFetch(noisy_image, texel, 0).x;
     int i = buffer_row(texel.y) + texel.x;
-    return float((imageLoad(packed_ao, i >> 2).x >> ((i & 3) << 3)) & 255u) / VKAO_CODE_SCALE - VKAO_CODE_OFFSET;
+    return float((imageLoad(packed_ao, i >> 2).x >> ((i & 3) << 3)) & 255u) / VKAO_CODE_SCALE -
+           VKAO_CODE_OFFSET;
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * prepare.comp for scratch in buffers: VKAO_PREPARE_WIDTH texels of a row at once, and zeros into the padding. */
+ * prepare.comp for scratch in buffers: VKAO_PREPARE_WIDTH texels of a row at once, and zeros into
+ * the padding. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -19,7 +20,8 @@ void main()
 {
     ivec2 low = ivec2(params.valid.x & 0xffffu, params.valid.x >> 16);
     ivec2 high = ivec2(params.valid.y & 0xffffu, params.valid.y >> 16);
-    ivec2 first = ivec2(round_down(low.x, VKAO_BLUR_X_WIDTH) - VKAO_BUFFER_PAD, low.y - VKAO_VIEW_Z_BORDER);
+    ivec2 first =
+        ivec2(round_down(low.x, VKAO_BLUR_X_WIDTH) - VKAO_BUFFER_PAD, low.y - VKAO_VIEW_Z_BORDER);
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy) * ivec2(VKAO_PREPARE_WIDTH, 1) + first;
     if (texel.x >= high.x + VKAO_BUFFER_PAD || texel.y >= high.y + VKAO_VIEW_Z_BORDER)
         return;

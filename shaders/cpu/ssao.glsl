@@ -2,9 +2,9 @@
  *
  * ../ssao.glsl for two texels side by side. The includer defines
  *     Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
- * for them, texel being the first. An invocation has texels of a tile from the list, and writes codes into the buffer or
- * texels into an image. With VKAO_STORAGE_16BIT two codes are one store to a storage buffer, which costs less than a texel
- * buffer. */
+ * for them, texel being the first. An invocation has texels of a tile from the list, and writes
+ * codes into the buffer or texels into an image. With VKAO_STORAGE_16BIT two codes are one store to
+ * a storage buffer, which costs less than a texel buffer. */
 #ifndef VKAO_PAIRED_SSAO_GLSL_
 #define VKAO_PAIRED_SSAO_GLSL_
 
@@ -97,7 +97,8 @@ Visibility shade(ivec2 texel)
     real z = load_view_zs(texel);
     Real3 position = view_positions(texel, z);
     Visibility v = visibility(texel, position, view_normals(texel, position));
-    /* Where numbers fail, by a radius of 1e-9 of the distance for one, nothing is known to occlude. */
+    /* Where numbers fail, by a radius of 1e-9 of the distance for one, nothing is known to
+     * occlude. */
     v.open = sane(choose(real(1.0), v.open, above(z, real(0.0))), real(1.0));
     if (BENT_NORMALS) {
         v.bent.x = sane(choose(real(0.0), v.bent.x, above(z, real(0.0))), real(0.0));
@@ -124,7 +125,8 @@ void store_noisy(ivec2 texel, Visibility v)
 
 void main()
 {
-    /* Straight on, also where there is nothing to do: a driver in software runs both sides of a branch anyway. */
+    /* Straight on, also where there is nothing to do: a driver in software runs both sides of a
+     * branch anyway. */
     ivec2 texel = tile_texel() + ivec2(int(gl_LocalInvocationID.x) * TEXELS, gl_WorkGroupID.x);
     Visibility v = shade(texel);
     if (all(lessThan(texel, unpack_texel(here.rect.y))))

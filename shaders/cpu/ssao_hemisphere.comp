@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ../ssao_hemisphere.comp for two texels side by side. The kernel is turned with its frame, and points are projected by one
- * division, without going through view space. */
+ * ../ssao_hemisphere.comp for two texels side by side. The kernel is turned with its frame, and
+ * points are projected by one division, without going through view space. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_16bit_storage : enable
@@ -12,8 +12,9 @@
 #include "ssao.glsl"
 #include "kernel.glsl"
 
-/* What a step in view space adds to (x, y, 1) * z, in perspective, or (x, y, z), x and y being texels off the shaded
- * one, which is seen at sight * z. A point is projected by one division, without going through view space. */
+/* What a step in view space adds to (x, y, 1) * z, in perspective, or (x, y, z), x and y being
+ * texels off the shaded one, which is seen at sight * z. A point is projected by one division,
+ * without going through view space. */
 Real3 to_texels(Real3 direction, Real3 sight)
 {
     real x = direction.x, y = direction.y;
@@ -56,19 +57,22 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
     Real3 sight = view_positions(texel, real(1.0));
     Real3 t, b;
     tangents(normal, t, b);
-    /* The kernel is turned with its frame, which is as long as the radius: the directions in it are constants then. */
+    /* The kernel is turned with its frame, which is as long as the radius: the directions in it are
+     * constants then. */
     Noise noise = texel_noise(texel, 1u);
     Real2 turn = full_turn(noise.turn);
     turn = Real2(turn.x * radius, turn.y * radius);
     Real3 across = to_texels(weighted(t, turn.x, b, turn.y), sight);
     Real3 along = to_texels(weighted(b, turn.x, t, -turn.y), sight);
     Real3 up = to_texels(times(normal, real(radius)), sight);
-    /* stands_in_front, in texels and radii: the height of an occluder is dot(normal, occluder) - dot(normal, position),
-     * and in perspective the latter is position.z times that of where the texel is seen. */
+    /* stands_in_front, in texels and radii: the height of an occluder is dot(normal, occluder) -
+     * dot(normal, position), and in perspective the latter is position.z times that of where the
+     * texel is seen. */
     Real3 n = times(normal, real(params.inverse_radius));
     real slope_x = n.x * params.unproject.x, slope_y = n.y * params.unproject.y;
     real facing = ORTHOGRAPHIC ? n.z : n.x * sight.x + n.y * sight.y + n.z;
-    real least = (params.bias + depth_error(position.z)) * params.inverse_radius + facing * position.z;
+    real least =
+        (params.bias + depth_error(position.z)) * params.inverse_radius + facing * position.z;
     uint pairs = (sample_count() + 1u) / 2u, k = 0u;
     reals blocked = reals(0.0);
     [[unroll]] for (;;) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ../ssao_vbao.comp for two texels side by side; steps, slices or both are unrolled while the code fits an instruction cache. */
+ * ../ssao_vbao.comp for two texels side by side; steps, slices or both are unrolled while the code
+ * fits an instruction cache. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_16bit_storage : enable
@@ -52,7 +53,8 @@ void hide(inout March march, Slice s, Masks m, reals tangent, Offset offset, rea
     reals inverse = 1.0 / (front_length * back_length);
     reals front = y * (back_length * inverse), back = thick_y * (front_length * inverse);
     front = greater(front, mix(reals(-2.0), march.last_front, joined));
-    ints high = min(sector(m, greater(front - params.bias_cosine, m.low)), ints(31)), low = min(sector(m, greater(back, m.low)), high);
+    ints high = min(sector(m, greater(front - params.bias_cosine, m.low)), ints(31)),
+         low = min(sector(m, greater(back, m.low)), high);
     ints bits = (ints(1) << high) - (ints(1) << low);
     bits = mix(ints(0), bits, seen);
     ints fresh = bits & ~march.mask;
@@ -113,11 +115,12 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter, bool unrolled)
                 break;
         }
     }
-    return Hidden(both_sides(march.hidden * m.mass), both_sides(march.out_moment), both_sides(march.eye_moment));
+    return Hidden(both_sides(march.hidden * m.mass), both_sides(march.out_moment),
+                  both_sides(march.eye_moment));
 }
 
-void add_slice(inout Visibility v, uint k, ivec2 texel, Real3 position, Real3 normal, Real3 to_eye, real turn,
-               real jitter, bool unrolled)
+void add_slice(inout Visibility v, uint k, ivec2 texel, Real3 position, Real3 normal, Real3 to_eye,
+               real turn, real jitter, bool unrolled)
 {
     float share = 1.0 / float(slice_count());
     Slice s = make_slice((float(k) + turn) * share, position, normal, to_eye);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Final AO of four neighbours in a row, from the shaders for buffers: into the AO image texel by texel, or as words
- * that will be copied there, which is many times faster on a CPU. */
+ * Final AO of four neighbours in a row, from the shaders for buffers: into the AO image texel by
+ * texel, or as words that will be copied there, which is many times faster on a CPU. */
 #ifndef VKAO_STAGED_GLSL_
 #define VKAO_STAGED_GLSL_
 
@@ -13,7 +13,8 @@ layout(binding = VKAO_BINDING_STAGED_WORDS) writeonly buffer Staged { uint stage
 #define VKAO_NO_BENT_NORMALS /* they go through images */
 #include "finish.glsl"
 
-/* From texel on, whose x is a multiple of 4, as all of a word are written: those beyond the rect are not copied. */
+/* From texel on, whose x is a multiple of 4, as all of a word are written: those beyond the rect
+ * are not copied. */
 void stage(ivec2 texel, vec4 ao)
 {
     int at = (texel.y - int(here.rect.x >> 16)) * VKAO_STAGED_STRIDE + texel.x;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Which tiles SSAO has anything to do in, for its indirect dispatch: a CPU runs both sides of every branch, so that sky
- * would cost as much as what stands before it. An invocation looks at one tile; a tile of sky alone is open. */
+ * Which tiles SSAO has anything to do in, for its indirect dispatch: a CPU runs both sides of every
+ * branch, so that sky would cost as much as what stands before it. An invocation looks at one tile;
+ * a tile of sky alone is open. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -31,17 +32,21 @@ void store_open(ivec2 low, ivec2 high)
                 continue;
             }
             for (int i = max(x, int(here.rect.x & 0xffffu)); i < min(x + 4, high.x); ++i)
-                imageStore(noisy_image, ivec2(i, y), BENT_NORMALS ? vec4(0.0, 0.0, 0.0, 1.0) : vec4(1.0));
+                imageStore(noisy_image, ivec2(i, y),
+                           BENT_NORMALS ? vec4(0.0, 0.0, 0.0, 1.0) : vec4(1.0));
         }
     }
 }
 
 void main()
 {
-    /* Strip by strip, and down each strip: the texels within reach of a strip stay in a CPU's cache. */
+    /* Strip by strip, and down each strip: the texels within reach of a strip stay in a CPU's
+     * cache. */
     uint strip_tiles = here.strip_columns * here.tiles.y;
-    uint strip = gl_GlobalInvocationID.x / strip_tiles, left = gl_GlobalInvocationID.x % strip_tiles;
-    uint columns = min(here.strip_columns, here.tiles.x - min(here.tiles.x, strip * here.strip_columns));
+    uint strip = gl_GlobalInvocationID.x / strip_tiles,
+         left = gl_GlobalInvocationID.x % strip_tiles;
+    uint columns =
+        min(here.strip_columns, here.tiles.x - min(here.tiles.x, strip * here.strip_columns));
     if (columns == 0u || left >= columns * here.tiles.y)
         return;
     uvec2 tile = uvec2(strip * here.strip_columns + left % columns, left / columns);

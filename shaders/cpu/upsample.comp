@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * upsample.comp for AO in buffers: VKAO_UPSAMPLE_WIDTH by VKAO_UPSAMPLE_HEIGHT texels of the image at once. A texel of an
- * even column and row is one of half resolution; the others lie between two or four of them. Their weights are those of
- * the blur; where no neighbour lies on the texel's surface, the least wrong ones decide. */
+ * upsample.comp for AO in buffers: VKAO_UPSAMPLE_WIDTH by VKAO_UPSAMPLE_HEIGHT texels of the image
+ * at once. A texel of an even column and row is one of half resolution; the others lie between two
+ * or four of them. Their weights are those of the blur; where no neighbour lies on the texel's
+ * surface, the least wrong ones decide. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -28,7 +29,8 @@ const int HALF_COLUMNS = VKAO_UPSAMPLE_WIDTH / 2 + 1;
 vec4 unpack_codes(uvec2 words)
 {
     ivec2 w = ivec2(words);
-    return vec4(ivec4(w.x & 0xffff, (w.x >> 16) & 0xffff, w.y & 0xffff, (w.y >> 16) & 0xffff) - VKAO_CODE_OPEN);
+    return vec4(ivec4(w.x & 0xffff, (w.x >> 16) & 0xffff, w.y & 0xffff, (w.y >> 16) & 0xffff) -
+                VKAO_CODE_OPEN);
 }
 
 /* Of half-resolution row y: view z and AO in a window that begins at x, a multiple of 4. */
@@ -38,13 +40,15 @@ void load_half_row(ivec2 texel, out float z[HALF_COLUMNS], out float fine[HALF_C
     int z_word = (z_row(y) + texel.x) >> 2;
     int code_word = (buffer_row(min(y, int(params.valid.y >> 16) - 1)) + texel.x) >> 1;
     vec4 z4 = imageLoad(view_z4, z_word);
-    vec4 codes = unpack_codes(uvec2(imageLoad(blurred_ao, code_word).x, imageLoad(blurred_ao, code_word + 1).x));
+    vec4 codes = unpack_codes(
+        uvec2(imageLoad(blurred_ao, code_word).x, imageLoad(blurred_ao, code_word + 1).x));
     [[unroll]] for (int i = 0; i < HALF_COLUMNS - 1; ++i) {
         z[i] = surface_z(z4[i]);
         fine[i] = codes[i];
     }
     z[HALF_COLUMNS - 1] = surface_z(fetch_view_z(ivec2(texel.x + HALF_COLUMNS - 1, y)));
-    fine[HALF_COLUMNS - 1] = float((int(imageLoad(blurred_ao, code_word + 2).x) & 0xffff) - VKAO_CODE_OPEN);
+    fine[HALF_COLUMNS - 1] =
+        float((int(imageLoad(blurred_ao, code_word + 2).x) & 0xffff) - VKAO_CODE_OPEN);
 }
 
 float full_z(ivec2 texel)
@@ -112,11 +116,13 @@ void put(ivec2 texel, float z[VKAO_UPSAMPLE_WIDTH], float fine[VKAO_UPSAMPLE_WID
 void main()
 {
     ivec2 low = unpack_texel(here.rect.x), high = unpack_texel(here.rect.y);
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) * ivec2(VKAO_UPSAMPLE_WIDTH, VKAO_UPSAMPLE_HEIGHT);
+    ivec2 texel =
+        ivec2(gl_GlobalInvocationID.xy) * ivec2(VKAO_UPSAMPLE_WIDTH, VKAO_UPSAMPLE_HEIGHT);
     texel += ivec2(round_down(low.x, VKAO_UPSAMPLE_WIDTH), round_down(low.y, VKAO_UPSAMPLE_HEIGHT));
     if (any(greaterThanEqual(texel, high)))
         return;
-    /* Half-resolution rows above and below, the two rows of the image and the one below them, which is half's again. */
+    /* Half-resolution rows above and below, the two rows of the image and the one below them, which
+     * is half's again. */
     float half_z[2][HALF_COLUMNS], fine[2][HALF_COLUMNS], z[3][COLUMNS];
     vec4 normal[3][COLUMNS];
     load_half_row(texel >> 1, half_z[0], fine[0]);
@@ -135,7 +141,8 @@ void main()
         Neighbour n[4];
         [[unroll]] for (int k = 0; k < 4; ++k) {
             int column = (k & 1) == 0 ? left : right;
-            n[k] = Neighbour(half_z[k >> 1][column / 2], fine[k >> 1][column / 2], normal[(k >> 1) * 2][column]);
+            n[k] = Neighbour(half_z[k >> 1][column / 2], fine[k >> 1][column / 2],
+                             normal[(k >> 1) * 2][column]);
         }
         vec2 slope = vec2(0.0, local_slope(z[0][i], z[1][i], z[2][i]));
         if (even) {

@@ -18,7 +18,8 @@ float fetch_view_z(ivec2 texel)
 /* The same, counted from texel low. */
 float fetch_view_z_from(ivec2 low, uvec2 texel)
 {
-    return imageLoad(view_z_texels, int(texel.y * params.path.x + texel.x) + (z_row(low.y) + low.x)).x;
+    return imageLoad(view_z_texels, int(texel.y * params.path.x + texel.x) + (z_row(low.y) + low.x))
+        .x;
 }
 
 #endif

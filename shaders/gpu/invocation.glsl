@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * SSAO of a GPU: groups are near squares, as their lanes share caches; one texel per invocation, into an image. */
+ * SSAO of a GPU: groups are near squares, as their lanes share caches; one texel per invocation,
+ * into an image. */
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(binding = VKAO_BINDING_TARGET) uniform writeonly image2D noisy_image;
 

@@ -26,7 +26,8 @@ def same_pixels(scratch, a, b):
     equal([sorted(p.channels) for p in one], [sorted(p.channels) for p in two], 'channels')
     for p, q in zip(one, two):
         for name, plane in p.channels.items():
-            check(np.array_equal(plane.view(f'u{plane.itemsize}'), q[name].view(f'u{plane.itemsize}')),
+            bits = f'u{plane.itemsize}'
+            check(np.array_equal(plane.view(bits), q[name].view(bits)),
                   f'{name} of {a} and {b} differ')
 
 
@@ -182,8 +183,10 @@ def forged(scratch, change):
      'which wrote it'),
     ('old', '"record":1,', '', "forged.exr: vkao/params: 'record' is missing, want 1",
      'which wrote it'),
-    ('value', '"radius":', '"radius":-', "forged.exr: vkao/params: 'parameters.radius' is -", 'damaged'),
-    ('word', '"vbao"', '"\\u001b[31mvbao"', r"'parameters.method' is '\\x1b\[31mvbao', want sphere,",
+    ('value', '"radius":', '"radius":-',
+     "forged.exr: vkao/params: 'parameters.radius' is -", 'damaged'),
+    ('word', '"vbao"', '"\\u001b[31mvbao"',
+     r"'parameters.method' is '\\x1b\[31mvbao', want sphere,",
      'damaged'),
     ('cut', '"camera":{', '"kamera":{', "'camera' is missing, want an object", 'damaged'),
     ('text', '{', '', 'not the record of vkao', '--like'),

@@ -84,7 +84,8 @@ def errors_are_those_against_the_truth(scratch):
 def json_on_standard_output_stands_alone(scratch):
     folder(scratch)
     result = scratch.run('quality', 'corpus', '--no-raymarch', '--runs', 1, '--quiet', '--methods',
-                         'vbao-fast', '--json', '-', program=beside_vkao('..', 'bench', 'vkao-bench'))
+                         'vbao-fast', '--json', '-',
+                         program=beside_vkao('..', 'bench', 'vkao-bench'))
     equal(result.code, OK, str(result))
     results = json.loads(result.stdout)
     equal([(s['name'], s['method'], s['yardstick']) for s in results['settings']],

@@ -4,8 +4,8 @@
 
 usage: test_linking.py SOURCE_ROOT WORK_DIR MESON
 
-Meson builds the library alone and installs it into WORK_DIR, where a further run finds it. Consumers
-know of the source tree only where they build it themselves.
+Meson builds the library alone and installs it into WORK_DIR, where a further run finds it.
+Consumers know of the source tree only where they build it themselves.
 """
 
 import glob
@@ -253,7 +253,8 @@ def build_example(name, static, change=None):
 def run_example(program):
     done = subprocess.run([program], capture_output=True, text=True,
                           env={**os.environ, **runtime(VALIDATION)})
-    reason = re.search(r"^vk(CreateInstance|EnumeratePhysicalDevices)\S*: (-\d+)", done.stderr, re.M)
+    reason = re.search(r"^vk(CreateInstance|EnumeratePhysicalDevices)\S*: (-\d+)", done.stderr,
+                       re.M)
     if reason:
         raise Skip(f"no Vulkan device or no validation layers: {reason.group()}")
     return done

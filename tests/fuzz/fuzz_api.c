@@ -23,7 +23,7 @@ struct world {
     VkBool32 orthographic;
     VkExtent2D extent;
     unsigned contexts;
-    bool logs;     /* the context has a log that hears errors */
+    bool logs; /* the context has a log that hears errors */
     void *owned[MOST_OWNED];
     size_t owned_count;
     /* Host memory, counted. */
@@ -104,7 +104,7 @@ static void *own(struct world *w, size_t size)
 
 static uint32_t any_word(struct fuzz_input *in)
 {
-    static const float floats[] = {0.0f,  -0.0f, 1.0f,  -1.0f, 0.5f,   2.0f,    1e-45f,
+    static const float floats[] = {0.0f,   -0.0f, 1.0f,    -1.0f, 0.5f,     2.0f,      1e-45f,
                                    1e-30f, 1e30f, 3.4e38f, NAN,   INFINITY, -INFINITY, 1.5f};
     const uint32_t kind = fuzz_u8(in);
     uint32_t bits;
@@ -249,8 +249,9 @@ static const void *any_effect(struct world *w)
 static vkao_image *slot(vkao_images *images, size_t i)
 {
     vkao_image *const slots[SLOTS] = {
-        &images->depth,  &images->normals, &images->ao_noisy,     &images->ao,     &images->color,
-        &images->direct, &images->output,  &images->bent_normals, &images->albedo, &images->specular,
+        &images->depth,  &images->normals,  &images->ao_noisy, &images->ao,
+        &images->color,  &images->direct,   &images->output,   &images->bent_normals,
+        &images->albedo, &images->specular,
     };
     return slots[i];
 }
@@ -310,8 +311,8 @@ static const void *any_frame_info(struct world *w)
 {
     static const struct kept kept[] = {KEPT_TO(vkao_frame_info, images, scratch_memory),
                                        KEPT(vkao_frame_info, extent)};
-    static const uint32_t sizes[] = {100, 1, 2, 3, 7, 16, 63, 64, 1000, 4096, 128, 33, 17,
-                                     512, 0, 4097, UINT32_MAX};
+    static const uint32_t sizes[] = {100,  1,   2,  3,  7,   16, 63,   64,        1000,
+                                     4096, 128, 33, 17, 512, 0,  4097, UINT32_MAX};
     vkao_frame_info info = vkao_frame_info_default();
     w->extent.width = sizes[fuzz_u8(&w->in) % (sizeof sizes / sizeof *sizes)];
     w->extent.height = sizes[fuzz_u8(&w->in) % (sizeof sizes / sizeof *sizes)];
@@ -357,8 +358,7 @@ static struct before begin(struct world *w)
 
 static void check_code(const struct world *w, const char *call, vkao_result result)
 {
-    FUZZ_CHECK(result <= VKAO_SUCCESS, "%s returned %d", call,
-               (int)result);
+    FUZZ_CHECK(result <= VKAO_SUCCESS, "%s returned %d", call, (int)result);
     const char *failed = w->fake->failed;
     /* A name is a debugging aid: that it could not be set is no error. */
     const bool matters = failed && strcmp(failed, "vkSetDebugUtilsObjectNameEXT") != 0;
@@ -431,7 +431,7 @@ static void drop_context(struct world *w)
 static void choose_device(struct world *w)
 {
     static const char *const missing[] = {
-        "vkCreateBufferView",   "vkCmdDispatchIndirect",  "vkGetPhysicalDeviceProperties",
+        "vkCreateBufferView",    "vkCmdDispatchIndirect",  "vkGetPhysicalDeviceProperties",
         "vkDestroyShaderModule", "vkCmdCopyBufferToImage", "vkAllocateMemory"};
     struct fuzz_input *in = &w->in;
     struct fake_vulkan *fake = w->fake;
@@ -597,7 +597,7 @@ static void ask_preset(struct world *w)
         vkao_preset(quality, given & 1 ? &effect : NULL, given & 2 ? &params : NULL);
     FUZZ_CHECK((result == VKAO_SUCCESS) == ((uint32_t)quality <= VKAO_QUALITY_BEST),
                "quality %d gives %d", (int)quality, (int)result);
-    FUZZ_CHECK(vkao_result_string((vkao_result)-(int)fuzz_below(&w->in, 8)), "no text");
+    FUZZ_CHECK(vkao_result_string((vkao_result) - (int)fuzz_below(&w->in, 8)), "no text");
     FUZZ_CHECK(vkao_version() > 0, "no version");
 }
 
@@ -605,16 +605,32 @@ static void one_call(struct world *w)
 {
     const uint32_t kind = fuzz_below(&w->in, 20);
     switch (kind) {
-    case 0: create_context(w); break;
+    case 0:
+        create_context(w);
+        break;
     case 1:
     case 2:
-    case 3: create_frame(w); break;
-    case 4: query_scratch(w); break;
-    case 5: update_frame(w); break;
-    case 6: create_effect(w); break;
-    case 7: ask_preset(w); break;
-    case 8: drop_frame(w); break;
-    default: record(w, kind % 5); break;
+    case 3:
+        create_frame(w);
+        break;
+    case 4:
+        query_scratch(w);
+        break;
+    case 5:
+        update_frame(w);
+        break;
+    case 6:
+        create_effect(w);
+        break;
+    case 7:
+        ask_preset(w);
+        break;
+    case 8:
+        drop_frame(w);
+        break;
+    default:
+        record(w, kind % 5);
+        break;
     }
     while (w->owned_count)
         free(w->owned[--w->owned_count]);

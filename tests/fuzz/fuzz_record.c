@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * A record of any bytes, as a stranger's file may have it. What is accepted is a setting that the library takes, and is
- * written and read back the same. */
+ * A record of any bytes, as a stranger's file may have it. What is accepted is a setting that the
+ * library takes, and is written and read back the same. */
 #include "fuzz.h"
 #include "fuzz_view.h"
 #include "record.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the tools make of an input is never what the library refuses: that would be exit status 70. */
+ * What the tools make of an input is never what the library refuses: that would be exit status
+ * 70. */
 #ifndef VKAO_TESTS_FUZZ_VIEW_H_
 #define VKAO_TESTS_FUZZ_VIEW_H_
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Whatever depth, normals, noisy AO, reflectance and roughness hold, and however odd the settings are that pass the
- * checks: no output has a NaN or an infinity, and AO is within [0,1]. */
+ * Whatever depth, normals, noisy AO, reflectance and roughness hold, and however odd the settings
+ * are that pass the checks: no output has a NaN or an infinity, and AO is within [0,1]. */
 #include "fixture.h"
 #include "hostile.h"
 
@@ -14,8 +14,8 @@
 static const double pi = 3.14159265358979323846;
 static const float tiny = 0x1p-149f;
 
-/* Cases come in groups of the same compiled settings, which are drawn from a sequence of the group's own: a software
- * driver takes longer to compile an effect than to run it. */
+/* Cases come in groups of the same compiled settings, which are drawn from a sequence of the
+ * group's own: a software driver takes longer to compile an effect than to run it. */
 enum { GROUP = 25 };
 
 /* --- Settings --- */
@@ -70,7 +70,8 @@ static void odd_ssao(struct chance *settings, struct chance *chance, struct ao_s
     ssao->slice_count = 1 + chance_below(settings, 3);
     ssao->step_count = 1 + chance_below(settings, 6);
     ssao->noise_index = chance_below(chance, UINT32_MAX);
-    ssao->radius = chance_yes(chance, 0.7) ? (float)chance_magnitude(chance, 1e-9, 1e9) : PICK(chance, radii);
+    ssao->radius =
+        chance_yes(chance, 0.7) ? (float)chance_magnitude(chance, 1e-9, 1e9) : PICK(chance, radii);
     ssao->bias = PICK(chance, biases);
     ssao->thickness = PICK(chance, thicknesses);
     ssao->blocking_scale = PICK(chance, scales);
@@ -92,15 +93,18 @@ static void odd_blur(struct chance *settings, struct chance *chance, struct ao_b
 /* --- Images --- */
 
 /* Numbers between, with hostile ones among them. */
-static void odd_values(struct picture *p, struct chance *chance, enum picture_slot slot, double low, double high)
+static void odd_values(struct picture *p, struct chance *chance, enum picture_slot slot, double low,
+                       double high)
 {
-    picture_fill(p, slot, picture_channels(slot) == 1 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT, 0.0);
+    picture_fill(p, slot,
+                 picture_channels(slot) == 1 ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_R32G32B32A32_SFLOAT,
+                 0.0);
     const size_t count = picture_texels(p) * picture_channels(slot);
     for (size_t i = 0; i < count; ++i)
         p->values[slot][i] = chance_between(chance, low, high);
     if (chance_yes(chance, 0.8))
-        hostile_spread(chance, (enum hostile_pattern)chance_below(chance, HOSTILE_PATTERNS), p->values[slot],
-                       p->width, p->height, picture_channels(slot));
+        hostile_spread(chance, (enum hostile_pattern)chance_below(chance, HOSTILE_PATTERNS),
+                       p->values[slot], p->width, p->height, picture_channels(slot));
 }
 
 /* A scene, a slope, or depths of all magnitudes. */
@@ -122,8 +126,8 @@ static void odd_depth(struct picture *p, struct chance *settings, struct chance 
             *z = kind == 3 ? chance_between(chance, -0.1, 1.1) : 1.0 - 1.0 / (1.0 + *z);
     }
     if (chance_yes(chance, 0.7))
-        hostile_spread(chance, (enum hostile_pattern)chance_below(chance, HOSTILE_PATTERNS), p->values[SLOT_DEPTH],
-                       p->width, p->height, 1);
+        hostile_spread(chance, (enum hostile_pattern)chance_below(chance, HOSTILE_PATTERNS),
+                       p->values[SLOT_DEPTH], p->width, p->height, 1);
 }
 
 static void lit_images(struct picture *p, struct chance *settings, struct chance *chance)
@@ -139,14 +143,16 @@ static void lit_images(struct picture *p, struct chance *settings, struct chance
         ssao && bent ? VKAO_COMPOSITE_BENT_NORMALS : VKAO_COMPOSITE_MULTIPLY,
     };
     p->composite.mode = PICK(settings, modes);
-    p->composite.strength = chance_yes(chance, 0.7) ? 1.0f : (float)chance_between(chance, 0.0, 1.0);
+    p->composite.strength =
+        chance_yes(chance, 0.7) ? 1.0f : (float)chance_between(chance, 0.0, 1.0);
     p->composite.debug_distance = PICK(chance, distances);
     picture_fill(p, SLOT_COLOR, VK_FORMAT_R32G32B32A32_SFLOAT, 100.0);
     picture_fill(p, SLOT_DIRECT, VK_FORMAT_R32G32B32A32_SFLOAT, 10.0);
     odd_values(p, chance, SLOT_ALBEDO, 0.0, 1.0);
     odd_values(p, chance, SLOT_SPECULAR, 0.0, 1.0);
     for (size_t i = 0; i < picture_texels(p) * 4; ++i)
-        p->values[SLOT_SPECULAR][i] = i % 4 < 3 ? 1.0 : p->values[SLOT_SPECULAR][i]; /* roughness alone */
+        /* roughness alone */
+        p->values[SLOT_SPECULAR][i] = i % 4 < 3 ? 1.0 : p->values[SLOT_SPECULAR][i];
     p->composite.multi_bounce = chance_yes(settings, 0.5);
     if (p->composite.mode < VKAO_COMPOSITE_AO_ONLY && p->view.normal_encoding)
         p->composite.specular = (vkao_specular)chance_below(settings, bent ? 3 : 2);
@@ -155,15 +161,21 @@ static void lit_images(struct picture *p, struct chance *settings, struct chance
 
 static void make(struct picture *p, struct chance *settings, struct chance *chance)
 {
-    static const vkao_stage_flags stages[] = {
-        VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, VKAO_STAGE_ALL, VKAO_STAGE_ALL,
-        VKAO_STAGE_SSAO, VKAO_STAGE_BLUR, VKAO_STAGE_COMPOSITE, VKAO_STAGE_SSAO | VKAO_STAGE_COMPOSITE};
-    /* Few shapes and formats: a software driver compiles for each. None of these is a power of two. */
+    static const vkao_stage_flags stages[] = {VKAO_STAGE_SSAO | VKAO_STAGE_BLUR,
+                                              VKAO_STAGE_SSAO | VKAO_STAGE_BLUR,
+                                              VKAO_STAGE_ALL,
+                                              VKAO_STAGE_ALL,
+                                              VKAO_STAGE_SSAO,
+                                              VKAO_STAGE_BLUR,
+                                              VKAO_STAGE_COMPOSITE,
+                                              VKAO_STAGE_SSAO | VKAO_STAGE_COMPOSITE};
+    /* Few shapes and formats: a software driver compiles for each. None of these is a power of
+     * two. */
     static const uint32_t sizes[] = {1, 9, 13, 22, 27};
     const vkao_stage_flags both = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
     const bool dot = chance_yes(chance, 0.05);
-    picture_init(p, sizes[dot ? 0 : 1 + chance_below(chance, 4)], sizes[dot ? 0 : 1 + chance_below(chance, 3)],
-                 PICK(settings, stages));
+    picture_init(p, sizes[dot ? 0 : 1 + chance_below(chance, 4)],
+                 sizes[dot ? 0 : 1 + chance_below(chance, 3)], PICK(settings, stages));
     p->view.depth_encoding = (vkao_depth_encoding)chance_below(settings, 4);
     p->view.normal_encoding = (vkao_normal_encoding)chance_below(settings, 5);
     p->view.bent_encoding = (vkao_normal_encoding)chance_below(settings, 5);
@@ -205,7 +217,8 @@ static size_t first_wrong(const struct picture *p, enum picture_slot slot, doubl
 
 static bool outputs_are_finite(const struct picture *p, uint64_t seed)
 {
-    const bool ao_is_output = p->stages != VKAO_STAGE_COMPOSITE, blurred = p->stages & VKAO_STAGE_BLUR;
+    const bool ao_is_output = p->stages != VKAO_STAGE_COMPOSITE,
+               blurred = p->stages & VKAO_STAGE_BLUR;
     const struct {
         enum picture_slot slot;
         bool written;
@@ -223,11 +236,13 @@ static bool outputs_are_finite(const struct picture *p, uint64_t seed)
                      at = texel * picture_channels(slot);
         if (texel == picture_texels(p))
             continue;
-        print_error("case %llu: stages %u, method %d, depth %d, normals %d, bent %d, composite %d, half %d, %s: "
+        print_error("case %llu: stages %u, method %d, depth %d, normals %d, bent %d, composite %d, "
+                    "half %d, %s: "
                     "texel %zu of slot %d is %g\n",
-                    (unsigned long long)seed, p->stages, (int)p->ssao.method, (int)p->view.depth_encoding,
-                    (int)p->view.normal_encoding, (int)p->view.bent_encoding, (int)p->composite.mode,
-                    p->half_resolution, p->view.projection[15] > 0.0f ? "orthographic" : "perspective", texel,
+                    (unsigned long long)seed, p->stages, (int)p->ssao.method,
+                    (int)p->view.depth_encoding, (int)p->view.normal_encoding,
+                    (int)p->view.bent_encoding, (int)p->composite.mode, p->half_resolution,
+                    p->view.projection[15] > 0.0f ? "orthographic" : "perspective", texel,
                     (int)slot, p->values[slot][at]);
         return false;
     }

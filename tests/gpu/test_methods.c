@@ -9,8 +9,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-typedef void bent_reference(const struct ref_scene *scene, const struct ao_ssao *params,
-                            double *ao, double *bent);
+typedef void bent_reference(const struct ref_scene *scene, const struct ao_ssao *params, double *ao,
+                            double *bent);
 
 static const struct method {
     const char *name;

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The CPU's passes against those of GPUs, on one device: the same AO but for the rounding of codes. */
+ * The CPU's passes against those of GPUs, on one device: the same AO but for the rounding of
+ * codes. */
 #include "fixture.h"
 
 #include <math.h>
@@ -8,8 +9,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Noisy AO is a code of .01 in the CPU's buffer, and a 16-bit float below 2 in the image of a GPU: each is off by half a
- * step, which the blur's mean does not exceed. */
+/* Noisy AO is a code of .01 in the CPU's buffer, and a 16-bit float below 2 in the image of a GPU:
+ * each is off by half a step, which the blur's mean does not exceed. */
 static const double code_rounding = 0.005, float_rounding = 0x1p-11;
 
 enum { WIDTH = 139, HEIGHT = 101 };
@@ -29,28 +30,66 @@ static const struct row {
     {.name = "gtao", .method = VKAO_SSAO_GTAO, .slices = 3, .steps = 6, .blur = 3},
     {.name = "vbao", .method = VKAO_SSAO_VBAO, .slices = 1, .steps = 8, .blur = 3},
     {.name = "vbao, 4 slices", .method = VKAO_SSAO_VBAO, .slices = 4, .steps = 24, .blur = 1},
-    {.name = "raymarch", .method = VKAO_SSAO_RAYMARCH, .steps = 8, .samples = 8,
-     .blur = 3},
-    {.name = "vbao, threshold", .method = VKAO_SSAO_VBAO, .slices = 1, .steps = 8, .blur = 3,
+    {.name = "raymarch", .method = VKAO_SSAO_RAYMARCH, .steps = 8, .samples = 8, .blur = 3},
+    {.name = "vbao, threshold",
+     .method = VKAO_SSAO_VBAO,
+     .slices = 1,
+     .steps = 8,
+     .blur = 3,
      .falloff = VKAO_FALLOFF_THRESHOLD},
-    {.name = "vbao, normals in the blur", .method = VKAO_SSAO_VBAO, .slices = 1, .steps = 14,
-     .blur = 3, .normal_power = 8.0f},
+    {.name = "vbao, normals in the blur",
+     .method = VKAO_SSAO_VBAO,
+     .slices = 1,
+     .steps = 14,
+     .blur = 3,
+     .normal_power = 8.0f},
     {.name = "vbao, large blur", .method = VKAO_SSAO_VBAO, .slices = 1, .steps = 4, .blur = 16},
     {.name = "vbao, no blur", .method = VKAO_SSAO_VBAO, .slices = 2, .steps = 4, .blur = 0},
-    {.name = "vbao, toned", .method = VKAO_SSAO_VBAO, .slices = 1, .steps = 8, .blur = 3,
-     .intensity = 1.5f, .power = 1.2f},
-    {.name = "vbao, half", .method = VKAO_SSAO_VBAO, .slices = 1, .steps = 8, .blur = 3,
+    {.name = "vbao, toned",
+     .method = VKAO_SSAO_VBAO,
+     .slices = 1,
+     .steps = 8,
+     .blur = 3,
+     .intensity = 1.5f,
+     .power = 1.2f},
+    {.name = "vbao, half",
+     .method = VKAO_SSAO_VBAO,
+     .slices = 1,
+     .steps = 8,
+     .blur = 3,
      .half = true},
-    {.name = "gtao, half, normals", .method = VKAO_SSAO_GTAO, .slices = 1, .steps = 6, .blur = 3,
-     .half = true, .normal_power = 8.0f},
-    {.name = "vbao, depth only", .method = VKAO_SSAO_VBAO, .slices = 1, .steps = 8, .blur = 3,
+    {.name = "gtao, half, normals",
+     .method = VKAO_SSAO_GTAO,
+     .slices = 1,
+     .steps = 6,
+     .blur = 3,
+     .half = true,
+     .normal_power = 8.0f},
+    {.name = "vbao, depth only",
+     .method = VKAO_SSAO_VBAO,
+     .slices = 1,
+     .steps = 8,
+     .blur = 3,
      .depth_only = true},
-    {.name = "vbao, orthographic", .method = VKAO_SSAO_VBAO, .slices = 1, .steps = 8, .blur = 3,
+    {.name = "vbao, orthographic",
+     .method = VKAO_SSAO_VBAO,
+     .slices = 1,
+     .steps = 8,
+     .blur = 3,
      .orthographic = true},
-    {.name = "vbao, bent normals", .method = VKAO_SSAO_VBAO, .slices = 1, .steps = 8, .blur = 3,
+    {.name = "vbao, bent normals",
+     .method = VKAO_SSAO_VBAO,
+     .slices = 1,
+     .steps = 8,
+     .blur = 3,
      .bent = true},
-    {.name = "gtao, bent normals, half", .method = VKAO_SSAO_GTAO, .slices = 1, .steps = 8,
-     .blur = 3, .bent = true, .half = true},
+    {.name = "gtao, bent normals, half",
+     .method = VKAO_SSAO_GTAO,
+     .slices = 1,
+     .steps = 8,
+     .blur = 3,
+     .bent = true,
+     .half = true},
 };
 
 static void make(struct picture *p, const struct row *row)
@@ -115,7 +154,8 @@ static void both_paths_agree(void **state)
     for (size_t i = 0; i < COUNT(rows); ++i) {
         const struct row *row = &rows[i];
         const struct difference d = difference_of(cpu[i], gpu[i], WIDTH * HEIGHT);
-        /* Intensity scales it; the slope of a power is at most the power. With bent normals both store floats. */
+        /* Intensity scales it; the slope of a power is at most the power. With bent normals both
+         * store floats. */
         const double tone = (row->intensity > 0.0f ? row->intensity : 1.0f) *
                             (row->power > 0.0f ? row->power : 1.0f);
         const double most =

@@ -72,7 +72,8 @@ static void fill_memory(const struct picture *p, struct picture_gpu *g, unsigned
     VkCommandBuffer cmd = gpu_begin(&fixture.gpu, &fixture.error);
     check(cmd != NULL);
     gpu_full_barrier(cmd);
-    vkCmdFillBuffer(cmd, scratch.buffer, 0, (need.size + 3) & ~(VkDeviceSize)3, value * 0x01010101u);
+    vkCmdFillBuffer(cmd, scratch.buffer, 0, (need.size + 3) & ~(VkDeviceSize)3,
+                    value * 0x01010101u);
     gpu_full_barrier(cmd);
     check(gpu_submit(&fixture.gpu, cmd, &fixture.error));
     for (int i = 0; i < SLOT_COUNT; ++i) {
@@ -95,7 +96,8 @@ static VkRect2D rect_of(const struct picture *p)
     return (VkRect2D){{0, 0}, {p->width, p->height}};
 }
 
-/* Whether they are equal inside the rect, and outside as they were filled. ao_noisy is written beyond the rect too. */
+/* Whether they are equal inside the rect, and outside as they were filled. ao_noisy is written
+ * beyond the rect too. */
 static bool bytes_agree(const struct picture *p, enum picture_slot slot, const unsigned char *bytes,
                         const unsigned char *want, unsigned char value, const char *what)
 {
@@ -154,7 +156,13 @@ static void check_case(const struct picture *p, const char *what)
 
 /* --- Cases --- */
 
-#define NOWHERE {{0, 0}, {0, 0}}
+#define NOWHERE                                                                                    \
+    {                                                                                              \
+        {0, 0},                                                                                    \
+        {                                                                                          \
+            0, 0                                                                                   \
+        }                                                                                          \
+    }
 /* Whole images of all remainders, parts of images, parts of parts, and what lies in several strips
  * or tiles. */
 static const struct edge {
@@ -177,7 +185,8 @@ static const struct edge {
 };
 
 enum kind { FULL, HALF, BENT, HALF_BENT, NOISY, LIT, KINDS };
-static const char *const kind_names[KINDS] = {"full", "half", "bent", "half, bent", "ao_noisy", "lit"};
+static const char *const kind_names[KINDS] = {"full",       "half",     "bent",
+                                              "half, bent", "ao_noisy", "lit"};
 
 static void use_normals(struct picture *p, struct chance *settings, struct chance *chance)
 {
@@ -194,7 +203,7 @@ static void make_depth(struct picture *p, struct chance *settings, struct chance
     const struct scene scenes[] = {scene_corner(), scene_fence(), scene_open_sky()};
     const double aspect = (double)p->width / p->height;
     const struct lens lens = chance_yes(settings, 0.7) ? lens_perspective(0.8 * aspect, 0.8)
-                                                     : lens_orthographic(2.0 * aspect, 2.0);
+                                                       : lens_orthographic(2.0 * aspect, 2.0);
     picture_render_scene(p, &scenes[chance_below(chance, COUNT(scenes))], &lens,
                          VK_FORMAT_R32_SFLOAT, VK_FORMAT_UNDEFINED);
     if (chance_yes(chance, 0.9))
@@ -206,8 +215,9 @@ static void make_outputs(struct picture *p, struct chance *settings, struct chan
                          enum kind kind)
 {
     /* A software driver compiles for each format: one of them a kind. */
-    static const VkFormat ao[KINDS] = {VK_FORMAT_R8_UNORM,   VK_FORMAT_R32_SFLOAT, VK_FORMAT_R16_SFLOAT,
-                                       VK_FORMAT_R32_SFLOAT, VK_FORMAT_R16_UNORM,  VK_FORMAT_R32_SFLOAT};
+    static const VkFormat ao[KINDS] = {VK_FORMAT_R8_UNORM,   VK_FORMAT_R32_SFLOAT,
+                                       VK_FORMAT_R16_SFLOAT, VK_FORMAT_R32_SFLOAT,
+                                       VK_FORMAT_R16_UNORM,  VK_FORMAT_R32_SFLOAT};
     picture_set(p, SLOT_AO, ao[kind], NULL);
     p->staged = chance_yes(chance, 0.6);
     p->half_resolution = kind == HALF || kind == HALF_BENT;
@@ -254,7 +264,7 @@ static void make(struct picture *p, struct chance *settings, struct chance *chan
 }
 
 /* In the order of vkao_ssao_method, and the second form of SPHERE. */
-static const char *const method_names[] = {"sphere", "hemisphere", "hbao", "gtao",
+static const char *const method_names[] = {"sphere", "hemisphere", "hbao",           "gtao",
                                            "vbao",   "raymarch",   "sphere, literal"};
 enum { METHODS = sizeof method_names / sizeof method_names[0] };
 
@@ -343,7 +353,8 @@ static const struct special {
     uint32_t radius;
     float normal_power;
     bool half, staged;
-} specials[] = {{3, 0.0f, true, true}, {3, 0.0f, false, true}, {1, 8.0f, false, false}, {6, 0.0f, true, false}};
+} specials[] = {
+    {3, 0.0f, true, true}, {3, 0.0f, false, true}, {1, 8.0f, false, false}, {6, 0.0f, true, false}};
 
 static void make_special(struct picture *p, struct chance *chance, const struct special *special,
                          const struct edge *edge)

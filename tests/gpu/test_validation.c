@@ -116,8 +116,7 @@ static void misaligned_scratch_is_refused(void **state)
     picture_frame_info(&p, &g, &info);
     info.scratch_memory = fixture_allocate(&r, r.size + r.alignment);
     info.scratch_offset = 1;
-    assert_int_equal(vkao_frame_create(g.effect, &info, &frame),
-                     VKAO_ERROR_INVALID_ARGUMENT);
+    assert_int_equal(vkao_frame_create(g.effect, &info, &frame), VKAO_ERROR_INVALID_ARGUMENT);
     assert_null(frame);
     vkFreeMemory(fixture.gpu.device, info.scratch_memory, NULL);
     picture_close(&g);

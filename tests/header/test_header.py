@@ -78,9 +78,9 @@ def defaults_are_those_the_comments_state():
     assert checked >= 12, f"only {checked} defaults found"
 
 
-def no_line_is_longer_than_120():
+def no_line_is_longer_than_100():
     for number, line in enumerate(HEADER.split("\n"), 1):
-        assert len(line) <= 120, f"vkao.h:{number} has {len(line)} columns"
+        assert len(line) <= 100, f"vkao.h:{number} has {len(line)} columns"
 
 
 def every_enum_can_grow():
@@ -95,4 +95,4 @@ if __name__ == "__main__":
     run([compiles(*row) for row in COMPILERS] +
         [(f.__name__, f) for f in (every_default_function_is_compiled_here,
                                    defaults_are_those_the_comments_state,
-                                   no_line_is_longer_than_120, every_enum_can_grow)])
+                                   no_line_is_longer_than_100, every_enum_can_grow)])

@@ -98,8 +98,7 @@ static void blur_channel(const struct ref_scene *scene, const struct ao_blur *pa
     const double *viewport = scene->view.viewport;
     ref_view_position(&scene->view, viewport[0] - 0.5, 0.0, 1.0, left);
     ref_view_position(&scene->view, viewport[0] + viewport[2] - 0.5, 0.0, 1.0, right);
-    struct blur blur = {scene, params, encoding, stored, fabs(right[0] - left[0]),
-                        half_resolution};
+    struct blur blur = {scene, params, encoding, stored, fabs(right[0] - left[0]), half_resolution};
     const VkRect2D *rect = &scene->view.rect, *valid = &scene->view.valid;
     double *halfway = malloc((size_t)scene->width * scene->height * sizeof *halfway);
     if (!halfway)
@@ -117,8 +116,8 @@ static void blur_channel(const struct ref_scene *scene, const struct ao_blur *pa
 }
 
 void ref_blur_channel_half(const struct ref_scene *scene, const struct ao_blur *params,
-                           vkao_normal_encoding encoding, const double *stored,
-                           const double *noisy, double *out)
+                           vkao_normal_encoding encoding, const double *stored, const double *noisy,
+                           double *out)
 {
     blur_channel(scene, params, encoding, stored, noisy, true, out);
 }

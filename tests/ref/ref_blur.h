@@ -12,8 +12,8 @@ void ref_blur(const struct ref_scene *scene, const struct ao_blur *params,
               vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao);
 /* One channel of a half-resolution scene, as it is passed on: before intensity and power. */
 void ref_blur_channel_half(const struct ref_scene *scene, const struct ao_blur *params,
-                           vkao_normal_encoding encoding, const double *stored,
-                           const double *noisy, double *out);
+                           vkao_normal_encoding encoding, const double *stored, const double *noisy,
+                           double *out);
 /* Intensity, then power. */
 double ref_blur_finish(const struct ao_blur *params, double visibility);
 

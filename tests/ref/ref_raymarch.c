@@ -17,8 +17,8 @@ struct ray {
 
 /* The ray is hit where it is under the scene's surface, which stands over the tangent plane, by
  * less than the scene is thick there. */
-static bool hit(const struct ref_scene *scene, const struct ao_ssao *params,
-                const struct ray *ray, const double point[3])
+static bool hit(const struct ref_scene *scene, const struct ao_ssao *params, const struct ray *ray,
+                const double point[3])
 {
     double surface[3], v[3], eye[3], under[3], radius = (double)params->radius;
     if (!ref_scene_lookup(scene, point, surface))

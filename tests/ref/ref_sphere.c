@@ -47,8 +47,8 @@ static double literal(const struct ref_scene *scene, const struct ao_ssao *param
 
 /* 1 if the scene hides the point; where it is out of reach or unknown, what an endless wall would
  * do. */
-static double hidden(const struct ref_scene *scene, const struct ao_ssao *params,
-                     const double p[3], const double n[3], const double offset[3])
+static double hidden(const struct ref_scene *scene, const struct ao_ssao *params, const double p[3],
+                     const double n[3], const double offset[3])
 {
     double height = ref_dot(n, offset), bias = ref_guard(scene, params, p[2]);
     double point[3] = {p[0] + offset[0], p[1] + offset[1], p[2] + offset[2]}, q[3];

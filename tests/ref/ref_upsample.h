@@ -14,7 +14,7 @@ void ref_scene_half(const struct ref_scene *full, const struct ao_view *view, co
 /* One channel of the half-resolution image to every texel of the view's rect, before intensity and
  * power; nothing is what background gets, and texels around which there is but background. */
 void ref_upsample(const struct ref_scene *full, const struct ref_scene *half,
-                  const struct ao_blur *params, vkao_normal_encoding encoding,
-                  const double *stored, double nothing, const double *value, double *out);
+                  const struct ao_blur *params, vkao_normal_encoding encoding, const double *stored,
+                  double nothing, const double *value, double *out);
 
 #endif

@@ -165,7 +165,8 @@ FAKE_CREATE(PipelineLayout, PIPELINE_LAYOUT, {
     fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT,
              fake_number(info->pSetLayouts[0]));
     if (info->setLayoutCount > 4 || info->pPushConstantRanges[0].size > 128)
-        fake_misuse(fake, "vkCreatePipelineLayout: more sets or push constants than devices need have");
+        fake_misuse(fake,
+                    "vkCreatePipelineLayout: more sets or push constants than devices need have");
 })
 FAKE_DESTROY(PipelineLayout, PIPELINE_LAYOUT)
 FAKE_CREATE(DescriptorPool, DESCRIPTOR_POOL, {})

@@ -76,12 +76,12 @@ enum picture_slot {
 struct picture {
     uint32_t width, height;
     vkao_stage_flags stages;
-    VkFormat formats[SLOT_COUNT];  /* UNDEFINED = slot not used */
-    double *values[SLOT_COUNT];    /* as the image holds them: depth, ao_noisy, ao 1 a texel, the
+    VkFormat formats[SLOT_COUNT]; /* UNDEFINED = slot not used */
+    double *values[SLOT_COUNT];   /* as the image holds them: depth, ao_noisy, ao 1 a texel, the
                                       others 4 */
-    bool output_is_color;          /* composite in place */
+    bool output_is_color;         /* composite in place */
     bool half_resolution;
-    bool staged; /* ao.image is given */
+    bool staged;                   /* ao.image is given */
     VkDeviceMemory scratch_memory; /* null = the library's own */
     VkDeviceSize scratch_offset;
     struct ao_view view;
@@ -105,7 +105,8 @@ void picture_preset(struct picture *p, vkao_quality quality);
 void picture_free(struct picture *p);
 uint32_t picture_channels(enum picture_slot slot);
 size_t picture_texels(const struct picture *p);
-/* AO inside the part's rect is the whole's, bit for bit, and untouched outside. what: for the message. */
+/* AO inside the part's rect is the whole's, bit for bit, and untouched outside. what: for the
+ * message. */
 void picture_check_part(const struct picture *part, const struct picture *whole, double untouched,
                         const char *what);
 vkao_image *picture_slot_image(vkao_images *images, enum picture_slot slot);
@@ -128,8 +129,8 @@ vkao_effect_info picture_effect_info(const struct picture *p);
 vkao_effect *picture_effect(const struct picture *p, const vkao_context *context);
 void picture_open(const struct picture *p, struct picture_gpu *g);
 /* These stages alone. */
-void picture_record_stages(const struct picture *p, const struct picture_gpu *g, VkCommandBuffer cmd,
-                           vkao_stage_flags stages);
+void picture_record_stages(const struct picture *p, const struct picture_gpu *g,
+                           VkCommandBuffer cmd, vkao_stage_flags stages);
 void picture_frame_info(const struct picture *p, const struct picture_gpu *g,
                         vkao_frame_info *info);
 void picture_record(const struct picture *p, const struct picture_gpu *g, VkCommandBuffer cmd);

@@ -232,8 +232,8 @@ void picture_record(const struct picture *p, const struct picture_gpu *g, VkComm
     check_vkao(vkao_cmd_record(g->frame, cmd, &view, &params));
 }
 
-void picture_record_stages(const struct picture *p, const struct picture_gpu *g, VkCommandBuffer cmd,
-                           vkao_stage_flags stages)
+void picture_record_stages(const struct picture *p, const struct picture_gpu *g,
+                           VkCommandBuffer cmd, vkao_stage_flags stages)
 {
     const vkao_view view = ao_library_view(&p->view);
     const vkao_params params = ao_params(&p->ssao, &p->blur, &p->composite);

@@ -14,8 +14,8 @@
 static const struct {
     double mean, p99, max;
 } tolerances[] = {
-    [VKAO_SSAO_SPHERE] = {1e-4, 1e-3, 0.07},  [VKAO_SSAO_HEMISPHERE] = {1e-4, 1e-3, 0.07},
-    [VKAO_SSAO_HBAO] = {1e-4, 1e-3, 0.07},    [VKAO_SSAO_GTAO] = {1e-4, 1e-3, 0.07},
+    [VKAO_SSAO_SPHERE] = {1e-4, 1e-3, 0.07}, [VKAO_SSAO_HEMISPHERE] = {1e-4, 1e-3, 0.07},
+    [VKAO_SSAO_HBAO] = {1e-4, 1e-3, 0.07},   [VKAO_SSAO_GTAO] = {1e-4, 1e-3, 0.07},
     [VKAO_SSAO_VBAO] = {1e-3, 2.2e-2, 0.15}, [VKAO_SSAO_RAYMARCH] = {1e-4, 1e-3, 0.07},
 };
 
@@ -105,9 +105,11 @@ void check_every_projection(const struct ao_ssao *params, ssao_reference *refere
         bool depth_only, sky;
     } rows[] = {
         {"perspective, left-handed, y up", false, false, true, 1.0, 0.0, 0.0, false, false},
-        {"perspective, right-handed, off-centre", false, false, false, -1.0, 0.3, 0.0, false, false},
+        {"perspective, right-handed, off-centre", false, false, false, -1.0, 0.3, 0.0, false,
+         false},
         {"orthographic, right-handed", true, false, false, -1.0, 0.0, 0.0, false, false},
-        {"orthographic, left-handed, reversed, off-centre", true, true, true, 1.0, 0.5, 0.0, false, false},
+        {"orthographic, left-handed, reversed, off-centre", true, true, true, 1.0, 0.5, 0.0, false,
+         false},
         /* The floor turns its back on the origin, but not on the camera. */
         {"orthographic, lifted", true, false, false, 1.0, 0.0, -2.5, false, false},
         {"perspective, y up, depth only", false, false, true, 1.0, 0.0, 0.0, true, false},

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the references and the GPU tests set, by stage; and what the library is given for it: an effect to compile, and
- * params to record with. */
+ * What the references and the GPU tests set, by stage; and what the library is given for it: an
+ * effect to compile, and params to record with. */
 #ifndef VKAO_TESTS_STAGE_SETTING_H_
 #define VKAO_TESTS_STAGE_SETTING_H_
 
@@ -36,8 +36,8 @@ struct ao_composite ao_composite_default(void);
 vkao_result ao_preset(vkao_quality quality, VkBool32 *half_resolution, struct ao_ssao *ssao,
                       struct ao_blur *blur);
 
-/* What is compiled. blur and composite may be NULL where no stage needs them. The rest of the effect is the caller's:
- * half_resolution, ao_format, bent_normals and so on. */
+/* What is compiled. blur and composite may be NULL where no stage needs them. The rest of the
+ * effect is the caller's: half_resolution, ao_format, bent_normals and so on. */
 vkao_effect_info ao_effect(vkao_stage_flags stages, const struct ao_view *view,
                            const struct ao_ssao *ssao, const struct ao_blur *blur,
                            const struct ao_composite *composite);

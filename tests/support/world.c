@@ -18,16 +18,15 @@ static void keep(void *user_data, vkao_log_level level, const char *message)
 }
 
 const char *const world_slot_names[SLOT_COUNT] = {
-    "images.depth", "images.normals", "images.ao_noisy", "images.ao",
-    "images.color", "images.direct",  "images.output",   "images.bent_normals",
-    "images.albedo", "images.specular",
+    "images.depth",  "images.normals", "images.ao_noisy",     "images.ao",     "images.color",
+    "images.direct", "images.output",  "images.bent_normals", "images.albedo", "images.specular",
 };
 
 vkao_image *world_slot(vkao_images *images, size_t index)
 {
     vkao_image *const slots[SLOT_COUNT] = {
-        &images->depth, &images->normals, &images->ao_noisy, &images->ao,
-        &images->color, &images->direct,  &images->output,   &images->bent_normals,
+        &images->depth,  &images->normals,  &images->ao_noisy, &images->ao,
+        &images->color,  &images->direct,   &images->output,   &images->bent_normals,
         &images->albedo, &images->specular,
     };
     return slots[index];
@@ -36,9 +35,15 @@ vkao_image *world_slot(vkao_images *images, size_t index)
 void world_init(struct world *w, bool with_callbacks)
 {
     static const VkFormat formats[SLOT_COUNT] = {
-        VK_FORMAT_D32_SFLOAT,      VK_FORMAT_R16G16B16A16_SNORM,      VK_FORMAT_R8_UNORM,
-        VK_FORMAT_R16_UNORM,       VK_FORMAT_B10G11R11_UFLOAT_PACK32, VK_FORMAT_R16G16B16A16_SFLOAT,
-        VK_FORMAT_R8G8B8A8_UNORM,  VK_FORMAT_R32G32B32A32_SFLOAT,     VK_FORMAT_B8G8R8A8_SRGB,
+        VK_FORMAT_D32_SFLOAT,
+        VK_FORMAT_R16G16B16A16_SNORM,
+        VK_FORMAT_R8_UNORM,
+        VK_FORMAT_R16_UNORM,
+        VK_FORMAT_B10G11R11_UFLOAT_PACK32,
+        VK_FORMAT_R16G16B16A16_SFLOAT,
+        VK_FORMAT_R8G8B8A8_UNORM,
+        VK_FORMAT_R32G32B32A32_SFLOAT,
+        VK_FORMAT_B8G8R8A8_SRGB,
         VK_FORMAT_A2B10G10R10_UNORM_PACK32,
     };
     memset(w, 0, sizeof *w);

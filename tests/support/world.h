@@ -67,7 +67,8 @@ void world_use_bent_normals(struct world *w);
 void world_use_scratch_noise(struct world *w);
 /* A CPU, before the context is created. */
 void world_be_cpu(struct world *w);
-/* Destroys frame, effect and context, and checks that nothing was left and the API was not misused. */
+/* Destroys frame, effect and context, and checks that nothing was left and the API was not
+ * misused. */
 void world_close(struct world *w);
 /* Nothing that the library made is alive, on the device or on the host. */
 void world_check_empty(const struct world *w);

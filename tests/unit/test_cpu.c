@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The CPU's passes: where they are chosen, how the blur goes down the image in strips, which tiles are looked at, when AO is
- * copied, and what becomes of frames that its buffers cannot hold. */
+ * The CPU's passes: where they are chosen, how the blur goes down the image in strips, which tiles
+ * are looked at, when AO is copied, and what becomes of frames that its buffers cannot hold. */
 #include "cpu/cpu.h"
 #include "world.h"
 
@@ -93,7 +93,8 @@ static void strips_cover_the_rect_once(void **state)
     }
 }
 
-/* The list that SSAO's dispatch reads begins with its size, and holds as many tiles as there are. */
+/* The list that SSAO's dispatch reads begins with its size, and holds as many tiles as there
+ * are. */
 static void tiles_are_those_of_the_rect(void **state)
 {
     (void)state;

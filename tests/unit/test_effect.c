@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Effects: exactly the passes that their settings ask for, on a device with the least that Vulkan 1.1 has, and nothing left
- * when any step of the creation fails. */
+ * Effects: exactly the passes that their settings ask for, on a device with the least that Vulkan
+ * 1.1 has, and nothing left when any step of the creation fails. */
 #include "effect.h"
 #include "world.h"
 
@@ -257,8 +257,8 @@ static void combinations_that_make_no_sense_are_refused_and_named(void **state)
         {VKAO_STAGE_BLUR, offsetof(vkao_effect_info, half_resolution), 1, "half_resolution"},
         {VKAO_STAGE_SSAO, offsetof(vkao_effect_info, noisy_ao), 1, "noisy_ao"},
         {VKAO_STAGE_BLUR, offsetof(vkao_effect_info, bent_normals), 1, "bent_normals"},
-        {VKAO_STAGE_COMPOSITE, offsetof(vkao_effect_info, composite_mode),
-         VKAO_COMPOSITE_VIEW_Z, "composite_mode"},
+        {VKAO_STAGE_COMPOSITE, offsetof(vkao_effect_info, composite_mode), VKAO_COMPOSITE_VIEW_Z,
+         "composite_mode"},
         {VKAO_STAGE_ALL, offsetof(vkao_effect_info, composite_mode), VKAO_COMPOSITE_BENT_NORMALS,
          "composite_mode"},
         {VKAO_STAGE_ALL, offsetof(vkao_effect_info, specular), VKAO_SPECULAR_FROM_AO, "specular"},
@@ -287,8 +287,8 @@ static void every_required_null_is_refused(void **state)
                      VKAO_ERROR_INVALID_ARGUMENT);
     expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, vkao_effect_create(w.ctx, NULL, &w.effect),
                    "effect", "NULL");
-    expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT,
-                   vkao_effect_create(w.ctx, &w.effect_info, NULL), "out", "NULL");
+    expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, vkao_effect_create(w.ctx, &w.effect_info, NULL),
+                   "out", "NULL");
     vkao_effect_destroy(NULL);
     world_close(&w);
 }

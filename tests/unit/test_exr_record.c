@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * The record in EXR files: it holds every parameter, reads back to the bit, and is believed nothing. */
+ * The record in EXR files: it holds every parameter, reads back to the bit, and is believed
+ * nothing. */
 #include "record.h"
 
 #include <cjson/cJSON.h>

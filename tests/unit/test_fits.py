@@ -40,8 +40,8 @@ def half_turn():
     four = rf'{number} \+ v2 \* \(-{number} \+ v2 \* \({number} - {number}'
     s1, s3, s5, s7 = numbers(rf'return -v \* \({four}', text, 'noise.glsl')
     c0, c2, c4, c6 = numbers(rf'return {four}', text, 'noise.glsl')
-    of_sine, of_cosine = numbers(r'least largest error: (\S+), with the rounding of floats \S+, and (\S+)\. ',
-                                 text, 'noise.glsl')
+    error = r'least largest error: (\S+), with the rounding of floats \S+, and (\S+)\. '
+    of_sine, of_cosine = numbers(error, text, 'noise.glsl')
 
     def sine(v):
         return v * (s1 + v * v * (-s3 + v * v * (s5 - s7 * v * v)))

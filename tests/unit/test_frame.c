@@ -381,8 +381,8 @@ static void every_required_null_is_refused_and_named(void **state)
     assert_null(w.frame);
     expect_refused(&w, invalid, vkao_frame_scratch(w.effect, NULL, &query), "frame", "NULL");
     w.frame_info.images = NULL;
-    expect_refused(&w, invalid, vkao_frame_create(w.effect, &w.frame_info, &w.frame), "frame.images",
-                   "NULL");
+    expect_refused(&w, invalid, vkao_frame_create(w.effect, &w.frame_info, &w.frame),
+                   "frame.images", "NULL");
     expect_refused(&w, invalid, vkao_frame_scratch(w.effect, &w.frame_info, &query), "frame.images",
                    "NULL");
     w.frame_info.images = &w.images;

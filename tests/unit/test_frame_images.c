@@ -198,12 +198,23 @@ static void device_abilities_decide_about_formats(void **state)
 }
 
 static const VkFormat integer_formats[] = {
-    VK_FORMAT_R8_UINT,           VK_FORMAT_R8G8B8A8_UINT,      VK_FORMAT_R8G8B8A8_SINT,
-    VK_FORMAT_B8G8R8A8_UINT,     VK_FORMAT_R16_UINT,           VK_FORMAT_R16G16_SINT,
-    VK_FORMAT_R16G16B16A16_UINT, VK_FORMAT_R32_UINT,           VK_FORMAT_R32_SINT,
-    VK_FORMAT_R32G32B32A32_UINT, VK_FORMAT_R32G32B32A32_SINT,  VK_FORMAT_A2B10G10R10_UINT_PACK32,
-    VK_FORMAT_R64_UINT,          VK_FORMAT_R64G64B64A64_SINT,  VK_FORMAT_S8_UINT,
-    VK_FORMAT_R64_SFLOAT,        VK_FORMAT_G8_B8_R8_3PLANE_420_UNORM,
+    VK_FORMAT_R8_UINT,
+    VK_FORMAT_R8G8B8A8_UINT,
+    VK_FORMAT_R8G8B8A8_SINT,
+    VK_FORMAT_B8G8R8A8_UINT,
+    VK_FORMAT_R16_UINT,
+    VK_FORMAT_R16G16_SINT,
+    VK_FORMAT_R16G16B16A16_UINT,
+    VK_FORMAT_R32_UINT,
+    VK_FORMAT_R32_SINT,
+    VK_FORMAT_R32G32B32A32_UINT,
+    VK_FORMAT_R32G32B32A32_SINT,
+    VK_FORMAT_A2B10G10R10_UINT_PACK32,
+    VK_FORMAT_R64_UINT,
+    VK_FORMAT_R64G64B64A64_SINT,
+    VK_FORMAT_S8_UINT,
+    VK_FORMAT_R64_SFLOAT,
+    VK_FORMAT_G8_B8_R8_3PLANE_420_UNORM,
 };
 
 static void expect_formats(const VkFormat *formats, size_t count, size_t slot, bool fits)
@@ -234,18 +245,23 @@ static void formats_fit_their_slots(void **state)
 {
     (void)state;
     static const VkFormat depth[] = {
-        VK_FORMAT_D16_UNORM,         VK_FORMAT_X8_D24_UNORM_PACK32,  VK_FORMAT_D32_SFLOAT,
-        VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT,   VK_FORMAT_D16_UNORM_S8_UINT,
-        VK_FORMAT_R16_UNORM,         VK_FORMAT_R16_SFLOAT,           VK_FORMAT_R32_SFLOAT,
+        VK_FORMAT_D16_UNORM,         VK_FORMAT_X8_D24_UNORM_PACK32, VK_FORMAT_D32_SFLOAT,
+        VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT,  VK_FORMAT_D16_UNORM_S8_UINT,
+        VK_FORMAT_R16_UNORM,         VK_FORMAT_R16_SFLOAT,          VK_FORMAT_R32_SFLOAT,
     };
     static const VkFormat not_depth[] = {
-        VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
+        VK_FORMAT_R8G8B8A8_UNORM,
+        VK_FORMAT_R32G32_SFLOAT,
+        VK_FORMAT_R32G32B32A32_SFLOAT,
     };
     static const VkFormat ao[] = {
-        VK_FORMAT_R8_UNORM, VK_FORMAT_R16_UNORM, VK_FORMAT_R16_SFLOAT, VK_FORMAT_R32_SFLOAT,
+        VK_FORMAT_R8_UNORM,
+        VK_FORMAT_R16_UNORM,
+        VK_FORMAT_R16_SFLOAT,
+        VK_FORMAT_R32_SFLOAT,
     };
     static const VkFormat not_ao[] = {
-        VK_FORMAT_R8_SNORM,       VK_FORMAT_R8_SRGB,   VK_FORMAT_R16_SNORM, VK_FORMAT_R8G8_UNORM,
+        VK_FORMAT_R8_SNORM,       VK_FORMAT_R8_SRGB,   VK_FORMAT_R16_SNORM,  VK_FORMAT_R8G8_UNORM,
         VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_D16_UNORM, VK_FORMAT_D32_SFLOAT,
     };
     static const VkFormat colors[] = {
@@ -276,7 +292,8 @@ static void formats_fit_their_slots(void **state)
 static void messages_name_formats_and_layouts(void **state)
 {
     (void)state;
-    const vkao_image integers = {.format = VK_FORMAT_R8G8B8A8_UINT, .layout = VK_IMAGE_LAYOUT_GENERAL},
+    const vkao_image integers = {.format = VK_FORMAT_R8G8B8A8_UINT,
+                                 .layout = VK_IMAGE_LAYOUT_GENERAL},
                      attachment = {.format = VK_FORMAT_R8G8B8A8_UNORM,
                                    .layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL},
                      unknown = {.format = (VkFormat)1000156000, .layout = VK_IMAGE_LAYOUT_GENERAL},

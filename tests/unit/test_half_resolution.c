@@ -42,8 +42,8 @@ static void scratch_has_half_the_resolution(void **state)
         for (size_t k = 0; k < images; ++k) {
             const VkImageCreateInfo *image = &fake_nth(&w.fake, "vkCreateImage", k)->image;
             const uint32_t border = image->format == VK_FORMAT_R32_SFLOAT ? 2 : 0; /* of view z */
-            bool small = image->extent.width == width + border &&
-                         image->extent.height == height + border;
+            bool small =
+                image->extent.width == width + border && image->extent.height == height + border;
             vectors += image->format == VK_FORMAT_R16G16B16A16_SFLOAT;
             full += !small;
             if (!small) {

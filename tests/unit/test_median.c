@@ -40,8 +40,8 @@ static double value(int kind, size_t i, size_t n)
     }
 }
 
-/* An adversary (McIlroy, 'A Killer Adversary for Quicksort', 1999): decides what values are while they are compared,
- * so that every round gets rid of little. */
+/* An adversary (McIlroy, 'A Killer Adversary for Quicksort', 1999): decides what values are while
+ * they are compared, so that every round gets rid of little. */
 struct adversary {
     double values[MOST];
     double solid; /* smaller ones are decided */
@@ -102,8 +102,7 @@ static void killers_are_sorted(void **state)
     assert_true(rounds > MEDIAN_MOST_ROUNDS);
     memcpy(sorted, a.values, sizeof sorted);
     qsort(sorted, MOST, sizeof *sorted, compare);
-    assert_memory_equal(&(double){median_of(a.values, MOST)}, &sorted[MOST / 2],
-                        sizeof *sorted);
+    assert_memory_equal(&(double){median_of(a.values, MOST)}, &sorted[MOST / 2], sizeof *sorted);
 }
 
 static void median_is_what_sorting_says(void **state)
@@ -116,8 +115,7 @@ static void median_is_what_sorting_says(void **state)
                 values[i] = value(kind, i, n);
             memcpy(sorted, values, sizeof sorted);
             qsort(sorted, n, sizeof *sorted, compare);
-            assert_memory_equal(&(double){median_of(values, n)}, &sorted[n / 2],
-                                sizeof *sorted);
+            assert_memory_equal(&(double){median_of(values, n)}, &sorted[n / 2], sizeof *sorted);
             /* and none got lost */
             qsort(values, n, sizeof *values, compare);
             assert_memory_equal(values, sorted, n * sizeof *values);

@@ -85,7 +85,8 @@ static void every_option_reaches_its_member(void **state)
     assert_int_equal(o.pixel_type, EXR_FLOAT);
 }
 
-/* What has no option of its own: images decide it, --quality, --mode, or the tools have no such image. */
+/* What has no option of its own: images decide it, --quality, --mode, or the tools have no such
+ * image. */
 static void every_parameter_has_an_option_but_these(void **state)
 {
     static const char *const others[] = {"half_resolution", "depth_bits",   "noisy_ao",

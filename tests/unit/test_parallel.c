@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * effect.parallel: passes compiled through the caller's callback, in any order and in any threads, are those that are
- * compiled one after the other. */
+ * effect.parallel: passes compiled through the caller's callback, in any order and in any threads,
+ * are those that are compiled one after the other. */
 #include "world.h"
 
 #include <pthread.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Every member of vkao_effect_info and vkao_params at and beyond the ends of its range, by the table that the header
- * exports, and the ranges that the header's comments state. */
+ * Every member of vkao_effect_info and vkao_params at and beyond the ends of its range, by the
+ * table that the header exports, and the ranges that the header's comments state. */
 #include "world.h"
 
 #include <float.h>
@@ -67,8 +67,8 @@ static void check_float(const vkao_parameter *p)
 /* Rules between members refuse some words that are in range. */
 static bool depends_on_others(const vkao_parameter *p)
 {
-    static const char *const names[] = {"depth_bits", "noisy_ao", "bent_normals",
-                                        "normal_encoding", "projection"};
+    static const char *const names[] = {"depth_bits", "noisy_ao", "bent_normals", "normal_encoding",
+                                        "projection"};
     for (size_t i = 0; i < COUNT(names); ++i) {
         if (strcmp(p->name, names[i]) == 0)
             return true;
@@ -128,14 +128,22 @@ static void ranges_are_those_of_the_header(void **state)
         double least, most, standard;
         VkBool32 above;
     } rows[] = {
-        {"sample_count", 0, 1024, 16, 0},      {"slice_count", 0, 64, 1, 0},
-        {"step_count", 0, 256, 8, 0},          {"blur_radius", 0, 16, 3, 0},
-        {"blur_normal_power", 0, 128, 0, 0},   {"radius", 0, FLT_MAX, 0.5, 1},
-        {"bias", 0, 1, 0.005, 0},              {"thickness", 0, 8, 1, 0},
-        {"blocking_scale", 0, FLT_MAX, 50, 1}, {"sharpness", 0, 10000, 200, 0},
-        {"intensity", 0, 8, 1, 0},             {"power", 0, 8, 1, 1},
-        {"strength", 0, 1, 1, 0},              {"tint", 0, 1, 0, 0},
-        {"debug_distance", 0, FLT_MAX, 100, 0}, {"method", 0, 5, VKAO_SSAO_VBAO, 0},
+        {"sample_count", 0, 1024, 16, 0},
+        {"slice_count", 0, 64, 1, 0},
+        {"step_count", 0, 256, 8, 0},
+        {"blur_radius", 0, 16, 3, 0},
+        {"blur_normal_power", 0, 128, 0, 0},
+        {"radius", 0, FLT_MAX, 0.5, 1},
+        {"bias", 0, 1, 0.005, 0},
+        {"thickness", 0, 8, 1, 0},
+        {"blocking_scale", 0, FLT_MAX, 50, 1},
+        {"sharpness", 0, 10000, 200, 0},
+        {"intensity", 0, 8, 1, 0},
+        {"power", 0, 8, 1, 1},
+        {"strength", 0, 1, 1, 0},
+        {"tint", 0, 1, 0, 0},
+        {"debug_distance", 0, FLT_MAX, 100, 0},
+        {"method", 0, 5, VKAO_SSAO_VBAO, 0},
     };
     uint32_t count;
     const vkao_parameter *table = vkao_parameters(&count);

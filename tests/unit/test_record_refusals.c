@@ -16,8 +16,7 @@ static void stage_that_the_effect_lacks_is_refused(void **state)
             char value[32];
             snprintf(value, sizeof value, "0x%x", asked);
             fake_forget_calls(&w.fake);
-            vkao_result result =
-                vkao_cmd_stage(w.frame, world_cmd(&w), asked, &w.view, &w.params);
+            vkao_result result = vkao_cmd_stage(w.frame, world_cmd(&w), asked, &w.view, &w.params);
             if (asked && !(asked & ~has)) {
                 assert_int_equal(result, VKAO_SUCCESS);
                 continue;
@@ -41,8 +40,7 @@ static void every_required_null_is_refused_and_named(void **state)
     assert_int_equal(vkao_cmd_stage(NULL, cmd, VKAO_STAGE_SSAO, &w.view, &w.params), invalid);
     expect_refused(&w, invalid, vkao_cmd_record(w.frame, NULL, &w.view, &w.params),
                    "vkao_cmd_record", "cmd is NULL");
-    expect_refused(&w, invalid,
-                   vkao_cmd_stage(w.frame, NULL, VKAO_STAGE_SSAO, &w.view, &w.params),
+    expect_refused(&w, invalid, vkao_cmd_stage(w.frame, NULL, VKAO_STAGE_SSAO, &w.view, &w.params),
                    "vkao_cmd_stage", "cmd is NULL");
     expect_refused(&w, invalid, vkao_cmd_record(w.frame, cmd, NULL, &w.params), "view", "NULL");
     expect_refused(&w, invalid, vkao_cmd_record(w.frame, cmd, &w.view, NULL), "params", "NULL");

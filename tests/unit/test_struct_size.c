@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The struct rule of vkao.h, in its words: smaller structs of an earlier 0.2 are accepted and their missing bytes are zero,
- * larger ones only with a zero tail, and a size that no version can have is refused and not read past. */
+ * The struct rule of vkao.h, in its words: smaller structs of an earlier 0.2 are accepted and their
+ * missing bytes are zero, larger ones only with a zero tail, and a size that no version can have is
+ * refused and not read past. */
 #include "parameters.h"
 #include "world.h"
 

@@ -161,8 +161,9 @@ static struct view_constants read_off(const vkao_view *view)
 {
     const vkao_effect_info effect = effect_of(view);
     struct view_constants k;
-    assert_int_equal(vkao_view_constants_init(&silent, view, &effect, extent, VK_FORMAT_D32_SFLOAT, &k),
-                     VKAO_SUCCESS);
+    assert_int_equal(
+        vkao_view_constants_init(&silent, view, &effect, extent, VK_FORMAT_D32_SFLOAT, &k),
+        VKAO_SUCCESS);
     return k;
 }
 
@@ -262,9 +263,9 @@ static void depth_error_covers_one_step_of_the_format(void **state)
             const vkao_view view = view_of(&c);
             const vkao_effect_info effect = effect_of(&view);
             struct view_constants k;
-            assert_int_equal(vkao_view_constants_init(&silent, &view, &effect, extent,
-                                                      formats[f].format, &k),
-                             VKAO_SUCCESS);
+            assert_int_equal(
+                vkao_view_constants_init(&silent, &view, &effect, extent, formats[f].format, &k),
+                VKAO_SUCCESS);
             for (double z = 1.0; z < 45.0; z *= 1.5) {
                 double a, b;
                 depth_terms(&c, &a, &b);
@@ -335,8 +336,8 @@ static void ambiguous_orthographic_view_wants_an_axis(void **state)
     vkao_view view = ambiguous();
     const vkao_effect_info effect = effect_of(&view);
     expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT,
-                   vkao_view_constants_init(&log, &view, &effect, extent, VK_FORMAT_D32_SFLOAT, &k), "view.axis",
-                   "orthographic");
+                   vkao_view_constants_init(&log, &view, &effect, extent, VK_FORMAT_D32_SFLOAT, &k),
+                   "view.axis", "orthographic");
     for (int axis = VKAO_VIEW_AXIS_NEGATIVE_Z; axis <= VKAO_VIEW_AXIS_POSITIVE_Z; ++axis) {
         view.axis = (vkao_view_axis)axis;
         k = read_off(&view);
@@ -369,7 +370,8 @@ static void rect_grow_stays_in_bounds(void **state)
         {{5, 5, 6, 6}, UINT32_MAX, UINT32_MAX, {1, 2, 30, 40}, {1, 2, 30, 40}},
     };
     for (size_t i = 0; i < COUNT(cases); ++i) {
-        struct vkao_rect got = vkao_rect_grow(cases[i].rect, cases[i].x, cases[i].y, cases[i].bounds);
+        struct vkao_rect got =
+            vkao_rect_grow(cases[i].rect, cases[i].x, cases[i].y, cases[i].bounds);
         assert_memory_equal(&got, &cases[i].want, sizeof got);
     }
 }

@@ -140,7 +140,7 @@ static void projection_that_is_none_is_refused(void **state)
         float v;
         const char *value; /* in the log beside view.projection */
     } cases[] = {
-        {false, 1, 0.5f, "columns"},       {false, 2, 0.5f, "oblique"},
+        {false, 1, 0.5f, "columns"},      {false, 2, 0.5f, "oblique"},
         {false, 3, 0.5f, "[3] is 0.5"},   {false, 4, 0.5f, "[4] is 0.5"},
         {false, 6, -0.5f, "[6] is -0.5"}, {false, 7, 0.5f, "[7] is 0.5"},
         {true, 1, 0.5f, "[1] is 0.5"},    {true, 4, 0.5f, "[4] is 0.5"},

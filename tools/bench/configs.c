@@ -199,9 +199,8 @@ void config_describe(const struct config *config, char *text, size_t size)
 {
     struct ao_job job = {0};
     config_apply(config, &job);
-    unsigned first =
-        config_reads(config->method, "slice_count") ? job.setting.effect.slice_count
-                                                   : job.setting.effect.sample_count;
+    unsigned first = config_reads(config->method, "slice_count") ? job.setting.effect.slice_count
+                                                                 : job.setting.effect.sample_count;
     const char *half = job.setting.effect.half_resolution ? ", half resolution" : "";
     if (config_reads(config->method, "step_count"))
         snprintf(text, size, "%s %u x %u%s", config_method_name(config), first,

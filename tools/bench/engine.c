@@ -234,7 +234,8 @@ static vkao_result record(struct engine *e, const struct engine_images *images,
     config_apply(config, &job);
     job.setting.params.radius = radius;
     stage_clock_start(&e->clock, cmd);
-    vkao_result result = vkao_cmd_record(frame_of(e, images, config), cmd, &view, &job.setting.params);
+    vkao_result result =
+        vkao_cmd_record(frame_of(e, images, config), cmd, &view, &job.setting.params);
     stage_clock_stop(&e->clock);
     return result;
 }

@@ -172,7 +172,8 @@ void camera_project(const struct camera *camera, const struct camera_planes *pla
 
 bool camera_can_project(const struct ao_view *view)
 {
-    /* A tenth of what vkao.h allows a texel to span: the place in the display may move it a little. */
+    /* A tenth of what vkao.h allows a texel to span: the place in the display may move it a
+     * little. */
     static const double least = 1e-14, most = 1e14;
     const float *m = view->projection;
     const bool perspective = m[11] < 0.0f;

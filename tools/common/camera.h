@@ -77,7 +77,8 @@ struct camera_planes {
 
 /* Fills projection, axis and viewport; normal_to_view becomes the identity. */
 void camera_project(const struct camera *camera, const struct camera_planes *planes,
-                    const struct exr_box *display, const struct exr_box *data, struct ao_view *view);
+                    const struct exr_box *display, const struct exr_box *data,
+                    struct ao_view *view);
 /* Whether the library can use the projection: absurd fields of view and planes make zeros and
  * infinities of it. */
 bool camera_can_project(const struct ao_view *view);

@@ -27,7 +27,8 @@ using namespace exr;
 
 /* --- Opening --- */
 
-namespace {
+namespace
+{
 
 bool same_window(const Imath::Box2i &box, const window &w)
 {
@@ -86,9 +87,8 @@ const char *find_difference(const Imf::Header &header, const part_layout &part)
     fprintf(stderr, "two readings of the headers disagree: part %zu: %s\n", part, what);
     abort();
 #endif
-    raise(EXIT_INPUT, damaged_hint,
-          "%s: damaged header: two readings of part %zu disagree: %s", stream.fileName(), part,
-          what);
+    raise(EXIT_INPUT, damaged_hint, "%s: damaged header: two readings of part %zu disagree: %s",
+          stream.fileName(), part, what);
 }
 
 } // namespace
@@ -113,8 +113,7 @@ std::unique_ptr<exr::Imf::MultiPartInputFile> exr_input::open()
     try {
         stream.check_unchanged();
         stream.seekg(0);
-        auto file =
-            std::make_unique<Imf::MultiPartInputFile>(stream, useful_threads(), false);
+        auto file = std::make_unique<Imf::MultiPartInputFile>(stream, useful_threads(), false);
         stream.check_unchanged();
         if (file->parts() != int(layout.parts.size()))
             disagree(stream, 0, "number of parts");
@@ -123,8 +122,8 @@ std::unique_ptr<exr::Imf::MultiPartInputFile> exr_input::open()
             if (difference)
                 disagree(stream, size_t(i), difference);
             if (!file->partComplete(i))
-                raise(EXIT_INPUT, damaged_hint,
-                      "%s: truncated: part %d lacks chunks", stream.fileName(), i);
+                raise(EXIT_INPUT, damaged_hint, "%s: truncated: part %d lacks chunks",
+                      stream.fileName(), i);
         }
         return file;
     } catch (const Iex::BaseExc &e) {
@@ -135,7 +134,8 @@ std::unique_ptr<exr::Imf::MultiPartInputFile> exr_input::open()
 
 /* --- Reading --- */
 
-namespace {
+namespace
+{
 
 template <typename T> T *allocate(size_t count)
 {
@@ -210,8 +210,8 @@ template <typename T> bool box(const Imf::Attribute &attribute, exr_attribute &o
 void fill_attribute(const char *name, const Imf::Attribute &attribute, exr_attribute &out)
 {
     static bool (*const shapes[])(const Imf::Attribute &, exr_attribute &) = {
-        scalar<int>,         scalar<float>,       scalar<double>,    vec<Imath::V2i>,
-        vec<Imath::V2f>,     vec<Imath::V2d>,     vec<Imath::V3i>,   vec<Imath::V3f>,
+        scalar<int>,         scalar<float>,       scalar<double>,      vec<Imath::V2i>,
+        vec<Imath::V2f>,     vec<Imath::V2d>,     vec<Imath::V3i>,     vec<Imath::V3f>,
         vec<Imath::V3d>,     matrix<Imath::M33f>, matrix<Imath::M33d>, matrix<Imath::M44f>,
         matrix<Imath::M44d>, box<Imath::Box2i>,   box<Imath::Box2f>,
     };
@@ -266,7 +266,8 @@ void fill_attributes(const Imf::Header &header, exr_part &part)
     }
 }
 
-/* threads: of OpenEXR. A chunk is in memory as stored, decoded, and once more while it is decoded. */
+/* threads: of OpenEXR. A chunk is in memory as stored, decoded, and once more while it is
+ * decoded. */
 uint64_t decode_bytes(const part_layout &layout, int threads)
 {
     return layout.deep ? 0 : 3 * 2 * uint64_t(std::max(threads, 1)) * uint64_t(layout.chunk_bytes);

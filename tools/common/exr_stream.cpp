@@ -14,7 +14,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace exr {
+namespace exr
+{
 
 const char *const damaged_hint = "render or copy the file again";
 
@@ -52,18 +53,17 @@ std::string library_message(const std::exception &error)
     return excerpt(text);
 }
 
-input_stream::input_stream(const char *path, const char *shown)
-    : Imf::IStream(shown ? shown : path)
+input_stream::input_stream(const char *path, const char *shown) : Imf::IStream(shown ? shown : path)
 {
     struct stat status = {};
     /* O_NONBLOCK: a pipe without a writer must not hang us before we can refuse it. */
     const int fd = ::open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0)
         raise(EXIT_INPUT, nullptr, "%s: cannot open: %s", fileName(), strerror(errno));
-    const int error = fstat(fd, &status) != 0          ? errno
-                      : S_ISDIR(status.st_mode)        ? EISDIR
-                      : !(file_ = fdopen(fd, "rb"))    ? errno
-                                                       : 0;
+    const int error = fstat(fd, &status) != 0       ? errno
+                      : S_ISDIR(status.st_mode)     ? EISDIR
+                      : !(file_ = fdopen(fd, "rb")) ? errno
+                                                    : 0;
     if (!file_)
         close(fd);
     if (error)
@@ -85,8 +85,7 @@ input_stream::~input_stream()
 bool input_stream::read(char data[], int bytes)
 {
     if (bytes < 0 || uint64_t(bytes) > size_ - position_)
-        raise(EXIT_INPUT, damaged_hint, "%s: truncated or damaged: ends early",
-              fileName());
+        raise(EXIT_INPUT, damaged_hint, "%s: truncated or damaged: ends early", fileName());
     errno = 0;
     if (fread(data, 1, size_t(bytes), file_) != size_t(bytes))
         raise(EXIT_INPUT, nullptr, "%s: cannot read: %s", fileName(),
@@ -123,8 +122,7 @@ uint64_t input_stream::tellg()
 void input_stream::seekg(uint64_t position)
 {
     if (position > size_)
-        raise(EXIT_INPUT, damaged_hint, "%s: truncated or damaged: ends early",
-              fileName());
+        raise(EXIT_INPUT, damaged_hint, "%s: truncated or damaged: ends early", fileName());
     if (fseeko(file_, off_t(position), SEEK_SET) != 0)
         raise(EXIT_INPUT, nullptr, "%s: cannot read: %s", fileName(), strerror(errno));
     position_ = position;

@@ -142,8 +142,8 @@ static uint64_t box_texels(const struct exr_box *box)
            (uint64_t)((int64_t)box->y_max - box->y_min + 1);
 }
 
-/* Bytes per texel of a role with four components, and what reading it takes for a while: the decoder
- * and, if its window is another, an image of that. */
+/* Bytes per texel of a role with four components, and what reading it takes for a while: the
+ * decoder and, if its window is another, an image of that. */
 static void add_vector(const struct exr_info *info, const struct gbuffer *g,
                        const struct role *role, uint64_t *texel_bytes, uint64_t *for_a_while)
 {

@@ -5,11 +5,12 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* No scene measures more or less than this, in whatever unit. Within, squares are finite and not 0. */
+/* No scene measures more or less than this, in whatever unit. Within, squares are finite and not
+ * 0. */
 static const double least_z = 1e-18, largest_z = 1e18;
 
-/* What renderers write where there is nothing: Falcor, Cycles, clip ranges. No scene measures exactly
- * this. Arnold's is beyond the largest. */
+/* What renderers write where there is nothing: Falcor, Cycles, clip ranges. No scene measures
+ * exactly this. Arnold's is beyond the largest. */
 static bool is_sentinel(float z)
 {
     static const float values[] = {1e8f, 1e10f, 1e12f};

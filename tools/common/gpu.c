@@ -77,8 +77,8 @@ static bool create_instance(struct gpu *gpu, const struct gpu_options *options,
         .pfnUserCallback = on_message,
         .pUserData = gpu,
     };
-    /* Core checks are on by default. Queue-submit synchronization has no enumerator in these headers; the layer reads
-     * it from the environment only. */
+    /* Core checks are on by default. Queue-submit synchronization has no enumerator in these
+     * headers; the layer reads it from the environment only. */
     const VkValidationFeatureEnableEXT enables[] = {
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     const VkValidationFeaturesEXT features = {
@@ -214,7 +214,8 @@ static bool pick_device(struct gpu *gpu, const struct gpu_options *options, stru
         vkGetPhysicalDeviceProperties(devices[i], &p);
         int score = device_fits(wanted, i, &p);
         any_fits = any_fits || score > 0;
-        /* A device without a compute queue says so later; one that cannot present is passed over. */
+        /* A device without a compute queue says so later; one that cannot present is passed
+         * over. */
         if (options->presentation &&
             find_family(gpu, devices[i], options->presentation) == UINT32_MAX)
             continue;
@@ -402,7 +403,8 @@ bool gpu_library_failed(struct tool_error *err, const char *call, vkao_result re
     return fail(err, code, "%s: %s", call, vkao_result_string(result));
 }
 
-/* A trial override: with VKAO_PATH=images a CPU says that it is a GPU, and gets the passes that GPUs get. */
+/* A trial override: with VKAO_PATH=images a CPU says that it is a GPU, and gets the passes that
+ * GPUs get. */
 static VKAPI_ATTR void VKAPI_CALL properties_of_gpu(VkPhysicalDevice device,
                                                     VkPhysicalDeviceProperties *out)
 {

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The command line. Every option is one row of the table in options_table.c: parsing, --help, the man page and the
- * suggestion for a misspelt one come from there; ranges, defaults, words and explanations of what is a parameter of the
- * library, from the library's table. */
+ * The command line. Every option is one row of the table in options_table.c: parsing, --help, the
+ * man page and the suggestion for a misspelt one come from there; ranges, defaults, words and
+ * explanations of what is a parameter of the library, from the library's table. */
 #ifndef VKAO_TOOLS_OPTIONS_H_
 #define VKAO_TOOLS_OPTIONS_H_
 
@@ -82,7 +82,8 @@ struct option_row {
     unsigned commands;    /* enum command values or-ed */
     option_apply *apply;
     size_t offset; /* of the member of struct options that apply writes */
-    /* Of a parameter: what the default, which the word auto stands for too, is; NULL: the library's. */
+    /* Of a parameter: what the default, which the word auto stands for too, is; NULL: the
+     * library's. */
     const char *automatic;
     bool has_off;                    /* of a parameter: the word off is 0 */
     struct option_range range;       /* not of parameters */
@@ -94,8 +95,8 @@ extern const size_t option_table_count;
 
 /* Errors: EXIT_USAGE. */
 bool options_parse(int argc, char **argv, struct options *options, struct tool_error *err);
-/* Fills options->setting and what belongs to it. like: where what was not given comes from; NULL: from --quality.
- * Errors: EXIT_USAGE. */
+/* Fills options->setting and what belongs to it. like: where what was not given comes from; NULL:
+ * from --quality. Errors: EXIT_USAGE. */
 bool options_settle(struct options *options, const struct setting *like, struct tool_error *err);
 bool option_is_given(const struct options *options, const char *name);
 /* The row whose option sets a parameter, NULL if none does; and the parameter of a row, or NULL. */

@@ -258,7 +258,8 @@ static bool read_parameter(const struct reader *r, const cJSON *object, const vk
     return true;
 }
 
-/* What no option sets is the library's default in everything that vkao writes. The preset sets half_resolution. */
+/* What no option sets is the library's default in everything that vkao writes. The preset sets
+ * half_resolution. */
 static bool can_be_asked_for(const vkao_parameter *p)
 {
     return option_of_parameter(p) || parameter_is_of_images(p) ||

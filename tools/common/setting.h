@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * All that decides the AO of a G-buffer, in the library's own structs; its members by the library's table of parameters, so
- * that command line, panel, record and man page need no other. */
+ * All that decides the AO of a G-buffer, in the library's own structs; its members by the library's
+ * table of parameters, so that command line, panel, record and man page need no other. */
 #ifndef VKAO_TOOLS_SETTING_H_
 #define VKAO_TOOLS_SETTING_H_
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Save: the picture as PNG, the values as EXR, and the command line of vkao that makes them; of a live scene its G-buffer
- * and camera too. Files are written as vkao itself writes them. */
+ * Save: the picture as PNG, the values as EXR, and the command line of vkao that makes them; of a
+ * live scene its G-buffer and camera too. Files are written as vkao itself writes them. */
 #include "atomic_file.h"
 #include "output.h"
 #include "png_file.h"
@@ -218,7 +218,8 @@ static void tone(const struct viewer *v, const struct rendered_view *r, size_t t
     }
 }
 
-/* The picture as the display shows it, of values without padding: width and height are those of the G-buffer. */
+/* The picture as the display shows it, of values without padding: width and height are those of the
+ * G-buffer. */
 static bool write_picture(struct viewer *viewer, const struct rendered_view *view, const char *path,
                           struct tool_error *err)
 {

@@ -26,8 +26,8 @@ static bool is_at(const vkao_parameter *p, size_t offset)
     return parameter_offset(p) == offset;
 }
 
-/* The view decides whether there are bent normals; no file says how many bits its depth once had, and nobody asks for AO
- * before the blur as an image of its own. */
+/* The view decides whether there are bent normals; no file says how many bits its depth once had,
+ * and nobody asks for AO before the blur as an image of its own. */
 static bool is_shown(const vkao_parameter *p)
 {
     return !parameter_is_of_images(p) && !is_at(p, EFFECT(depth_bits)) &&
@@ -48,8 +48,8 @@ static unsigned needs_of(const vkao_parameter *p)
                                           : 0u;
 }
 
-/* Sliders end where ranges do not: wholes at 63, lengths at 2000 times their default; and begin at a hundredth of it where
- * zero is out of range. */
+/* Sliders end where ranges do not: wholes at 63, lengths at 2000 times their default; and begin at
+ * a hundredth of it where zero is out of range. */
 static void fill_slider(struct param *row)
 {
     enum { MOST_WHOLE = 63 };

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the panel can change: the library's table of parameters, and what a panel adds to it; and the command line that Save
- * writes, from the same rows. Pure functions: no device, no window. */
+ * What the panel can change: the library's table of parameters, and what a panel adds to it; and
+ * the command line that Save writes, from the same rows. Pure functions: no device, no window. */
 #ifndef VKAO_VIEW_SETTINGS_H_
 #define VKAO_VIEW_SETTINGS_H_
 
@@ -28,7 +28,8 @@ struct view_name {
 };
 extern const struct view_name view_names[VIEW_KINDS];
 
-/* Sections of the panel. A parameter stands where the last stage that reads it does, but for what SSAO reads. */
+/* Sections of the panel. A parameter stands where the last stage that reads it does, but for what
+ * SSAO reads. */
 enum param_group { GROUP_SSAO, GROUP_BLUR, GROUP_COMPOSITE, GROUP_COUNT };
 extern const char *const group_names[GROUP_COUNT];
 

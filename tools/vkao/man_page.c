@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Prints the source of the man page: that of a file, with the options in place of the line @OPTIONS@. */
+ * Prints the source of the man page: that of a file, with the options in place of the line
+ * @OPTIONS@. */
 #include "options.h"
 #include "read_file.h"
 
