@@ -12,18 +12,18 @@
 #include "vkao_packed_blur_x_cpu.h"
 #include "vkao_packed_blur_y_cpu.h"
 #include "vkao_packed_prepare_cpu.h"
+#include "vkao_packed_ssao_gtao_16bit_cpu.h"
+#include "vkao_packed_ssao_gtao_cpu.h"
+#include "vkao_packed_ssao_hbao_16bit_cpu.h"
+#include "vkao_packed_ssao_hbao_cpu.h"
+#include "vkao_packed_ssao_hemisphere_16bit_cpu.h"
+#include "vkao_packed_ssao_hemisphere_cpu.h"
+#include "vkao_packed_ssao_vbao_16bit_cpu.h"
+#include "vkao_packed_ssao_vbao_cpu.h"
 #include "vkao_packed_tiles_cpu.h"
 #include "vkao_packed_upsample_cpu.h"
-#include "vkao_ssao_gtao_16bit_cpu.h"
-#include "vkao_ssao_gtao_cpu.h"
-#include "vkao_ssao_hbao_16bit_cpu.h"
-#include "vkao_ssao_hbao_cpu.h"
-#include "vkao_ssao_hemisphere_16bit_cpu.h"
-#include "vkao_ssao_hemisphere_cpu.h"
 #include "vkao_ssao_raymarch_cpu.h"
 #include "vkao_ssao_sphere_cpu.h"
-#include "vkao_ssao_vbao_16bit_cpu.h"
-#include "vkao_ssao_vbao_cpu.h"
 #include "vkao_upsample_cpu.h"
 
 #include <assert.h>
@@ -226,29 +226,30 @@ static const struct vkao_pass tiles = {
     .record = record_tiles,
 };
 
-#define METHOD(method, width, codes)                                                               \
+#define METHOD(method, words, width, codes)                                                        \
     {                                                                                              \
-        .name = "vkao ssao " #method, .label = "ssao", .stage = VKAO_STAGE_SSAO,                   \
-        VKAO_CODE(vkao_ssao_##method##_cpu),                                                       \
+        .name = "vkao ssao " #method, .label = "ssao", .stage = VKAO_STAGE_SSAO, VKAO_CODE(words), \
         .uses = {READS_Z, READS_NORMALS, VKAO_WRITES(TARGET, AO_NOISY), READS_WORDS(TILES, TILES), \
                  WRITES_TEXELS(PACKED_WRITE, PACKED, codes)},                                      \
         .area = VKAO_AREA_AROUND, .texels = {width, 1}, ROW_GROUP, .forms = 1,                     \
         .record = record_ssao,                                                                     \
     }
+#define PAIRED_METHOD(method)                                                                      \
+    METHOD(method, vkao_packed_ssao_##method##_cpu, VKAO_SSAO_TEXELS, R16_UINT)
 static const struct vkao_pass methods[] = {
-    [VKAO_SSAO_SPHERE] = METHOD(sphere, 1, R8_UINT),
-    [VKAO_SSAO_HEMISPHERE] = METHOD(hemisphere, VKAO_SSAO_TEXELS, R16_UINT),
-    [VKAO_SSAO_HBAO] = METHOD(hbao, VKAO_SSAO_TEXELS, R16_UINT),
-    [VKAO_SSAO_GTAO] = METHOD(gtao, VKAO_SSAO_TEXELS, R16_UINT),
-    [VKAO_SSAO_VBAO] = METHOD(vbao, VKAO_SSAO_TEXELS, R16_UINT),
-    [VKAO_SSAO_RAYMARCH] = METHOD(raymarch, 1, R8_UINT),
+    [VKAO_SSAO_SPHERE] = METHOD(sphere, vkao_ssao_sphere_cpu, 1, R8_UINT),
+    [VKAO_SSAO_HEMISPHERE] = PAIRED_METHOD(hemisphere),
+    [VKAO_SSAO_HBAO] = PAIRED_METHOD(hbao),
+    [VKAO_SSAO_GTAO] = PAIRED_METHOD(gtao),
+    [VKAO_SSAO_VBAO] = PAIRED_METHOD(vbao),
+    [VKAO_SSAO_RAYMARCH] = METHOD(raymarch, vkao_ssao_raymarch_cpu, 1, R8_UINT),
 };
 
 /* The same, with codes of two texels in one store. */
 #define METHOD_16BIT(method)                                                                       \
     {                                                                                              \
         .name = "vkao ssao " #method, .label = "ssao", .stage = VKAO_STAGE_SSAO,                   \
-        VKAO_CODE(vkao_ssao_##method##_16bit_cpu),                                                 \
+        VKAO_CODE(vkao_packed_ssao_##method##_16bit_cpu),                                          \
         .uses = {READS_Z, READS_NORMALS, VKAO_WRITES(TARGET, AO_NOISY), READS_WORDS(TILES, TILES), \
                  WRITES_WORDS(PACKED_WORDS, PACKED)},                                              \
         .area = VKAO_AREA_AROUND, .texels = {VKAO_SSAO_TEXELS, 1}, ROW_GROUP, .forms = 1,          \

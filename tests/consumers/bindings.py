@@ -17,6 +17,7 @@ class Parameter(ctypes.Structure):
     """vkao_parameter"""
     _fields_ = [("name", c_char_p), ("unit", c_char_p), ("help", c_char_p), ("type", c_uint32),
                 ("is_compiled", c_uint32), ("offset", c_uint32), ("above_least", c_uint32),
+                ("zero_is_standard", c_uint32), ("padding", c_uint32),
                 ("least", c_double), ("most", c_double), ("standard", c_double),
                 ("choices", POINTER(c_char_p)), ("stages", c_uint32), ("methods", c_uint32)]
 

@@ -35,31 +35,6 @@ struct ao_composite ao_composite_default(void)
     return (struct ao_composite){.strength = p.strength, .debug_distance = p.debug_distance};
 }
 
-vkao_result ao_preset(vkao_quality quality, VkBool32 *half_resolution, struct ao_ssao *ssao,
-                      struct ao_blur *blur)
-{
-    vkao_effect_info e = vkao_effect_info_default();
-    vkao_params p = vkao_params_default();
-    const vkao_result result = vkao_preset(quality, &e, &p);
-    if (result != VKAO_SUCCESS)
-        return result;
-    if (half_resolution)
-        *half_resolution = e.half_resolution;
-    if (ssao) {
-        ssao->method = e.method;
-        ssao->slice_count = e.slice_count;
-        ssao->step_count = e.step_count;
-        ssao->bias = p.bias;
-        ssao->thickness = p.thickness;
-    }
-    if (blur) {
-        blur->radius = e.blur_radius;
-        blur->normal_power = e.blur_normal_power;
-        blur->sharpness = p.sharpness;
-    }
-    return result;
-}
-
 vkao_effect_info ao_effect(vkao_stage_flags stages, const struct ao_view *view,
                            const struct ao_ssao *ssao, const struct ao_blur *blur,
                            const struct ao_composite *composite)

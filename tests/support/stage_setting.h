@@ -32,10 +32,6 @@ struct ao_ssao ao_ssao_default(void);
 struct ao_blur ao_blur_default(void);
 struct ao_composite ao_composite_default(void);
 
-/* vkao_preset. Each pointer may be NULL. */
-vkao_result ao_preset(vkao_quality quality, VkBool32 *half_resolution, struct ao_ssao *ssao,
-                      struct ao_blur *blur);
-
 /* What is compiled. blur and composite may be NULL where no stage needs them. The rest of the
  * effect is the caller's: half_resolution, ao_format, bent_normals and so on. */
 vkao_effect_info ao_effect(vkao_stage_flags stages, const struct ao_view *view,
