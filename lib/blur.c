@@ -64,10 +64,10 @@ void vkao_blur_plan(struct vkao_program *program)
         vkao_program_add(program, &upsample);
 }
 
-void vkao_blur_constants(const vkao_params *params, struct vkao_constants *out)
+void vkao_blur_constants(const struct vkao_recording *r, const vkao_params *params,
+                         struct vkao_constants *out)
 {
-    out->sharpness = params->sharpness;
-    out->intensity = params->intensity;
+    (void)r;
     /* Devices may take denormal numbers for 0, and no power of 0 is that. */
     out->power = fmaxf(params->power, 1e-30f);
 }

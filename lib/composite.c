@@ -52,9 +52,10 @@ void vkao_composite_plan(struct vkao_program *program)
     vkao_program_add(program, is_debug ? &debug : &composite);
 }
 
-void vkao_composite_constants(const vkao_params *params, struct vkao_constants *out)
+void vkao_composite_constants(const struct vkao_recording *r, const vkao_params *params,
+                              struct vkao_constants *out)
 {
+    (void)r;
     memcpy(out->tint, params->tint, sizeof params->tint);
-    out->strength = params->strength;
     out->debug_distance = fmaxf(params->debug_distance, (float)VKAO_NEAREST_Z);
 }

@@ -48,8 +48,7 @@ static void set_constants(struct vkao_program *program)
 static uint32_t needs_of(const struct vkao_program *program)
 {
     const vkao_effect_info *e = &program->settings;
-    const bool composite = e->stages & VKAO_STAGE_COMPOSITE,
-               makes_ao = e->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
+    const bool composite = e->stages & VKAO_STAGE_COMPOSITE, makes_ao = vkao_makes_ao(e);
     const bool lit = composite && e->composite_mode <= VKAO_COMPOSITE_INDIRECT;
     const bool reads_bent = (composite && e->composite_mode == VKAO_COMPOSITE_BENT_NORMALS) ||
                             (lit && e->specular == VKAO_SPECULAR_FROM_BENT);
@@ -80,19 +79,16 @@ static uint32_t needs_of(const struct vkao_program *program)
 void vkao_program_plan(struct vkao_program *program, const vkao_context *ctx,
                        const vkao_effect_info *settings, bool is_cpu)
 {
-    const vkao_stage_flags stages = settings->stages;
+    const vkao_stage_flags stages = vkao_stages_of(settings);
     *program = (struct vkao_program){.ctx = ctx, .settings = *settings, .is_cpu = is_cpu};
     if (is_cpu) {
         vkao_cpu_plan(program);
     } else {
-        if (stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR))
-            vkao_prepare_plan(program);
-        if (stages & VKAO_STAGE_SSAO)
-            vkao_ssao_plan(program);
-        if (stages & VKAO_STAGE_BLUR)
-            vkao_blur_plan(program);
-        if (stages & VKAO_STAGE_COMPOSITE)
-            vkao_composite_plan(program);
+#define PLAN(NAME, name)                                                                           \
+    if (stages & VKAO_STAGE_##NAME)                                                                \
+        vkao_##name##_plan(program);
+        VKAO_STAGES(PLAN)
+#undef PLAN
     }
     program->needs = needs_of(program);
     set_constants(program);

@@ -6,11 +6,6 @@
 #include "parameters.h"
 #include "slots.h"
 
-static bool makes_ao(const struct vkao_program *program)
-{
-    return program->settings.stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
-}
-
 /* --- Scratch --- */
 
 /* Half precision is plenty for AO on its way to the blur; storing to it is optional in Vulkan. */
@@ -58,7 +53,8 @@ static void plan_images(const vkao_frame *frame, struct vkao_scratch_plan *plan)
 static vkao_result create_scratch(vkao_frame *frame, VkMemoryRequirements *out)
 {
     struct vkao_scratch_plan plan = {0};
-    plan.parts[VKAO_RESOURCE_CONSTANTS] = sizeof(struct vkao_constants);
+    /* Uniform blocks are multiples of 16 bytes. */
+    plan.parts[VKAO_RESOURCE_CONSTANTS] = (sizeof(struct vkao_constants) + 15) / 16 * 16;
     plan_images(frame, &plan);
     if (frame->program->is_cpu)
         vkao_cpu_parts(frame->program, frame->extent, frame->copies, &frame->rows, plan.parts);
@@ -107,7 +103,8 @@ static vkao_image resolve(const vkao_frame *frame, const struct vkao_use *use)
     const struct vkao_program *program = frame->program;
     enum vkao_resource r = use->resource;
     if (!(program->needs & VKAO_BIT(r)))
-        r = use->writes || !makes_ao(program) ? VKAO_RESOURCE_AO : VKAO_RESOURCE_DEPTH;
+        r = use->writes || !vkao_makes_ao(&program->settings) ? VKAO_RESOURCE_AO
+                                                              : VKAO_RESOURCE_DEPTH;
     if (r < VKAO_SLOT_COUNT && vkao_slot_image(&frame->images, r)->format)
         return *vkao_slot_image(&frame->images, r);
     return (vkao_image){.view = frame->scratch.images[r].view, .layout = VK_IMAGE_LAYOUT_GENERAL};

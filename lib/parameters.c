@@ -13,25 +13,22 @@
 
 /* --- The tables --- */
 
-static const vkao_method methods[] = {
-    [VKAO_SSAO_SPHERE] = {.name = "sphere", .help = "points in the full sphere"},
-    [VKAO_SSAO_HEMISPHERE] = {.name = "hemisphere",
-                              .help = "points in the normal-oriented hemisphere"},
-    [VKAO_SSAO_HBAO] = {.name = "hbao", .help = "horizons, true-horizon form"},
-    [VKAO_SSAO_GTAO] = {.name = "gtao",
-                        .help = "horizons, cosine-weighted",
-                        .has_bent_normals = VK_TRUE},
-    [VKAO_SSAO_VBAO] = {.name = "vbao",
-                        .help = "visibility bitmask: the closest to ray-traced AO for its time",
-                        .has_bent_normals = VK_TRUE},
-    [VKAO_SSAO_RAYMARCH] = {.name = "raymarch",
-                            .help = "rays through the depth image: slow, the yardstick",
-                            .has_bent_normals = VK_TRUE},
-};
+/* Name of the vkao_ssao_method, word, help, bent normals. */
+#define METHODS(X)                                                                                 \
+    X(SPHERE, "sphere", "points in the full sphere", VK_FALSE)                                     \
+    X(HEMISPHERE, "hemisphere", "points in the normal-oriented hemisphere", VK_FALSE)              \
+    X(HBAO, "hbao", "horizons, true-horizon form", VK_FALSE)                                       \
+    X(GTAO, "gtao", "horizons, cosine-weighted", VK_TRUE)                                          \
+    X(VBAO, "vbao", "visibility bitmask: the closest to ray-traced AO for its time", VK_TRUE)      \
+    X(RAYMARCH, "raymarch", "rays through the depth image: slow, the yardstick", VK_TRUE)
+
+#define METHOD_ROW(NAME, word, words, has_bent)                                                    \
+    [VKAO_SSAO_##NAME] = {.name = word, .help = words, .has_bent_normals = has_bent},
+static const vkao_method methods[] = {METHODS(METHOD_ROW)};
 enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 
-static const char *const method_words[METHOD_COUNT] = {"sphere", "hemisphere", "hbao",
-                                                       "gtao",   "vbao",       "raymarch"};
+#define METHOD_WORD(NAME, word, words, has_bent) [VKAO_SSAO_##NAME] = word,
+static const char *const method_words[METHOD_COUNT] = {METHODS(METHOD_WORD)};
 static const char *const falloff_words[] = {"smooth", "threshold"};
 static const char *const form_words[] = {"rescaled", "literal"};
 static const char *const depth_words[] = {"projected", "z", "distance", "inverse-z"};

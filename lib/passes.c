@@ -2,8 +2,19 @@
 #include "passes.h"
 
 #include <assert.h>
+#include <stddef.h>
 
-static_assert(sizeof(struct vkao_constants) == 240, "as std140 lays it out");
+static_assert(offsetof(struct vkao_constants, far_z) == 160, "vectors lie as std140 has them");
+
+bool vkao_makes_ao(const vkao_effect_info *effect)
+{
+    return effect->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
+}
+
+vkao_stage_flags vkao_stages_of(const vkao_effect_info *effect)
+{
+    return effect->stages | (vkao_makes_ao(effect) ? VKAO_STAGE_PREPARE : 0u);
+}
 
 void vkao_program_add(struct vkao_program *program, const struct vkao_pass *row)
 {

@@ -11,21 +11,24 @@
 
 #include "params.h"
 
+/* The caller's images: resource, member of vkao_images, kind of format. AO_NOISY and AO are scratch
+ * where the caller gives none. */
+#define VKAO_SLOTS(X)                                                                              \
+    X(DEPTH, depth, DEPTH)                                                                         \
+    X(NORMALS, normals, COLOR)                                                                     \
+    X(AO_NOISY, ao_noisy, AO)                                                                      \
+    X(AO, ao, AO)                                                                                  \
+    X(COLOR, color, COLOR)                                                                         \
+    X(DIRECT, direct, COLOR)                                                                       \
+    X(OUTPUT, output, COLOR)                                                                       \
+    X(BENT_NORMALS, bent_normals, COLOR)                                                           \
+    X(ALBEDO, albedo, COLOR)                                                                       \
+    X(SPECULAR, specular, COLOR)
+
+#define VKAO_SLOT_RESOURCE(NAME, member, kind) VKAO_RESOURCE_##NAME,
 /* What passes read and write. */
 enum vkao_resource {
-    /* The caller's images, in the order of vkao_images. AO_NOISY and AO are scratch where the
-     * caller gives none. */
-    VKAO_RESOURCE_DEPTH,
-    VKAO_RESOURCE_NORMALS,
-    VKAO_RESOURCE_AO_NOISY,
-    VKAO_RESOURCE_AO,
-    VKAO_RESOURCE_COLOR,
-    VKAO_RESOURCE_DIRECT,
-    VKAO_RESOURCE_OUTPUT,
-    VKAO_RESOURCE_BENT_NORMALS,
-    VKAO_RESOURCE_ALBEDO,
-    VKAO_RESOURCE_SPECULAR,
-    VKAO_SLOT_COUNT,
+    VKAO_SLOTS(VKAO_SLOT_RESOURCE) VKAO_SLOT_COUNT,
     /* Scratch images. */
     VKAO_RESOURCE_VIEW_Z = VKAO_SLOT_COUNT,
     VKAO_RESOURCE_HALFWAY, /* AO between the two directions of the blur */
@@ -114,6 +117,10 @@ struct vkao_program {
     /* VKAO_BIT of the resources that are touched; others of the rows are stand-ins */
     uint32_t needs;
 };
+
+/* Those of an effect, and PREPARE if others make AO. */
+vkao_stage_flags vkao_stages_of(const vkao_effect_info *effect);
+bool vkao_makes_ao(const vkao_effect_info *effect);
 
 /* Adds a row, yet to be compiled. */
 void vkao_program_add(struct vkao_program *program, const struct vkao_pass *row);

@@ -58,9 +58,11 @@ static void normals_constants(const float rows[3][3], struct vkao_constants *out
     }
 }
 
-void vkao_prepare_constants(const struct view_constants *image, const struct view_constants *grid,
+void vkao_prepare_constants(const struct vkao_recording *r, const vkao_params *params,
                             struct vkao_constants *out)
 {
+    const struct view_constants *image = &r->image, *grid = &r->grid;
+    (void)params;
     const bool far_is_one = image->far_depth > 0.5f;
     memcpy(out->image_unproject, image->unproject, sizeof out->image_unproject);
     memcpy(out->unproject, grid->unproject, sizeof out->unproject);

@@ -9,8 +9,6 @@
 
 #include <string.h>
 
-static const vkao_stage_flags makes_ao = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
-
 /* Imports the view and reads it off. */
 static vkao_result check_view(const vkao_frame *frame, const vkao_view *view,
                               struct view_constants *out)
@@ -25,7 +23,7 @@ static vkao_result check_view(const vkao_frame *frame, const vkao_view *view,
     *out = (struct view_constants){.unproject = {1.0f, 1.0f, 0.0f, 0.0f}};
     /* An effect that only composites needs no projection, unless it has specular light to
      * occlude. */
-    if (!(e->stages & makes_ao) && !vkao_program_reads(program, VKAO_RESOURCE_SPECULAR))
+    if (!vkao_makes_ao(e) && !vkao_program_reads(program, VKAO_RESOURCE_SPECULAR))
         return vkao_view_rects(log, &known, frame->extent, &out->valid, &out->rect);
     result =
         vkao_view_constants_init(log, &known, e, frame->extent, frame->images.depth.format, out);
@@ -172,7 +170,7 @@ static vkao_result record(const vkao_frame *frame, VkCommandBuffer cmd, const ch
     if (!frame)
         return VKAO_ERROR_INVALID_ARGUMENT;
     const vkao_effect_info *e = &frame->program->settings;
-    const vkao_stage_flags has = e->stages | (e->stages & makes_ao ? VKAO_STAGE_PREPARE : 0u);
+    const vkao_stage_flags has = vkao_stages_of(e);
     if (!cmd)
         return vkao_refuse(&frame->ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s: cmd is NULL", call);
     if (!stages || (stages & ~has))
@@ -189,10 +187,12 @@ static vkao_result record(const vkao_frame *frame, VkCommandBuffer cmd, const ch
     r.grid = e->half_resolution ? vkao_view_halve(&r.image) : r.image;
     r.form = (known.intensity != 1.0f || known.power != 1.0f ? VKAO_FORM_TONED : 0u) |
              (frame->copies ? VKAO_FORM_COPIED : 0u);
-    vkao_prepare_constants(&r.image, &r.grid, &constants);
-    vkao_ssao_constants(e, &known, &constants);
-    vkao_blur_constants(&known, &constants);
-    vkao_composite_constants(&known, &constants);
+#define COPY(name) constants.name = known.name
+    VKAO_PLAIN_CONSTANTS(COPY, COPY)
+#undef COPY
+#define FILL(NAME, name) vkao_##name##_constants(&r, &known, &constants);
+    VKAO_STAGES(FILL)
+#undef FILL
     begin(&r, stages, &constants);
     record_passes(&r, stages);
     return VKAO_SUCCESS;
@@ -203,9 +203,7 @@ vkao_result vkao_cmd_record(const vkao_frame *frame, VkCommandBuffer cmd, const 
 {
     vkao_stage_flags stages = 0;
     if (frame)
-        stages = frame->program->settings.stages;
-    if (stages & makes_ao)
-        stages |= VKAO_STAGE_PREPARE;
+        stages = vkao_stages_of(&frame->program->settings);
     return record(frame, cmd, "vkao_cmd_record", stages, view, params);
 }
 

@@ -11,18 +11,10 @@ static const struct slot {
     const char *name;
     size_t offset; /* in vkao_images */
     enum slot_use use;
-} slots[VKAO_SLOT_COUNT] = {
-    [VKAO_RESOURCE_DEPTH] = {"images.depth", offsetof(vkao_images, depth), SLOT_DEPTH},
-    [VKAO_RESOURCE_NORMALS] = {"images.normals", offsetof(vkao_images, normals), SLOT_COLOR},
-    [VKAO_RESOURCE_AO_NOISY] = {"images.ao_noisy", offsetof(vkao_images, ao_noisy), SLOT_AO},
-    [VKAO_RESOURCE_AO] = {"images.ao", offsetof(vkao_images, ao), SLOT_AO},
-    [VKAO_RESOURCE_COLOR] = {"images.color", offsetof(vkao_images, color), SLOT_COLOR},
-    [VKAO_RESOURCE_DIRECT] = {"images.direct", offsetof(vkao_images, direct), SLOT_COLOR},
-    [VKAO_RESOURCE_OUTPUT] = {"images.output", offsetof(vkao_images, output), SLOT_COLOR},
-    [VKAO_RESOURCE_BENT_NORMALS] = {"images.bent_normals", offsetof(vkao_images, bent_normals),
-                                    SLOT_COLOR},
-    [VKAO_RESOURCE_ALBEDO] = {"images.albedo", offsetof(vkao_images, albedo), SLOT_COLOR},
-    [VKAO_RESOURCE_SPECULAR] = {"images.specular", offsetof(vkao_images, specular), SLOT_COLOR},
+} slots[] = {
+#define ROW(NAME, member, kind) {"images." #member, offsetof(vkao_images, member), SLOT_##kind},
+    VKAO_SLOTS(ROW)
+#undef ROW
 };
 
 static const char *const wants[] = {

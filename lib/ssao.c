@@ -29,9 +29,10 @@ void vkao_ssao_plan(struct vkao_program *program)
     vkao_program_add(program, &methods[program->settings.method]);
 }
 
-void vkao_ssao_constants(const vkao_effect_info *effect, const vkao_params *params,
+void vkao_ssao_constants(const struct vkao_recording *r, const vkao_params *params,
                          struct vkao_constants *out)
 {
+    const vkao_effect_info *effect = &r->frame->program->settings;
     const float thickness =
         params->thickness *
         (effect->falloff == VKAO_FALLOFF_THRESHOLD ? (float)VKAO_THICKNESS_THRESHOLD : 1.0f);
@@ -40,10 +41,8 @@ void vkao_ssao_constants(const vkao_effect_info *effect, const vkao_params *para
     out->inverse_radius = 1.0f / out->radius;
     out->bias = params->bias * out->radius;
     out->bias_cosine = params->bias;
-    out->blocking_scale = params->blocking_scale;
     out->thickness_base = thickness * (float)VKAO_THICKNESS_BASE;
     out->thickness_slope = thickness * (float)VKAO_THICKNESS_SLOPE;
-    out->noise_index = params->noise_index;
     out->slices = effect->slice_count;
     out->steps = effect->step_count;
     out->samples = effect->sample_count;

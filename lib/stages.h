@@ -5,20 +5,20 @@
 #ifndef VKAO_STAGES_H_
 #define VKAO_STAGES_H_
 
-#include "passes.h"
-#include "view.h"
+#include "recording.h"
 
-void vkao_prepare_plan(struct vkao_program *program);
-void vkao_ssao_plan(struct vkao_program *program);
-void vkao_blur_plan(struct vkao_program *program);
-void vkao_composite_plan(struct vkao_program *program);
+/* In the order in which they run. PREPARE is in a program that makes AO. */
+#define VKAO_STAGES(X)                                                                             \
+    X(PREPARE, prepare)                                                                            \
+    X(SSAO, ssao)                                                                                  \
+    X(BLUR, blur)                                                                                  \
+    X(COMPOSITE, composite)
 
-/* image: the view on the image's grid; grid: on that of the stages. */
-void vkao_prepare_constants(const struct view_constants *image, const struct view_constants *grid,
-                            struct vkao_constants *out);
-void vkao_ssao_constants(const vkao_effect_info *effect, const vkao_params *params,
-                         struct vkao_constants *out);
-void vkao_blur_constants(const vkao_params *params, struct vkao_constants *out);
-void vkao_composite_constants(const vkao_params *params, struct vkao_constants *out);
+#define VKAO_DECLARE_STAGE(NAME, name)                                                             \
+    void vkao_##name##_plan(struct vkao_program *program);                                         \
+    void vkao_##name##_constants(const struct vkao_recording *r, const vkao_params *params,        \
+                                 struct vkao_constants *out);
+VKAO_STAGES(VKAO_DECLARE_STAGE)
+#undef VKAO_DECLARE_STAGE
 
 #endif

@@ -54,8 +54,8 @@
 #define VKAO_SETTING_BENT_NORMALS 5
 #define VKAO_SETTING_THRESHOLD 6
 #define VKAO_SETTING_SPHERE_LITERAL 7
-#define VKAO_SETTING_SLICES                                                                        \
-    8 /* counts are 0 if loops are too long to unroll; then constants have them */
+/* Counts are 0 if loops are too long to unroll; then constants have them. */
+#define VKAO_SETTING_SLICES 8
 #define VKAO_SETTING_STEPS 9
 #define VKAO_SETTING_SAMPLES 10
 #define VKAO_SETTING_BLUR_RADIUS 11
@@ -111,20 +111,18 @@
 /* What vbao guesses of the scene between its samples and behind them, and where it samples. Lengths
  * are fractions of the radius, cosines those of the angle to the eye. Found by coordinate search,
  * as tools/bench/fit-vbao does it, on solid and thin scenes together. */
-#define VKAO_VBAO_REACH_SMOOTH                                                                     \
-    0.80 /* how far the last step goes: the smooth falloff hides what lies beyond */
+#define VKAO_VBAO_REACH_SMOOTH 0.80    /* end of the last step: the smooth falloff hides the rest */
 #define VKAO_VBAO_REACH_THRESHOLD 1.08 /* samples beyond stand for what lies before them */
-#define VKAO_STEP_LINEAR                                                                           \
-    0.50 /* distance of step t is q (LINEAR + (1 - LINEAR) q), q = (t + jitter) / steps */
+/* Distance of step t is q (LINEAR + (1 - LINEAR) q), q = (t + jitter) / steps. */
+#define VKAO_STEP_LINEAR 0.50
 #define VKAO_THICKNESS_BASE 0.19  /* thickness of what is seen */
 #define VKAO_THICKNESS_SLOPE 0.42 /* and what it gains per distance to the side */
-#define VKAO_THICKNESS_THRESHOLD                                                                   \
-    1.1 /* times that with the threshold: what is far away counts alike, and hides more */
+/* Times that with the threshold: what is far away counts alike, and hides more */
+#define VKAO_THICKNESS_THRESHOLD 1.1
 #define VKAO_VBAO_JOIN 1.0 /* rise over the tangent plane, per run, up to which two samples join */
-#define VKAO_VBAO_GAP_FRONT                                                                        \
-    0.55 /* share of the gap by which the front of a separate surface moves in */
-#define VKAO_VBAO_GAP_BACK 0.7 /* share of the gap by which its back moves out */
-#define VKAO_VBAO_ROUND 0.9    /* added before a sector bound is cut to an integer */
+#define VKAO_VBAO_GAP_FRONT 0.55 /* share of the gap by which a separate surface's front moves in */
+#define VKAO_VBAO_GAP_BACK 0.7   /* share of the gap by which its back moves out */
+#define VKAO_VBAO_ROUND 0.9      /* added before a sector bound is cut to an integer */
 
 /* Cosine to the eye at which tangent planes stop getting steeper in slices: less than that of the
  * last texels that a wall of 80 degrees has before its horizon. */
@@ -132,6 +130,14 @@
 /* Slope, in view space, at which normals that depth gives stop: their squares are floats at any
  * field of view. */
 #define VKAO_STEEPEST_FACET 1.0e9
+
+/* Members of vkao_params that shaders read as they are. The recording copies them by name. */
+#define VKAO_PLAIN_CONSTANTS(FLOAT, UINT)                                                          \
+    FLOAT(blocking_scale); /* SPHERE */                                                            \
+    FLOAT(sharpness);                                                                              \
+    FLOAT(intensity);                                                                              \
+    FLOAT(strength);                                                                               \
+    UINT(noise_index);
 
 /* All that a recording says, in a uniform buffer that it fills first. Rectangles are half open, two
  * 16-bit coordinates to a word, x low: [0] = min, [1] = max. View xy is texel * unproject.xy +
@@ -160,19 +166,14 @@ struct vkao_constants {
     VKAO_FLOAT(inverse_radius);
     VKAO_FLOAT(bias);           /* scene units */
     VKAO_FLOAT(bias_cosine);    /* bias / radius */
-    VKAO_FLOAT(blocking_scale); /* SPHERE */
     VKAO_FLOAT(thickness_base); /* VBAO, RAYMARCH: radii */
     VKAO_FLOAT(thickness_slope);
-    VKAO_UINT(noise_index);
+    VKAO_FLOAT(power);
+    VKAO_FLOAT(debug_distance);
     VKAO_UINT(slices);
     VKAO_UINT(steps);
     VKAO_UINT(samples);
-    VKAO_FLOAT(sharpness);
-    VKAO_FLOAT(intensity);
-    VKAO_FLOAT(power);
-    VKAO_FLOAT(strength);
-    VKAO_FLOAT(debug_distance);
-    VKAO_UVEC2(unused); /* to a multiple of 16 bytes */
+    VKAO_PLAIN_CONSTANTS(VKAO_FLOAT, VKAO_UINT)
 };
 
 /* What a dispatch says by itself, in push constants. The CPU's passes have their own. */

@@ -433,7 +433,7 @@ void vkao_cpu_parts(const struct vkao_program *program, VkExtent2D extent, bool 
                     struct vkao_rows *rows, VkDeviceSize parts[VKAO_RESOURCE_COUNT])
 {
     enum { LEAST = 256 }; /* of what shaders name and do not use */
-    if (!(program->settings.stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR)))
+    if (!vkao_makes_ao(&program->settings))
         return;
     const uint32_t shift = program->settings.half_resolution, window = VKAO_BLUR_X_WIDTH;
     const VkExtent2D grid = {(extent.width + shift) >> shift, (extent.height + shift) >> shift};

@@ -52,8 +52,8 @@
 #define VKAO_CODE_SCALE 100.0
 #define VKAO_CODE_OFFSET 0.55
 #define VKAO_CODE_FINE 256.0
-#define VKAO_CODE_OPEN                                                                             \
-    39680 /* fine code of 1; numbers are relative to it, so that what is open stays exactly 1 */
+/* Fine code of 1; numbers are relative to it, so that what is open stays exactly 1. */
+#define VKAO_CODE_OPEN 39680
 #define VKAO_RING_ROWS 176
 #define VKAO_STRIP_ROWS 128 /* a ring holds a strip and the largest radius on both sides of it */
 

@@ -163,7 +163,7 @@ def cmake_finds_the_package():
 def cmake_builds_what_meson_builds():
     """add_subdirectory: the same sources, and the same SPIR-V to the byte."""
     build = cmake_consumer("cmake-subdirectory", f"-DVKAO_SOURCE={SOURCE}")
-    ours = os.path.join(WORK, "library", "shaders")
+    ours = os.path.join(WORK, "library", "lib")
     theirs = os.path.join(build, "vkao", "shaders")
     names = {os.path.basename(path) for path in glob.glob(os.path.join(ours, "vkao_*.h"))}
     made = {os.path.basename(path) for path in glob.glob(os.path.join(theirs, "vkao_*.h"))}

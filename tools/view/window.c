@@ -123,8 +123,8 @@ static void on_button(GLFWwindow *handle, int button, int action, int mods)
     struct window *w = window_of(handle);
     struct input *input = &w->input;
     (void)mods;
-    /* Where the mouse was when the button was pressed, which on_move was told. glfwGetCursorPos says
-     * where it is by now. */
+    /* on_move was told where the mouse was when the button was pressed. glfwGetCursorPos says where
+     * it is by now. */
     input->inside = true;
     input->changed = true;
     if (button == GLFW_MOUSE_BUTTON_RIGHT)
