@@ -4,7 +4,6 @@
 #include "png_file.h"
 #include "record.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -195,22 +194,6 @@ static bool write_exr(const struct options *o, const struct plan_frame *frame,
 
 /* --- PNG --- */
 
-static uint8_t to_byte(float value)
-{
-    if (!(value > 0))
-        return 0;
-    return value >= 1 ? 255 : (uint8_t)(value * 255.0f + 0.5f);
-}
-
-static float to_srgb(float linear)
-{
-    if (!(linear > 0))
-        return 0;
-    if (linear >= 1)
-        return 1;
-    return linear <= 0.0031308f ? linear * 12.92f : 1.055f * powf(linear, 1.0f / 2.4f) - 0.055f;
-}
-
 static bool prepare_preview(const struct options *o, const char *path,
                             const struct rendered_view *view, struct atomic_file *file,
                             struct tool_error *err)
@@ -224,9 +207,9 @@ static bool prepare_preview(const struct options *o, const char *path,
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     for (size_t i = 0; i < texels; i++) {
         if (grey)
-            pixels[i] = to_byte(view->result.ao[i]);
+            pixels[i] = byte_of((double)view->result.ao[i]);
         for (size_t c = 0; !grey && c < 3; c++)
-            pixels[i * 3 + c] = to_byte(to_srgb(view->result.output[i * 4 + c]));
+            pixels[i * 3 + c] = byte_of(srgb_of((double)view->result.output[i * 4 + c]));
     }
     bool ok = png_file_prepare(file, path, view->gbuffer.width, view->gbuffer.height, grey ? 1 : 3,
                                pixels, o->overwrite != 0, err);

@@ -184,19 +184,6 @@ static void *download(struct viewer *viewer, const struct gpu_image *image, stru
 
 /* --- Pictures --- */
 
-static uint8_t to_byte(double value)
-{
-    return value > 0 ? (uint8_t)(fmin(value, 1) * 255 + 0.5) : 0;
-}
-
-/* IEC 61966-2-1 */
-static double to_srgb(double linear)
-{
-    if (!(linear > 0))
-        return 0;
-    return linear <= 0.0031308 ? linear * 12.92 : 1.055 * pow(fmin(linear, 1), 1 / 2.4) - 0.055;
-}
-
 static void tone(const struct viewer *v, const struct rendered_view *r, size_t texel,
                  double color[3])
 {
@@ -214,7 +201,7 @@ static void tone(const struct viewer *v, const struct rendered_view *r, size_t t
         color[2] = d < 0 ? -d * 0.1 : d;
     } else if (output) {
         for (int c = 0; c < 3; c++)
-            color[c] = v->view == VIEW_COMPOSITE ? to_srgb((double)output[c]) : (double)output[c];
+            color[c] = v->view == VIEW_COMPOSITE ? srgb_of((double)output[c]) : (double)output[c];
     }
 }
 
@@ -232,7 +219,7 @@ static bool write_picture(struct viewer *viewer, const struct rendered_view *vie
         double color[3];
         tone(viewer, view, i, color);
         for (size_t c = 0; c < 3; c++)
-            rgb[i * 3 + c] = to_byte(color[c]);
+            rgb[i * 3 + c] = byte_of(color[c]);
     }
     bool ok = png_file_write(path, g->width, g->height, 3, rgb, false, err);
     free(rgb);
