@@ -1,9 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include "internal.h"
+#include "stages.h"
 
+#include "vkao_composite.h"
+#include "vkao_debug.h"
+
+#include <assert.h>
+#include <math.h>
 #include <string.h>
 
-static_assert(sizeof(struct vkao_composite_block) == 128, "as shaders/composite.comp lays it out");
 static_assert(VKAO_GLSL_COMPOSITE_MULTIPLY == (int)VKAO_COMPOSITE_MULTIPLY &&
                   VKAO_GLSL_COMPOSITE_INDIRECT == (int)VKAO_COMPOSITE_INDIRECT &&
                   VKAO_GLSL_COMPOSITE_AO_ONLY == (int)VKAO_COMPOSITE_AO_ONLY &&
@@ -16,42 +20,42 @@ static_assert(VKAO_GLSL_SPECULAR_NONE == (int)VKAO_SPECULAR_NONE &&
                   VKAO_GLSL_SPECULAR_FROM_AO == (int)VKAO_SPECULAR_FROM_AO,
               "params.h repeats vkao_specular");
 
-void record_composite(const vkao_frame *frame, VkCommandBuffer cmd,
-                      const struct view_constants *view, const vkao_composite_params *params)
+static const struct vkao_pass composite = {
+    .name = "vkao composite",
+    .label = "composite",
+    .stage = VKAO_STAGE_COMPOSITE,
+    VKAO_CODE(vkao_composite),
+    .uses = {VKAO_READS(SOURCE, AO), VKAO_READS(COLOR, COLOR), VKAO_READS(DIRECT, DIRECT),
+             VKAO_READS(ALBEDO, ALBEDO), VKAO_READS(SPECULAR, SPECULAR),
+             VKAO_READS(NORMALS, NORMALS), VKAO_READS(BENT_READ, BENT_NORMALS),
+             VKAO_WRITES(OUTPUT, OUTPUT)},
+    .area = VKAO_AREA_IMAGE_RECT,
+    VKAO_ONE_TEXEL,
+    .forms = 1,
+};
+
+static const struct vkao_pass debug = {
+    .name = "vkao debug view",
+    .label = "composite",
+    .stage = VKAO_STAGE_COMPOSITE,
+    VKAO_CODE(vkao_debug),
+    .uses = {VKAO_READS(VIEW_Z, VIEW_Z), VKAO_READS(NORMALS, NORMALS), VKAO_READS(SOURCE, AO_NOISY),
+             VKAO_READS(BENT_READ, BENT_NORMALS), VKAO_WRITES(OUTPUT, OUTPUT)},
+    .area = VKAO_AREA_IMAGE_RECT,
+    VKAO_ONE_TEXEL,
+    .forms = 1,
+};
+
+void vkao_composite_plan(struct vkao_program *program)
 {
-    const struct view_constants grid = frame_grid(frame, view);
-    struct vkao_composite_block block = {
-        .tint = {params->tint[0], params->tint[1], params->tint[2], params->strength},
-        .normal_x[3] = params->debug_distance,
-        .mode = (uint32_t)params->mode,
-        .multi_bounce = params->multi_bounce,
-        .specular_occlusion = (uint32_t)params->specular,
-        .flags = recording_flags(&grid, frame_flags(frame), NULL, NULL),
-        .stride = frame->scratch.buffer.stride,
-    };
-    memcpy(block.inverse_unproject, grid.inverse_unproject, sizeof block.inverse_unproject);
-    memcpy(block.unproject, grid.unproject, sizeof block.unproject);
-    copy_normal_rows(view, block.normal_x, block.normal_y, block.normal_z);
-    rect_pack(grid.valid, block.valid);
-    rect_pack(view->rect, block.rect);
-    record_label_begin(frame, cmd, "vkao composite");
-    record_barrier(frame, cmd); /* ssao or blur y wrote AO -> composite reads it */
-    const bool debug = params->mode > VKAO_COMPOSITE_AO_ONLY;
-    record_dispatch(frame, cmd, debug ? PIPELINE_DEBUG : PIPELINE_COMPOSITE,
-                    (struct pipeline_key){0}, &block, sizeof block, view->rect);
-    record_label_end(frame, cmd);
+    const bool is_debug = program->settings.composite_mode > VKAO_COMPOSITE_AO_ONLY;
+    vkao_program_add(program, is_debug ? &debug : &composite);
 }
 
-vkao_result vkao_cmd_composite(const vkao_frame *frame, VkCommandBuffer cmd, const vkao_view *view,
-                               const vkao_composite_params *params)
+void vkao_composite_constants(const struct vkao_recording *r, const vkao_params *params,
+                              struct vkao_constants *out)
 {
-    struct view_constants constants = {0};
-    vkao_composite_params known;
-    vkao_result result =
-        frame_view_check(frame, cmd, "vkao_cmd_composite", VKAO_STAGE_COMPOSITE, view, &constants);
-    if (result == VKAO_SUCCESS)
-        result = composite_params_check(frame, params, &known);
-    if (result == VKAO_SUCCESS)
-        record_composite(frame, cmd, &constants, &known);
-    return result;
+    (void)r;
+    memcpy(out->tint, params->tint, sizeof params->tint);
+    out->debug_distance = fmaxf(params->debug_distance, (float)VKAO_NEAREST_Z);
 }

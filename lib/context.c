@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "internal.h"
+#include "context.h"
 
+#include "parameters.h"
+
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* A limit for sanity; each takes milliseconds to compile. */
-#define MAX_VARIANTS 64u
 
 void *vkao_calloc(const VkAllocationCallbacks *allocator, size_t bytes)
 {
@@ -29,6 +29,12 @@ void vkao_add_required_features(VkPhysicalDeviceFeatures *features)
     features->shaderStorageImageWriteWithoutFormat = VK_TRUE;
 }
 
+vkao_context_info vkao_context_info_default(void)
+{
+    return (vkao_context_info){.struct_size = sizeof(vkao_context_info),
+                               .log_level = VKAO_LOG_WARNING};
+}
+
 void vkao_set_name(const vkao_context *ctx, VkObjectType type, uint64_t handle, const char *name)
 {
     if (!ctx->vk.SetDebugUtilsObjectNameEXT)
@@ -41,6 +47,15 @@ void vkao_set_name(const vkao_context *ctx, VkObjectType type, uint64_t handle, 
                          .objectHandle = handle,
                          .pObjectName = name,
                      });
+}
+
+bool vkao_format_can(const vkao_context *ctx, VkFormat format, VkFormatFeatureFlags want)
+{
+    VkFormatProperties properties;
+    ctx->vk.GetPhysicalDeviceFormatProperties(ctx->physical_device, format, &properties);
+    /* The caller's tiling is unknown: either will do. */
+    return (properties.optimalTilingFeatures & want) == want ||
+           (properties.linearTilingFeatures & want) == want;
 }
 
 static vkao_result check_info(const struct vkao_logger *log, const vkao_context_info *info)
@@ -61,41 +76,23 @@ static vkao_result check_info(const struct vkao_logger *log, const vkao_context_
             return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "context.%s is NULL",
                                required[i].name);
     }
-    if (info->method_mask >> VKAO_METHOD_COUNT)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "context.method_mask is 0x%x, want bits of 0x%x", info->method_mask,
-                           (1u << VKAO_METHOD_COUNT) - 1u);
-    if (info->stage_mask & ~VKAO_STAGE_ALL)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "context.stage_mask is 0x%x, want bits of 0x%x", info->stage_mask,
-                           VKAO_STAGE_ALL);
-    if (info->half_view_z > 1 || info->variants_only > 1 || info->storage_16bit > 1)
-        return vkao_refuse(
-            log, VKAO_ERROR_INVALID_ARGUMENT,
-            "context.half_view_z is %u, variants_only %u, storage_16bit %u, want 0 or 1",
-            info->half_view_z, info->variants_only, info->storage_16bit);
-    if ((uint32_t)info->scratch_layout > VKAO_SCRATCH_BUFFERS ||
-        (info->scratch_layout == VKAO_SCRATCH_BUFFERS && info->half_view_z))
-        return vkao_refuse(
-            log, VKAO_ERROR_INVALID_ARGUMENT,
-            "context.scratch_layout is %d, want 0..%d, and not BUFFERS with half_view_z",
-            (int)info->scratch_layout, (int)VKAO_SCRATCH_BUFFERS);
-    if (info->variant_count > MAX_VARIANTS || (info->variant_count && !info->variants))
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "context.variant_count is %u, want at most %u and context.variants",
-                           info->variant_count, MAX_VARIANTS);
-    if (info->half_view_z && !info->enabled_features->shaderStorageImageExtendedFormats)
-        return vkao_refuse(log, VKAO_ERROR_UNSUPPORTED,
-                           "context.half_view_z needs shaderStorageImageExtendedFormats in "
-                           "context.enabled_features");
     if ((uint32_t)info->log_level > VKAO_LOG_INFO)
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "context.log_level is %d, want 0..%d",
                            (int)info->log_level, (int)VKAO_LOG_INFO);
+    if (info->debug_labels > 1 || info->padding)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "context.debug_labels is %u, padding %u, want 0 or 1, 0",
+                           info->debug_labels, info->padding);
     const VkAllocationCallbacks *a = info->allocator;
     if (a && (!a->pfnAllocation || !a->pfnReallocation || !a->pfnFree))
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "context.allocator lacks pfnAllocation, pfnReallocation or pfnFree");
-    if (!info->enabled_features->shaderStorageImageWriteWithoutFormat)
+    if (info->enabled_features->sType != VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "context.enabled_features has sType %d, want "
+                           "VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2",
+                           (int)info->enabled_features->sType);
+    if (!info->enabled_features->features.shaderStorageImageWriteWithoutFormat)
         return vkao_refuse(
             log, VKAO_ERROR_UNSUPPORTED,
             "context.enabled_features lacks shaderStorageImageWriteWithoutFormat; call "
@@ -103,7 +100,21 @@ static vkao_result check_info(const struct vkao_logger *log, const vkao_context_
     return VKAO_SUCCESS;
 }
 
-/* Noisy AO as texels to write; view z as texels is mandatory. */
+/* Is storageBuffer16BitAccess in the chain? */
+static bool has_16bit_storage(const VkPhysicalDeviceFeatures2 *features)
+{
+    for (const VkBaseInStructure *s = features->pNext; s; s = s->pNext) {
+        if (s->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_16BIT_STORAGE_FEATURES)
+            return ((const VkPhysicalDevice16BitStorageFeatures *)(const void *)s)
+                ->storageBuffer16BitAccess;
+        if (s->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_FEATURES)
+            return ((const VkPhysicalDeviceVulkan11Features *)(const void *)s)
+                ->storageBuffer16BitAccess;
+    }
+    return false;
+}
+
+/* Codes of AO as texels to write; view z as texels is mandatory. */
 static bool has_buffer_formats(const vkao_context *ctx)
 {
     VkFormatProperties one, two;
@@ -112,7 +123,7 @@ static bool has_buffer_formats(const vkao_context *ctx)
     return one.bufferFeatures & two.bufferFeatures & VK_FORMAT_FEATURE_STORAGE_TEXEL_BUFFER_BIT;
 }
 
-static vkao_result read_device(vkao_context *ctx, vkao_scratch_layout layout)
+static vkao_result read_device(vkao_context *ctx)
 {
     VkPhysicalDeviceProperties properties;
     ctx->vk.GetPhysicalDeviceProperties(ctx->physical_device, &properties);
@@ -128,97 +139,26 @@ static vkao_result read_device(vkao_context *ctx, vkao_scratch_layout layout)
         ctx->max_dimension = UINT16_MAX;
     ctx->max_texels = properties.limits.maxTexelBufferElements;
     ctx->max_buffer = properties.limits.maxStorageBufferRange;
-    const bool wanted =
-        layout == VKAO_SCRATCH_BUFFERS || (layout == VKAO_SCRATCH_AUTO && !ctx->half_view_z &&
-                                           properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU);
-    ctx->buffers = wanted && has_buffer_formats(ctx);
-    if (layout == VKAO_SCRATCH_BUFFERS && !ctx->buffers)
-        return vkao_refuse(
-            &ctx->log, VKAO_ERROR_UNSUPPORTED,
-            "context.scratch_layout is BUFFERS, but the device cannot store R8_UINT and "
-            "R16_UINT texels in buffers");
-    return VKAO_SUCCESS;
-}
-
-VkDescriptorType binding_type(uint32_t binding)
-{
-    switch (binding) {
-    case VKAO_BINDING_VIEW_Z:
-    case VKAO_BINDING_NOISY_WRITE:
-    case VKAO_BINDING_HALFWAY_WRITE:
-    case VKAO_BINDING_AO_WRITE:
-    case VKAO_BINDING_OUTPUT:
-    case VKAO_BINDING_BENT_WRITE:
-        return VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-    case VKAO_BINDING_Z_WORDS:
-    case VKAO_BINDING_HALFWAY_WORDS:
-    case VKAO_BINDING_BLURRED_WORDS:
-    case VKAO_BINDING_STAGED_WORDS:
-    case VKAO_BINDING_PACKED_WORDS:
-    case VKAO_BINDING_TILES:
-        return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-    default:
-        return scratch_view(binding) ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
-                                     : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-    }
-}
-
-static vkao_result create_layouts(vkao_context *ctx)
-{
-    VkDescriptorSetLayoutBinding bindings[VKAO_BINDING_COUNT];
-    for (uint32_t i = 0; i < VKAO_BINDING_COUNT; ++i)
-        bindings[i] = (VkDescriptorSetLayoutBinding){
-            .binding = i,
-            .descriptorType = binding_type(i),
-            .descriptorCount = 1,
-            .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
-        };
-    VkResult result = ctx->vk.CreateDescriptorSetLayout(
-        ctx->device,
-        &(VkDescriptorSetLayoutCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-            .bindingCount = VKAO_BINDING_COUNT,
-            .pBindings = bindings,
-        },
-        ctx->allocator, &ctx->set_layout);
-    if (result != VK_SUCCESS) {
-        ctx->set_layout = VK_NULL_HANDLE; /* drivers may leave anything behind a failure */
-        return vkao_vk_failed(&ctx->log, "vkCreateDescriptorSetLayout", result);
-    }
-    result = ctx->vk.CreatePipelineLayout(
-        ctx->device,
-        &(VkPipelineLayoutCreateInfo){
-            .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-            .setLayoutCount = 1,
-            .pSetLayouts = &ctx->set_layout,
-            .pushConstantRangeCount = 1,
-            .pPushConstantRanges =
-                &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, VKAO_PUSH_BYTES},
-        },
-        ctx->allocator, &ctx->pipeline_layout);
-    if (result != VK_SUCCESS) {
-        ctx->pipeline_layout = VK_NULL_HANDLE;
-        return vkao_vk_failed(&ctx->log, "vkCreatePipelineLayout", result);
-    }
+    ctx->granularity = properties.limits.bufferImageGranularity;
+    ctx->is_cpu = properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU && has_buffer_formats(ctx);
     return VKAO_SUCCESS;
 }
 
 vkao_result vkao_context_create(const vkao_context_info *caller_info, vkao_context **out)
 {
-    struct vkao_logger silent = {0}, log;
+    struct vkao_logger log = {0};
     vkao_context_info info;
-    if (caller_info && caller_info->struct_size >= sizeof info)
-        silent = (struct vkao_logger){caller_info->log, caller_info->log_user_data,
-                                      caller_info->log_level};
+    /* A size of 0 was forgotten; of a struct that is too short for a log nothing can be said. */
+    if (caller_info && (!caller_info->struct_size ||
+                        caller_info->struct_size >= offsetof(vkao_context_info, mark)))
+        log = (struct vkao_logger){caller_info->log, caller_info->log_user_data,
+                                   caller_info->log_level};
     if (!out)
-        return vkao_refuse(&silent, VKAO_ERROR_INVALID_ARGUMENT,
-                           "vkao_context_create: out is NULL");
+        return vkao_refuse(&log, VKAO_ERROR_INVALID_ARGUMENT, "vkao_context_create: out is NULL");
     *out = NULL;
-    vkao_result result = vkao_import(&silent, "context", caller_info, &info, sizeof info);
-    if (result != VKAO_SUCCESS)
-        return result;
-    log = (struct vkao_logger){info.log, info.log_user_data, info.log_level};
-    result = check_info(&log, &info);
+    vkao_result result = vkao_import(&log, VKAO_STRUCT_CONTEXT_INFO, "context", caller_info, &info);
+    if (result == VKAO_SUCCESS)
+        result = check_info(&log, &info);
     if (result != VKAO_SUCCESS)
         return result;
 
@@ -226,31 +166,26 @@ vkao_result vkao_context_create(const vkao_context_info *caller_info, vkao_conte
     if (!ctx)
         return vkao_refuse(&log, VKAO_ERROR_OUT_OF_HOST_MEMORY, "no host memory for the context");
     ctx->log = log;
+    ctx->mark = info.mark;
+    ctx->mark_user_data = info.mark_user_data;
     ctx->device = info.device;
     ctx->physical_device = info.physical_device;
-    ctx->half_view_z = info.half_view_z;
-    ctx->storage_16bit = info.storage_16bit;
-    ctx->method_mask = info.method_mask ? info.method_mask : (1u << VKAO_METHOD_COUNT) - 1u;
-    ctx->stage_mask = info.stage_mask ? info.stage_mask : VKAO_STAGE_ALL;
+    ctx->has_16bit_storage = has_16bit_storage(info.enabled_features);
+    ctx->live = &ctx->live_count;
     if (info.allocator) {
         ctx->allocator_copy = *info.allocator;
         ctx->allocator = &ctx->allocator_copy;
     }
     const char *missing;
-    if (!vk_table_load(&ctx->vk, &info, &missing)) {
-        result =
-            vkao_refuse(&log, VKAO_ERROR_UNSUPPORTED, "context: the device has no %s", missing);
-        /* Nothing was created yet, and the functions that would destroy it may be the missing ones. */
-        vkao_free(info.allocator, ctx);
-        return result;
-    }
-    result = read_device(ctx, info.scratch_layout);
-    if (result == VKAO_SUCCESS)
-        result = create_layouts(ctx);
-    if (result == VKAO_SUCCESS)
-        result = pipelines_create(ctx, &info);
+    if (vkao_vk_table_load(&ctx->vk, &info, &missing))
+        result = read_device(ctx);
+    else
+        result = vkao_refuse(&log, VKAO_ERROR_UNSUPPORTED,
+                             "context.device has no %s: make it of an instance whose "
+                             "VkApplicationInfo.apiVersion is VK_API_VERSION_1_1 or later",
+                             missing);
     if (result != VKAO_SUCCESS) {
-        vkao_context_destroy(ctx);
+        vkao_free(info.allocator, ctx);
         return result;
     }
     *out = ctx;
@@ -261,11 +196,14 @@ void vkao_context_destroy(vkao_context *ctx)
 {
     if (!ctx)
         return;
-    pipelines_destroy(ctx);
-    if (ctx->pipeline_layout)
-        ctx->vk.DestroyPipelineLayout(ctx->device, ctx->pipeline_layout, ctx->allocator);
-    if (ctx->set_layout)
-        ctx->vk.DestroyDescriptorSetLayout(ctx->device, ctx->set_layout, ctx->allocator);
+    const unsigned live = atomic_load(ctx->live);
+    if (live) {
+        vkao_log(&ctx->log, VKAO_LOG_ERROR,
+                 "vkao_context_destroy: %u effects and frames of the context live; destroy them "
+                 "first",
+                 live);
+        return;
+    }
     /* The callbacks live inside the block that they free. */
     VkAllocationCallbacks allocator = ctx->allocator_copy;
     vkao_free(ctx->allocator ? &allocator : NULL, ctx);

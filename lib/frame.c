@@ -1,261 +1,87 @@
 /* SPDX-License-Identifier: MIT */
-#include "internal.h"
+#include "frame.h"
 
-enum slot_use { SLOT_DEPTH, SLOT_NORMALS, SLOT_AO, SLOT_COLOR, SLOT_OUTPUT };
+#include "cpu/cpu.h"
+#include "formats.h"
+#include "parameters.h"
+#include "slots.h"
 
-struct slot {
-    const char *name;
-    size_t offset; /* in vkao_images */
-    enum slot_use use;
-};
+/* --- Scratch --- */
 
-enum slot_index {
-    DEPTH,
-    NORMALS,
-    AO_NOISY,
-    AO,
-    COLOR,
-    DIRECT,
-    OUTPUT,
-    BENT_NORMALS,
-    ALBEDO,
-    SPECULAR,
-    SLOT_COUNT
-};
-
-static const struct slot slots[SLOT_COUNT] = {
-    [DEPTH] = {"images.depth", offsetof(vkao_images, depth), SLOT_DEPTH},
-    [NORMALS] = {"images.normals", offsetof(vkao_images, normals), SLOT_NORMALS},
-    [AO_NOISY] = {"images.ao_noisy", offsetof(vkao_images, ao_noisy), SLOT_AO},
-    [AO] = {"images.ao", offsetof(vkao_images, ao), SLOT_AO},
-    [COLOR] = {"images.color", offsetof(vkao_images, color), SLOT_COLOR},
-    [DIRECT] = {"images.direct", offsetof(vkao_images, direct), SLOT_COLOR},
-    [OUTPUT] = {"images.output", offsetof(vkao_images, output), SLOT_OUTPUT},
-    [BENT_NORMALS] = {"images.bent_normals", offsetof(vkao_images, bent_normals), SLOT_NORMALS},
-    [ALBEDO] = {"images.albedo", offsetof(vkao_images, albedo), SLOT_COLOR},
-    [SPECULAR] = {"images.specular", offsetof(vkao_images, specular), SLOT_COLOR},
-};
-
-static const vkao_image *slot_image(const vkao_images *images, enum slot_index i)
+/* Half precision is plenty for AO on its way to the blur; storing to it is optional in Vulkan. */
+static VkFormat ao_scratch_format(const vkao_context *ctx)
 {
-    return (const vkao_image *)(const void *)((const char *)images + slots[i].offset);
-}
-
-/* What the stages of a frame do with each slot. */
-struct slot_access {
-    bool required, read, written;
-};
-
-static void slot_accesses(vkao_stage_flags stages, struct slot_access out[SLOT_COUNT])
-{
-    const bool ssao = stages & VKAO_STAGE_SSAO, blur = stages & VKAO_STAGE_BLUR;
-    const bool composite = stages & VKAO_STAGE_COMPOSITE, makes_ao = ssao || blur;
-    out[DEPTH] = (struct slot_access){makes_ao, makes_ao, false};
-    out[NORMALS] = (struct slot_access){false, makes_ao || composite, false};
-    out[AO_NOISY] = (struct slot_access){blur && !ssao, blur, ssao && blur};
-    out[AO] = (struct slot_access){!composite || !makes_ao, composite, makes_ao};
-    out[COLOR] = (struct slot_access){false, composite, false};
-    out[DIRECT] = (struct slot_access){false, composite, false};
-    out[OUTPUT] = (struct slot_access){composite, false, composite};
-    out[BENT_NORMALS] = (struct slot_access){false, composite, blur};
-    out[ALBEDO] = (struct slot_access){false, composite, false};
-    out[SPECULAR] = (struct slot_access){false, composite, false};
-}
-
-static bool format_fits(enum slot_use use, VkFormat format)
-{
-    switch (use) {
-    case SLOT_DEPTH:
-        return vk_format_is_depth(format);
-    case SLOT_AO:
-        return vk_format_is_ao(format);
-    default:
-        return vk_format_is_sampled_float(format);
-    }
-}
-
-static bool read_layout(VkImageLayout layout)
-{
-    static const VkImageLayout allowed[] = {
-        VK_IMAGE_LAYOUT_GENERAL,
-        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-        VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
-        VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL,
-        VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL,
-        VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL,
-    };
-    for (size_t i = 0; i < sizeof allowed / sizeof allowed[0]; ++i) {
-        if (layout == allowed[i])
-            return true;
-    }
-    return false;
-}
-
-static vkao_result check_slot(const vkao_context *ctx, const struct slot *slot,
-                              const vkao_image *image, struct slot_access access)
-{
-    if (image->format == VK_FORMAT_UNDEFINED) {
-        if (image->view)
-            return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                               "%s has a view but no format", slot->name);
-        if (access.required)
-            return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                               "%s is required by frame.stages", slot->name);
-        return VKAO_SUCCESS;
-    }
-    if (!format_fits(slot->use, image->format))
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "%s.format is VkFormat %d, which cannot hold it", slot->name,
-                           (int)image->format);
-    if (access.written ? image->layout != VK_IMAGE_LAYOUT_GENERAL
-                       : access.read && !read_layout(image->layout))
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "%s.layout is VkImageLayout %d, want %s", slot->name, (int)image->layout,
-                           access.written ? "GENERAL" : "a read-only one or GENERAL");
-    VkFormatFeatureFlags want = (access.read ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT : 0u) |
-                                (access.written ? VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT : 0u);
     VkFormatProperties properties;
-    ctx->vk.GetPhysicalDeviceFormatProperties(ctx->physical_device, image->format, &properties);
-    /* The caller's tiling is unknown: either will do. */
-    if ((properties.optimalTilingFeatures & want) != want &&
-        (properties.linearTilingFeatures & want) != want)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
-                           "%s.format is VkFormat %d, which the device cannot %s", slot->name,
-                           (int)image->format,
-                           access.written ? "use as a storage image" : "sample");
-    return VKAO_SUCCESS;
+    const VkFormatFeatureFlags want =
+        VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
+    ctx->vk.GetPhysicalDeviceFormatProperties(ctx->physical_device, VK_FORMAT_R16_SFLOAT,
+                                              &properties);
+    return (properties.optimalTilingFeatures & want) == want ? VK_FORMAT_R16_SFLOAT
+                                                             : VK_FORMAT_R32_SFLOAT;
 }
 
-static vkao_result check_images(const vkao_context *ctx, vkao_stage_flags stages,
-                                const vkao_images *images, bool need_views)
+/* AO that COMPOSITE reads has the image's resolution, all else that of the grid. */
+static void plan_images(const vkao_frame *frame, struct vkao_scratch_plan *plan)
 {
-    struct slot_access access[SLOT_COUNT];
-    slot_accesses(stages, access);
-    if (images->reserved)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "images.reserved is %u, want 0",
-                           images->reserved);
-    for (int i = 0; i < SLOT_COUNT; ++i) {
-        const vkao_image *image = slot_image(images, (enum slot_index)i);
-        vkao_result result = check_slot(ctx, &slots[i], image, access[i]);
-        if (result != VKAO_SUCCESS)
-            return result;
-        bool used = image->format != VK_FORMAT_UNDEFINED && (access[i].read || access[i].written);
-        if (need_views && used && !image->view)
-            return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s.view is VK_NULL_HANDLE",
-                               slots[i].name);
+    const struct vkao_program *program = frame->program;
+    const VkFormat ao = ao_scratch_format(frame->ctx),
+                   noisy = program->settings.bent_normals ? VK_FORMAT_R16G16B16A16_SFLOAT : ao;
+    const uint32_t shift = program->settings.half_resolution, border = 2 * VKAO_VIEW_Z_BORDER;
+    const VkExtent2D grid = {(frame->extent.width + shift) >> shift,
+                             (frame->extent.height + shift) >> shift};
+    const struct {
+        enum vkao_resource resource;
+        VkFormat format;
+        VkExtent2D extent;
+    } rows[] = {
+        {VKAO_RESOURCE_AO_NOISY, noisy, grid},
+        {VKAO_RESOURCE_AO, ao, frame->extent},
+        {VKAO_RESOURCE_VIEW_Z, VK_FORMAT_R32_SFLOAT, {grid.width + border, grid.height + border}},
+        {VKAO_RESOURCE_HALFWAY, noisy, grid},
+        {VKAO_RESOURCE_BLURRED, noisy, grid},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        const enum vkao_resource r = rows[i].resource;
+        if (!vkao_program_writes(program, r) ||
+            (r < VKAO_SLOT_COUNT && vkao_slot_image(&frame->images, r)->format))
+            continue;
+        plan->images[r].format = rows[i].format;
+        plan->images[r].extent = rows[i].extent;
     }
-    return VKAO_SUCCESS;
 }
 
-/* Rules between slots and stages. */
-static vkao_result check_combination(const vkao_frame *frame)
+static vkao_result create_scratch(vkao_frame *frame, VkMemoryRequirements *out)
 {
-    const struct vkao_logger *log = &frame->ctx->log;
-    const vkao_stage_flags both = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
-    const bool noisy = frame->images.ao_noisy.format != VK_FORMAT_UNDEFINED;
-    const bool bent = frame->images.bent_normals.format != VK_FORMAT_UNDEFINED;
-    if (frame->half_resolution && ((frame->stages & both) != both || noisy))
-        return vkao_refuse(
-            log, VKAO_ERROR_INVALID_ARGUMENT,
-            "frame.half_resolution needs the stages SSAO and BLUR (frame.stages is 0x%x) and no "
-            "images.ao_noisy",
-            frame->stages);
-    if (bent && (frame->stages & both) && ((frame->stages & both) != both || noisy))
-        return vkao_refuse(
-            log, VKAO_ERROR_INVALID_ARGUMENT,
-            "images.bent_normals needs the stages SSAO and BLUR (frame.stages is 0x%x) and no "
-            "images.ao_noisy",
-            frame->stages);
-    return VKAO_SUCCESS;
+    struct vkao_scratch_plan plan = {0};
+    /* Uniform blocks are multiples of 16 bytes. */
+    plan.parts[VKAO_RESOURCE_CONSTANTS] = (sizeof(struct vkao_constants) + 15) / 16 * 16;
+    plan_images(frame, &plan);
+    if (frame->program->is_cpu)
+        vkao_cpu_parts(frame->program, frame->extent, frame->copies, &frame->rows, plan.parts);
+    return vkao_scratch_create(frame->program, &plan, &frame->scratch, out);
 }
 
-/* Checks the info and fills the frame's description, without creating anything. */
-static vkao_result describe(const vkao_context *ctx, const vkao_frame_info *caller_info,
-                            bool need_views, vkao_frame_info *info, vkao_frame *frame)
-{
-    vkao_result result = vkao_import(&ctx->log, "frame", caller_info, info, sizeof *info);
-    if (result == VKAO_SUCCESS)
-        result = vkao_import(&ctx->log, "frame.images", info->images, &frame->images,
-                             sizeof frame->images);
-    if (result != VKAO_SUCCESS)
-        return result;
-    if (!info->stages || (info->stages & ~VKAO_STAGE_ALL))
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "frame.stages is 0x%x, want bits of 0x%x", info->stages, VKAO_STAGE_ALL);
-    if (info->stages & ~ctx->stage_mask)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "frame.stages is 0x%x, but the context was created with stage_mask 0x%x",
-                           info->stages, ctx->stage_mask);
-    if (!info->extent.width || !info->extent.height)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "frame.extent is %ux%u, want at least 1x1", info->extent.width,
-                           info->extent.height);
-    if (info->extent.width > ctx->max_dimension || info->extent.height > ctx->max_dimension)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
-                           "frame.extent is %ux%u, the limit is %u", info->extent.width,
-                           info->extent.height, ctx->max_dimension);
-    if (info->half_resolution > 1 || info->reserved)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "frame.half_resolution is %u, reserved %u, want 0 or 1, 0",
-                           info->half_resolution, info->reserved);
-    frame->ctx = ctx;
-    frame->stages = info->stages;
-    frame->extent = info->extent;
-    frame->half_resolution = info->half_resolution;
-    vkao_result checked = check_images(ctx, info->stages, &frame->images, need_views);
-    const vkao_stage_flags both = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
-    frame->packed = ctx->buffers && (info->stages & both) == both &&
-                    frame->images.ao_noisy.format == VK_FORMAT_UNDEFINED &&
-                    frame->images.bent_normals.format == VK_FORMAT_UNDEFINED;
-    if (frame->packed && frame->images.ao_image)
-        frame->staged = vk_format_staged(frame->images.ao.format);
-    return checked == VKAO_SUCCESS ? check_combination(frame) : checked;
-}
-
-vkao_result vkao_frame_scratch(const vkao_context *ctx, const vkao_frame_info *info,
-                               VkMemoryRequirements *out)
-{
-    if (!ctx)
-        return VKAO_ERROR_INVALID_ARGUMENT;
-    if (!out)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "vkao_frame_scratch: out is NULL");
-    vkao_frame frame = {0};
-    vkao_frame_info known;
-    vkao_result result = describe(ctx, info, false, &known, &frame);
-    if (result != VKAO_SUCCESS)
-        return result;
-    VkMemoryRequirements requirements;
-    result = scratch_create(&frame, &frame.scratch, &requirements);
-    scratch_destroy(ctx, &frame.scratch);
-    if (result == VKAO_SUCCESS)
-        *out = requirements;
-    return result;
-}
-
-static vkao_result create_scratch(vkao_frame *frame, const vkao_frame_info *info)
+static vkao_result bind_scratch(vkao_frame *frame, const vkao_frame_info *info,
+                                const VkMemoryRequirements *need)
 {
     const vkao_context *ctx = frame->ctx;
-    VkMemoryRequirements requirements;
-    vkao_result result = scratch_create(frame, &frame->scratch, &requirements);
-    if (result != VKAO_SUCCESS || requirements.size == 0)
-        return result;
     if (info->scratch_memory) {
-        if (info->scratch_offset % requirements.alignment)
+        if (info->scratch_offset % need->alignment)
             return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
                                "frame.scratch_offset is %llu, want a multiple of %llu",
                                (unsigned long long)info->scratch_offset,
-                               (unsigned long long)requirements.alignment);
-        return scratch_bind(ctx, &frame->scratch, info->scratch_memory, info->scratch_offset);
+                               (unsigned long long)need->alignment);
+        return vkao_scratch_bind(frame->program, &frame->scratch, info->scratch_memory,
+                                 info->scratch_offset);
     }
-    uint32_t type = vk_memory_type(&ctx->memory, requirements.memoryTypeBits);
+    uint32_t type = vkao_memory_type(&ctx->memory, need->memoryTypeBits);
     if (type == UINT32_MAX)
         return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
-                           "no DEVICE_LOCAL memory type among 0x%x", requirements.memoryTypeBits);
+                           "no DEVICE_LOCAL memory type among 0x%x", need->memoryTypeBits);
     VkResult allocated = ctx->vk.AllocateMemory(ctx->device,
                                                 &(VkMemoryAllocateInfo){
                                                     .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                                    .allocationSize = requirements.size,
+                                                    .allocationSize = need->size,
                                                     .memoryTypeIndex = type,
                                                 },
                                                 ctx->allocator, &frame->memory);
@@ -264,23 +90,209 @@ static vkao_result create_scratch(vkao_frame *frame, const vkao_frame_info *info
         return vkao_vk_failed(&ctx->log, "vkAllocateMemory", allocated);
     }
     vkao_log(&ctx->log, VKAO_LOG_INFO, "frame %ux%u: %llu bytes of scratch", frame->extent.width,
-             frame->extent.height, (unsigned long long)requirements.size);
-    return scratch_bind(ctx, &frame->scratch, frame->memory, 0);
+             frame->extent.height, (unsigned long long)need->size);
+    return vkao_scratch_bind(frame->program, &frame->scratch, frame->memory, 0);
 }
 
-vkao_result vkao_frame_create(const vkao_context *ctx, const vkao_frame_info *caller_info,
+/* --- Descriptors --- */
+
+/* What a use is of this frame: the caller's image or scratch. What a shader names but does not
+ * touch is some other image of the same kind. */
+static vkao_image resolve(const vkao_frame *frame, const struct vkao_use *use)
+{
+    const struct vkao_program *program = frame->program;
+    enum vkao_resource r = use->resource;
+    if (!(program->needs & VKAO_BIT(r)))
+        r = use->writes || !vkao_makes_ao(&program->settings) ? VKAO_RESOURCE_AO
+                                                              : VKAO_RESOURCE_DEPTH;
+    if (r < VKAO_SLOT_COUNT && vkao_slot_image(&frame->images, r)->format)
+        return *vkao_slot_image(&frame->images, r);
+    return (vkao_image){.view = frame->scratch.images[r].view, .layout = VK_IMAGE_LAYOUT_GENERAL};
+}
+
+static void write_set(const vkao_frame *frame, uint32_t i)
+{
+    const vkao_context *ctx = frame->ctx;
+    const struct vkao_step *step = &frame->program->steps[i];
+    const struct vkao_scratch *scratch = &frame->scratch;
+    static const struct vkao_use constants = {VKAO_BINDING_CONSTANTS, VKAO_RESOURCE_CONSTANTS,
+                                              false, VK_FORMAT_UNDEFINED};
+    VkDescriptorImageInfo images[VKAO_MOST_USES + 1];
+    VkDescriptorBufferInfo buffers[VKAO_MOST_USES + 1];
+    VkWriteDescriptorSet writes[VKAO_MOST_USES + 1];
+    for (uint32_t k = 0; k <= step->use_count; ++k) {
+        const struct vkao_use *use = k < step->use_count ? &step->uses[k] : &constants;
+        const VkDescriptorType type = vkao_use_type(use);
+        writes[k] = (VkWriteDescriptorSet){
+            .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
+            .dstSet = frame->sets[i],
+            .dstBinding = use->binding,
+            .descriptorCount = 1,
+            .descriptorType = type,
+        };
+        if (type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER) {
+            writes[k].pTexelBufferView = &scratch->views[i][k];
+        } else if (use->resource >= VKAO_IMAGE_COUNT) {
+            const struct vkao_block *part = &scratch->blocks[use->resource];
+            buffers[k] = (VkDescriptorBufferInfo){scratch->buffer, part->offset, part->size};
+            writes[k].pBufferInfo = &buffers[k];
+        } else {
+            const vkao_image image = resolve(frame, use);
+            images[k] =
+                (VkDescriptorImageInfo){.imageView = image.view, .imageLayout = image.layout};
+            writes[k].pImageInfo = &images[k];
+        }
+    }
+    ctx->vk.UpdateDescriptorSets(ctx->device, step->use_count + 1, writes, 0, NULL);
+}
+
+static void write_sets(const vkao_frame *frame)
+{
+    for (uint32_t i = 0; i < frame->program->count; ++i)
+        write_set(frame, i);
+}
+
+static vkao_result create_sets(vkao_frame *frame)
+{
+    static const VkDescriptorType types[] = {
+        VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
+        VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+        VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER};
+    enum { TYPES = sizeof types / sizeof types[0] };
+    const vkao_context *ctx = frame->ctx;
+    const struct vkao_program *program = frame->program;
+    VkDescriptorSetLayout layouts[VKAO_MOST_PASSES];
+    uint32_t counts[TYPES] = {program->count};
+    for (uint32_t i = 0; i < program->count; ++i) {
+        const struct vkao_step *step = &program->steps[i];
+        layouts[i] = step->set_layout;
+        for (uint32_t k = 0; k < step->use_count; ++k) {
+            for (int t = 0; t < TYPES; ++t)
+                counts[t] += vkao_use_type(&step->uses[k]) == types[t];
+        }
+    }
+    VkDescriptorPoolSize sizes[TYPES];
+    uint32_t size_count = 0;
+    for (int t = 0; t < TYPES; ++t) {
+        if (counts[t])
+            sizes[size_count++] = (VkDescriptorPoolSize){types[t], counts[t]};
+    }
+    VkResult result =
+        ctx->vk.CreateDescriptorPool(ctx->device,
+                                     &(VkDescriptorPoolCreateInfo){
+                                         .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO,
+                                         .maxSets = program->count,
+                                         .poolSizeCount = size_count,
+                                         .pPoolSizes = sizes,
+                                     },
+                                     ctx->allocator, &frame->pool);
+    if (result != VK_SUCCESS) {
+        frame->pool = VK_NULL_HANDLE;
+        return vkao_vk_failed(&ctx->log, "vkCreateDescriptorPool", result);
+    }
+    result =
+        ctx->vk.AllocateDescriptorSets(ctx->device,
+                                       &(VkDescriptorSetAllocateInfo){
+                                           .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO,
+                                           .descriptorPool = frame->pool,
+                                           .descriptorSetCount = program->count,
+                                           .pSetLayouts = layouts,
+                                       },
+                                       frame->sets);
+    if (result != VK_SUCCESS)
+        return vkao_vk_failed(&ctx->log, "vkAllocateDescriptorSets", result);
+    write_sets(frame);
+    return VKAO_SUCCESS;
+}
+
+/* --- Frames --- */
+
+/* Checks the info and fills the frame's description, without creating anything. `own`: where to
+ * plan the passes that use images, for frames that the CPU's cannot hold. */
+static vkao_result describe(const vkao_effect *effect, const vkao_frame_info *caller_info,
+                            bool need_views, vkao_frame_info *info, struct vkao_program *own,
+                            vkao_frame *frame)
+{
+    const struct vkao_program *program = &effect->program;
+    const vkao_context *ctx = program->ctx;
+    vkao_result result = vkao_import(&ctx->log, VKAO_STRUCT_FRAME_INFO, "frame", caller_info, info);
+    if (result == VKAO_SUCCESS)
+        result = vkao_import(&ctx->log, VKAO_STRUCT_IMAGES, "frame.images", info->images,
+                             &frame->images);
+    if (result != VKAO_SUCCESS)
+        return result;
+    if (info->padding)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "frame.padding is %u, want 0",
+                           info->padding);
+    if (!info->extent.width || !info->extent.height)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "frame.extent is %ux%u, want at least 1x1", info->extent.width,
+                           info->extent.height);
+    if (info->extent.width > ctx->max_dimension || info->extent.height > ctx->max_dimension)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
+                           "frame.extent is %ux%u, the limit is %u", info->extent.width,
+                           info->extent.height, ctx->max_dimension);
+    frame->ctx = ctx;
+    frame->extent = info->extent;
+    frame->program = program;
+    if (program->is_cpu && !vkao_cpu_fits(program, info->extent)) {
+        vkao_program_plan(own, ctx, &program->settings, false);
+        frame->program = own;
+    }
+    frame->copies = frame->program->is_packed && frame->images.ao.image;
+    return vkao_slots_check(frame->program, &frame->images, need_views);
+}
+
+vkao_result vkao_frame_scratch(const vkao_effect *effect, const vkao_frame_info *info,
+                               VkMemoryRequirements *out)
+{
+    if (!effect)
+        return VKAO_ERROR_INVALID_ARGUMENT;
+    const vkao_context *ctx = effect->program.ctx;
+    if (!out)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "vkao_frame_scratch: out is NULL");
+    vkao_frame frame = {0};
+    vkao_frame_info known;
+    struct vkao_program own;
+    vkao_result result = describe(effect, info, false, &known, &own, &frame);
+    if (result != VKAO_SUCCESS)
+        return result;
+    VkMemoryRequirements requirements;
+    result = create_scratch(&frame, &requirements);
+    vkao_scratch_destroy(ctx, &frame.scratch);
+    if (result == VKAO_SUCCESS)
+        *out = requirements;
+    return result;
+}
+
+/* Passes that use images, for this frame alone. */
+static vkao_result compile_own(vkao_frame *frame, const struct vkao_program *own)
+{
+    frame->own = vkao_calloc(frame->ctx->allocator, sizeof *frame->own);
+    if (!frame->own)
+        return vkao_refuse(&frame->ctx->log, VKAO_ERROR_OUT_OF_HOST_MEMORY,
+                           "no host memory for the frame");
+    *frame->own = *own;
+    frame->program = frame->own;
+    return vkao_program_compile(frame->own);
+}
+
+vkao_result vkao_frame_create(const vkao_effect *effect, const vkao_frame_info *caller_info,
                               vkao_frame **out)
 {
     if (out)
         *out = NULL;
-    if (!ctx)
+    if (!effect)
         return VKAO_ERROR_INVALID_ARGUMENT;
+    const vkao_context *ctx = effect->program.ctx;
     if (!out)
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
                            "vkao_frame_create: out is NULL");
     vkao_frame described = {0};
     vkao_frame_info info;
-    vkao_result result = describe(ctx, caller_info, true, &info, &described);
+    struct vkao_program own;
+    vkao_result result = describe(effect, caller_info, true, &info, &own, &described);
     if (result != VKAO_SUCCESS)
         return result;
     vkao_frame *frame = vkao_calloc(ctx->allocator, sizeof *frame);
@@ -288,9 +300,16 @@ vkao_result vkao_frame_create(const vkao_context *ctx, const vkao_frame_info *ca
         return vkao_refuse(&ctx->log, VKAO_ERROR_OUT_OF_HOST_MEMORY,
                            "no host memory for the frame");
     *frame = described;
-    result = create_scratch(frame, &info);
+    atomic_fetch_add(ctx->live, 1);
+    VkMemoryRequirements need;
+    if (frame->program == &own)
+        result = compile_own(frame, &own);
     if (result == VKAO_SUCCESS)
-        result = descriptors_create(frame);
+        result = create_scratch(frame, &need);
+    if (result == VKAO_SUCCESS)
+        result = bind_scratch(frame, &info, &need);
+    if (result == VKAO_SUCCESS)
+        result = create_sets(frame);
     if (result != VKAO_SUCCESS) {
         vkao_frame_destroy(frame);
         return result;
@@ -304,28 +323,30 @@ vkao_result vkao_frame_update(vkao_frame *frame, const vkao_images *images)
     if (!frame)
         return VKAO_ERROR_INVALID_ARGUMENT;
     vkao_images known;
+    char now[VKAO_NAME_BYTES], then[VKAO_NAME_BYTES];
     const vkao_context *ctx = frame->ctx;
-    vkao_result result = vkao_import(&ctx->log, "images", images, &known, sizeof known);
+    vkao_result result = vkao_import(&ctx->log, VKAO_STRUCT_IMAGES, "images", images, &known);
     if (result != VKAO_SUCCESS)
         return result;
-    for (int i = 0; i < SLOT_COUNT; ++i) {
-        VkFormat was = slot_image(&frame->images, (enum slot_index)i)->format;
-        VkFormat is = slot_image(&known, (enum slot_index)i)->format;
-        if (was != is)
+    for (uint32_t i = 0; i < VKAO_SLOT_COUNT; ++i) {
+        const vkao_image *was = vkao_slot_image(&frame->images, i),
+                         *is = vkao_slot_image(&known, i);
+        if (was->format != is->format)
             return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                               "%s.format is VkFormat %d, the frame was created with %d",
-                               slots[i].name, (int)is, (int)was);
+                               "%s.format is %s, the frame was created with %s", vkao_slot_name(i),
+                               vkao_format_name(is->format, now),
+                               vkao_format_name(was->format, then));
+        if (!was->image != !is->image)
+            return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                               "%s.image is %s, the frame was created %s it", vkao_slot_name(i),
+                               is->image ? "given" : "VK_NULL_HANDLE",
+                               is->image ? "without" : "with");
     }
-    if (!known.ao_image != !frame->images.ao_image)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "images.ao_image is %s, the frame was created %s it",
-                           known.ao_image ? "given" : "VK_NULL_HANDLE",
-                           known.ao_image ? "without" : "with");
-    result = check_images(ctx, frame->stages, &known, true);
+    result = vkao_slots_check(frame->program, &known, true);
     if (result != VKAO_SUCCESS)
         return result;
     frame->images = known;
-    descriptors_write(frame);
+    write_sets(frame);
     return VKAO_SUCCESS;
 }
 
@@ -336,8 +357,12 @@ void vkao_frame_destroy(vkao_frame *frame)
     const vkao_context *ctx = frame->ctx;
     if (frame->pool)
         ctx->vk.DestroyDescriptorPool(ctx->device, frame->pool, ctx->allocator);
-    scratch_destroy(ctx, &frame->scratch);
+    vkao_scratch_destroy(ctx, &frame->scratch);
     if (frame->memory)
         ctx->vk.FreeMemory(ctx->device, frame->memory, ctx->allocator);
+    if (frame->own)
+        vkao_program_destroy(frame->own);
+    vkao_free(ctx->allocator, frame->own);
     vkao_free(ctx->allocator, frame);
+    atomic_fetch_sub(ctx->live, 1);
 }

@@ -37,7 +37,7 @@ vkao_result vkao_refuse(const struct vkao_logger *log, vkao_result result, const
 
 vkao_result vkao_vk_failed(const struct vkao_logger *log, const char *call, VkResult result)
 {
-    return vkao_refuse(log, vk_result(result), "%s failed with VkResult %d", call, (int)result);
+    return vkao_refuse(log, vkao_from_vk(result), "%s failed with VkResult %d", call, (int)result);
 }
 
 uint32_t vkao_version(void)
@@ -47,6 +47,8 @@ uint32_t vkao_version(void)
 
 const char *vkao_result_string(vkao_result result)
 {
+    if (result <= VKAO_ERROR_VULKAN)
+        return "Vulkan error";
     switch (result) {
     case VKAO_SUCCESS:
         return "success";
@@ -58,9 +60,16 @@ const char *vkao_result_string(vkao_result result)
         return "out of host memory";
     case VKAO_ERROR_OUT_OF_DEVICE_MEMORY:
         return "out of device memory";
-    case VKAO_ERROR_VULKAN:
-        return "Vulkan error";
     default:
         return "unknown result";
     }
+}
+
+VkResult vkao_vk_result(vkao_result result)
+{
+    if (result <= VKAO_ERROR_VULKAN)
+        return (VkResult)((int)result - VKAO_ERROR_VULKAN);
+    if (result == VKAO_ERROR_OUT_OF_HOST_MEMORY)
+        return VK_ERROR_OUT_OF_HOST_MEMORY;
+    return result == VKAO_ERROR_OUT_OF_DEVICE_MEMORY ? VK_ERROR_OUT_OF_DEVICE_MEMORY : VK_SUCCESS;
 }

@@ -1,87 +1,79 @@
 /* SPDX-License-Identifier: MIT */
-#include "internal.h"
+#include "stages.h"
 
+#include "vkao_prepare.h"
+
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 
-static_assert(sizeof(struct vkao_prepare_block) == 44, "as shaders/prepare.comp lays it out");
 static_assert(VKAO_GLSL_DEPTH_PROJECTED == (int)VKAO_DEPTH_PROJECTED &&
                   VKAO_GLSL_DEPTH_VIEW_Z == (int)VKAO_DEPTH_VIEW_Z &&
                   VKAO_GLSL_DEPTH_DISTANCE == (int)VKAO_DEPTH_DISTANCE &&
                   VKAO_GLSL_DEPTH_INVERSE_Z == (int)VKAO_DEPTH_INVERSE_Z,
               "params.h repeats vkao_depth_encoding");
+static_assert(VKAO_GLSL_NORMALS_FROM_DEPTH == (int)VKAO_NORMALS_FROM_DEPTH &&
+                  VKAO_GLSL_NORMALS_XYZ_SNORM == (int)VKAO_NORMALS_XYZ_SNORM &&
+                  VKAO_GLSL_NORMALS_XYZ_UNORM == (int)VKAO_NORMALS_XYZ_UNORM &&
+                  VKAO_GLSL_NORMALS_OCT_SNORM == (int)VKAO_NORMALS_OCT_SNORM &&
+                  VKAO_GLSL_NORMALS_OCT_UNORM == (int)VKAO_NORMALS_OCT_UNORM,
+              "params.h repeats vkao_normal_encoding");
 
-/* Scratch may be shared with other frames or hold anything: its images begin anew, and wait for whatever vkao work on
- * this queue used the memory last. */
-static void begin_scratch(const vkao_frame *frame, VkCommandBuffer cmd)
+static const struct vkao_pass prepare = {
+    .name = "vkao prepare",
+    .label = "prepare",
+    .stage = VKAO_STAGE_PREPARE,
+    VKAO_CODE(vkao_prepare),
+    .uses = {VKAO_READS(DEPTH, DEPTH), VKAO_WRITES(VIEW_Z_WRITE, VIEW_Z)},
+    .area = VKAO_AREA_VALID,
+    VKAO_ONE_TEXEL,
+    .forms = 1,
+};
+
+void vkao_prepare_plan(struct vkao_program *program)
 {
-    VkImageMemoryBarrier barriers[SCRATCH_COUNT];
-    uint32_t count = 0;
-    for (int i = 0; i < SCRATCH_COUNT; ++i) {
-        if (!frame->scratch.images[i].image)
-            continue;
-        barriers[count++] = (VkImageMemoryBarrier){
-            .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-            .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
-            .dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
-            .oldLayout = VK_IMAGE_LAYOUT_UNDEFINED,
-            .newLayout = VK_IMAGE_LAYOUT_GENERAL,
-            .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-            .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-            .image = frame->scratch.images[i].image,
-            .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1},
-        };
+    vkao_program_add(program, &prepare);
+}
+
+/* What to divide by so that the matrix makes unit vectors of unit vectors: 1 for what floats make
+ * of a rotation. */
+static double normal_scale(const float rows[3][3])
+{
+    double largest = 0.0, sum = 0.0;
+    for (int i = 0; i < 9; ++i)
+        largest = fmax(largest, fabs((double)rows[i / 3][i % 3]));
+    for (int i = 0; largest > 0.0 && i < 9; ++i)
+        sum += pow((double)rows[i / 3][i % 3] / largest, 2.0);
+    const double scale = sqrt(sum / 3.0) * largest;
+    return fabs(scale - 1.0) < 1e-3 || !(scale > 0.0) ? 1.0 : scale;
+}
+
+static void normals_constants(const float rows[3][3], struct vkao_constants *out)
+{
+    const double scale = normal_scale(rows);
+    for (int column = 0; column < 3; ++column) {
+        out->normal_x[column] = (float)((double)rows[0][column] / scale);
+        out->normal_y[column] = (float)((double)rows[1][column] / scale);
+        out->normal_z[column] = (float)((double)rows[2][column] / scale);
     }
-    /* The memory barrier covers other images in the same memory, which the image barriers do not name. */
-    const VkMemoryBarrier memory = {
-        .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-        .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
-        .dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT,
-    };
-    frame->ctx->vk.CmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
-                                      VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1, &memory, 0, NULL,
-                                      count, barriers);
 }
 
-/* As many texels as prepare writes, border and padding included, moved to begin at 0. */
-static struct vkao_rect bordered(const vkao_frame *frame, struct vkao_rect valid)
+void vkao_prepare_constants(const struct vkao_recording *r, const vkao_params *params,
+                            struct vkao_constants *out)
 {
-    if (!frame->ctx->buffers)
-        return (struct vkao_rect){0, 0, valid.x1 - valid.x0 + 2 * VKAO_VIEW_Z_BORDER,
-                                  valid.y1 - valid.y0 + 2 * VKAO_VIEW_Z_BORDER};
-    return (struct vkao_rect){
-        0, 0, valid.x1 - valid.x0 + valid.x0 % VKAO_BLUR_X_WIDTH + 2 * VKAO_BUFFER_PAD,
-        valid.y1 - valid.y0 + 2 * VKAO_VIEW_Z_BORDER};
-}
-
-void record_prepare(const vkao_frame *frame, VkCommandBuffer cmd, const struct view_constants *view)
-{
-    const struct view_constants grid = frame_grid(frame, view);
-    struct vkao_prepare_block block = {
-        .linearize = {view->linearize[0], view->linearize[1]},
-        .far_z = fminf(view->far_z, (float)VKAO_FARTHEST_Z),
-        .flags = recording_flags(&grid, 0, NULL, NULL),
-        .stride = frame->scratch.buffer.stride,
-    };
-    memcpy(block.unproject, view->unproject,
-           sizeof block.unproject); /* of the image: prepare reads it there */
-    rect_pack(grid.valid, block.valid);
-    record_label_begin(frame, cmd, "vkao prepare");
-    begin_scratch(frame, cmd);
-    record_dispatch(frame, cmd, PIPELINE_PREPARE,
-                    pipeline_key(PIPELINE_PREPARE, block.flags, NULL, NULL), &block, sizeof block,
-                    bordered(frame, grid.valid));
-    record_label_end(frame, cmd);
-}
-
-vkao_result vkao_cmd_prepare(const vkao_frame *frame, VkCommandBuffer cmd, const vkao_view *view)
-{
-    struct view_constants constants = {0};
-    vkao_result result = frame_view_check(frame, cmd, "vkao_cmd_prepare",
-                                          VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, view, &constants);
-    if (result == VKAO_SUCCESS)
-        result = pipelines_check(frame, &constants, NULL, NULL);
-    if (result == VKAO_SUCCESS)
-        record_prepare(frame, cmd, &constants);
-    return result;
+    const struct view_constants *image = &r->image, *grid = &r->grid;
+    (void)params;
+    const bool far_is_one = image->far_depth > 0.5f;
+    memcpy(out->image_unproject, image->unproject, sizeof out->image_unproject);
+    memcpy(out->unproject, grid->unproject, sizeof out->unproject);
+    memcpy(out->inverse_unproject, grid->inverse_unproject, sizeof out->inverse_unproject);
+    normals_constants(image->normal_rows, out);
+    memcpy(out->linearize, image->linearize, sizeof out->linearize);
+    memcpy(out->depth_error, image->depth_error, sizeof out->depth_error);
+    out->far_test[0] = far_is_one ? 1.0f : -1.0f;
+    out->far_test[1] = far_is_one ? 1.0f : 0.0f;
+    out->far_z = fminf(image->far_z, (float)VKAO_FARTHEST_Z);
+    out->reference_z = image->reference_z;
+    vkao_rect_pack(image->valid, out->image_valid);
+    vkao_rect_pack(grid->valid, out->valid);
 }

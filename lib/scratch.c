@@ -1,130 +1,62 @@
 /* SPDX-License-Identifier: MIT */
 #include "scratch.h"
 
-#include "internal.h"
-
-/* Half precision is plenty for AO on its way to the blur; storing to it is optional in Vulkan. */
-static VkFormat ao_scratch_format(const vkao_context *ctx, bool bent)
-{
-    VkFormatProperties properties;
-    ctx->vk.GetPhysicalDeviceFormatProperties(ctx->physical_device, VK_FORMAT_R16_SFLOAT,
-                                              &properties);
-    const VkFormatFeatureFlags want =
-        VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
-    if (bent)
-        return VK_FORMAT_R16G16B16A16_SFLOAT; /* storage support is mandatory */
-    return (properties.optimalTilingFeatures & want) == want ? VK_FORMAT_R16_SFLOAT
-                                                             : VK_FORMAT_R32_SFLOAT;
-}
-
-/* AO that COMPOSITE reads has the image's resolution, all else that of the grid. */
-static VkExtent2D grid_extent(const vkao_frame *frame)
-{
-    VkExtent2D e = frame->extent;
-    return frame->half_resolution ? (VkExtent2D){(e.width + 1) / 2, (e.height + 1) / 2} : e;
-}
-
-static void plan_images(const vkao_frame *frame, struct scratch_image images[SCRATCH_COUNT])
-{
-    const vkao_context *ctx = frame->ctx;
-    const VkFormat ao = ao_scratch_format(ctx, false);
-    const VkFormat noisy = ao_scratch_format(ctx, frame_has_bent_normals(frame));
-    const VkExtent2D grid = grid_extent(frame);
-    const bool has_ssao = frame->stages & VKAO_STAGE_SSAO,
-               has_blur = frame->stages & VKAO_STAGE_BLUR;
-    const bool makes_ao = has_ssao || has_blur;
-    for (int i = 0; i < SCRATCH_COUNT; ++i)
-        images[i].extent = grid;
-    images[SCRATCH_AO].extent = frame->extent;
-    if (makes_ao && !ctx->buffers) {
-        images[SCRATCH_VIEW_Z].format =
-            ctx->half_view_z ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT;
-        images[SCRATCH_VIEW_Z].extent =
-            (VkExtent2D){grid.width + 2 * VKAO_VIEW_Z_BORDER, grid.height + 2 * VKAO_VIEW_Z_BORDER};
-    }
-    if (has_ssao && has_blur && !frame->packed &&
-        frame->images.ao_noisy.format == VK_FORMAT_UNDEFINED)
-        images[SCRATCH_NOISY].format = noisy;
-    if (has_blur && !frame->packed)
-        images[SCRATCH_HALFWAY].format = noisy;
-    if (makes_ao && frame->images.ao.format == VK_FORMAT_UNDEFINED)
-        images[SCRATCH_AO].format = ao;
-}
-
-/* The largest that limits ask offsets of buffers to be a multiple of. */
-enum { PART_ALIGNMENT = 256 };
-
-static void plan_staged(const vkao_frame *frame, struct scratch_buffer *buffer)
-{
-    static const VkDeviceSize bytes[] = {[VKAO_STAGED_UNORM8] = 1,
-                                         [VKAO_STAGED_UNORM16] = 2,
-                                         [VKAO_STAGED_FLOAT16] = 2,
-                                         [VKAO_STAGED_FLOAT32] = 4};
-    const uint32_t window = VKAO_UPSAMPLE_WIDTH, most = VKAO_STRIP_ROWS;
-    buffer->staged_stride = (frame->extent.width + window - 1) / window * window;
-    buffer->staged_texel = bytes[frame->staged];
-    buffer->parts[PART_STAGED].bytes = buffer->staged_texel * buffer->staged_stride *
-                                       (frame->extent.height < most ? frame->extent.height : most);
-}
-
-static void plan_buffer(const vkao_frame *frame, struct scratch_buffer *buffer)
-{
-    if (!frame->ctx->buffers || !(frame->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR)))
-        return;
-    const VkExtent2D grid = grid_extent(frame);
-    const uint32_t window = VKAO_BLUR_X_WIDTH; /* the last one of a row stays inside its padding */
-    buffer->stride = (grid.width + window - 1) / window * window + 2 * VKAO_BUFFER_PAD;
-    const VkDeviceSize stride = buffer->stride;
-    buffer->parts[PART_VIEW_Z].bytes = stride * (grid.height + 2 * VKAO_VIEW_Z_BORDER) * 4;
-    /* A rect may begin within a tile of this many at most. */
-    const VkDeviceSize columns = (grid.width + 3) / VKAO_ROW_GROUP_WIDTH + 1,
-                       rows = (grid.height + VKAO_TILE_HEIGHT - 1) / VKAO_TILE_HEIGHT;
-    buffer->parts[PART_TILES].bytes = sizeof(struct vkao_tiles_head) + columns * rows * 4;
-    /* Shaders name these whether they are used or not. */
-    buffer->parts[PART_PACKED].bytes = buffer->parts[PART_BLURRED].bytes =
-        buffer->parts[PART_STAGED].bytes = PART_ALIGNMENT;
-    if (frame->packed) {
-        const uint32_t ring = VKAO_RING_ROWS;
-        buffer->parts[PART_PACKED].bytes = stride * grid.height;
-        buffer->parts[PART_HALFWAY].bytes = stride * ring * 2;
-        if (frame->half_resolution)
-            buffer->parts[PART_BLURRED].bytes = stride * grid.height * 2;
-        if (frame->staged)
-            plan_staged(frame, buffer);
-    }
-    for (int i = 0; i < PART_COUNT; ++i) {
-        buffer->parts[i].offset = buffer->bytes;
-        buffer->bytes +=
-            (buffer->parts[i].bytes + PART_ALIGNMENT - 1) & ~(VkDeviceSize)(PART_ALIGNMENT - 1);
-    }
-}
-
 static VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment)
 {
     return (value + alignment - 1) / alignment * alignment;
 }
 
-/* Lays out one more thing; returns its offset. */
-static VkDeviceSize add_requirements(VkMemoryRequirements *all, const VkMemoryRequirements *one)
+static bool meet(const struct vkao_block *a, const struct vkao_block *b)
 {
-    const VkDeviceSize offset = align_up(all->size, one->alignment);
-    all->size = offset + one->size;
-    all->memoryTypeBits &= one->memoryTypeBits;
-    if (one->alignment > all->alignment)
-        all->alignment = one->alignment;
-    return offset;
+    return a->first <= b->last && b->first <= a->last;
 }
 
-static vkao_result create_image(const vkao_context *ctx, struct scratch_image *image,
-                                VkMemoryRequirements *all)
+static bool overlap(const struct vkao_block *a, const struct vkao_block *b)
 {
+    return a->offset < b->offset + b->size && b->offset < a->offset + a->size;
+}
+
+VkDeviceSize vkao_place(struct vkao_block *blocks[], uint32_t count)
+{
+    VkDeviceSize all = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        struct vkao_block *b = blocks[i];
+        b->offset = 0;
+        /* Behind each that is in the way, until none is: offsets only grow. */
+        for (uint32_t k = 0; k < i; ++k) {
+            if (!meet(b, blocks[k]) || !overlap(b, blocks[k]))
+                continue;
+            b->offset = align_up(blocks[k]->offset + blocks[k]->size, b->alignment);
+            k = UINT32_MAX; /* from the start again */
+        }
+        all = b->offset + b->size > all ? b->offset + b->size : all;
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        blocks[i]->follows = false;
+        for (uint32_t k = 0; k < count; ++k) {
+            if (overlap(blocks[i], blocks[k]) && blocks[k]->last < blocks[i]->first)
+                blocks[i]->follows = true;
+        }
+    }
+    return all;
+}
+
+/* The largest that limits ask offsets of buffers to be a multiple of. */
+enum { PART_ALIGNMENT = 256 };
+
+static vkao_result create_image(const struct vkao_program *program, VkFormat format,
+                                VkExtent2D extent, struct vkao_scratch_image *image,
+                                VkMemoryRequirements *out)
+{
+    const vkao_context *ctx = program->ctx;
     VkResult result =
         ctx->vk.CreateImage(ctx->device,
                             &(VkImageCreateInfo){
                                 .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                                .flags = VK_IMAGE_CREATE_ALIAS_BIT,
                                 .imageType = VK_IMAGE_TYPE_2D,
-                                .format = image->format,
-                                .extent = {image->extent.width, image->extent.height, 1},
+                                .format = format,
+                                .extent = {extent.width, extent.height, 1},
                                 .mipLevels = 1,
                                 .arrayLayers = 1,
                                 .samples = VK_SAMPLE_COUNT_1_BIT,
@@ -135,71 +67,104 @@ static vkao_result create_image(const vkao_context *ctx, struct scratch_image *i
                             },
                             ctx->allocator, &image->image);
     if (result != VK_SUCCESS) {
-        image->image = VK_NULL_HANDLE;
+        image->image = VK_NULL_HANDLE; /* drivers may leave anything behind a failure */
         return vkao_vk_failed(&ctx->log, "vkCreateImage", result);
     }
-    VkMemoryRequirements r;
-    ctx->vk.GetImageMemoryRequirements(ctx->device, image->image, &r);
-    image->offset = add_requirements(all, &r);
+    image->format = format;
+    image->extent = extent;
+    ctx->vk.GetImageMemoryRequirements(ctx->device, image->image, out);
     return VKAO_SUCCESS;
 }
 
-static vkao_result create_buffer(const vkao_context *ctx, struct scratch_buffer *buffer,
-                                 VkMemoryRequirements *all)
+static vkao_result create_buffer(const vkao_context *ctx, VkDeviceSize bytes, VkBuffer *buffer)
 {
-    /* The most texels of a part, of view z or in low images the ring, and the most bytes. */
-    const VkDeviceSize z = buffer->parts[PART_VIEW_Z].bytes,
-                       ring = buffer->parts[PART_HALFWAY].bytes,
-                       staged = buffer->parts[PART_STAGED].bytes,
-                       texels = (z > ring ? z : ring) / 4,
-                       bytes = texels * 4 > staged ? texels * 4 : staged;
-    if (texels > ctx->max_texels || bytes > ctx->max_buffer)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
-                           "frame.extent needs a buffer of %llu texels, the device's limits are %u "
-                           "texels and %u bytes; images may be larger: context.scratch_layout",
-                           (unsigned long long)texels, ctx->max_texels, ctx->max_buffer);
     VkResult result = ctx->vk.CreateBuffer(
         ctx->device,
         &(VkBufferCreateInfo){
             .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
-            .size = buffer->bytes,
+            .size = bytes,
             .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
-                     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
-                     VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT,
+                     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT | VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT |
+                     VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT,
             .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
         },
-        ctx->allocator, &buffer->buffer);
-    if (result != VK_SUCCESS) {
-        buffer->buffer = VK_NULL_HANDLE;
-        return vkao_vk_failed(&ctx->log, "vkCreateBuffer", result);
+        ctx->allocator, buffer);
+    if (result == VK_SUCCESS)
+        return VKAO_SUCCESS;
+    *buffer = VK_NULL_HANDLE;
+    return vkao_vk_failed(&ctx->log, "vkCreateBuffer", result);
+}
+
+/* Those whose passes nobody runs are kept all the time. */
+static void set_lifetime(const struct vkao_program *program, enum vkao_resource resource,
+                         struct vkao_block *block)
+{
+    vkao_program_lifetime(program, resource, &block->first, &block->last);
+    if (resource == VKAO_RESOURCE_CONSTANTS || block->first > block->last) {
+        block->first = 0;
+        block->last = UINT32_MAX;
     }
+}
+
+static VkDeviceSize place_parts(const struct vkao_program *program,
+                                const struct vkao_scratch_plan *plan, struct vkao_scratch *scratch)
+{
+    struct vkao_block *parts[VKAO_RESOURCE_COUNT];
+    uint32_t count = 0;
+    for (uint32_t i = VKAO_RESOURCE_CONSTANTS; i < VKAO_RESOURCE_COUNT; ++i) {
+        struct vkao_block *block = &scratch->blocks[i];
+        block->size = plan->parts[i];
+        block->alignment = PART_ALIGNMENT;
+        set_lifetime(program, (enum vkao_resource)i, block);
+        if (block->size)
+            parts[count++] = block;
+    }
+    return vkao_place(parts, count);
+}
+
+vkao_result vkao_scratch_create(const struct vkao_program *program,
+                                const struct vkao_scratch_plan *plan, struct vkao_scratch *scratch,
+                                VkMemoryRequirements *out)
+{
+    const vkao_context *ctx = program->ctx;
+    const VkDeviceSize granularity = ctx->granularity ? ctx->granularity : 1;
+    struct vkao_block *blocks[VKAO_IMAGE_COUNT + 1] = {&scratch->whole};
+    uint32_t count = 1;
     VkMemoryRequirements r;
-    ctx->vk.GetBufferMemoryRequirements(ctx->device, buffer->buffer, &r);
-    buffer->offset = add_requirements(all, &r);
+    *out = (VkMemoryRequirements){.alignment = granularity, .memoryTypeBits = UINT32_MAX};
+    vkao_result result = create_buffer(ctx, place_parts(program, plan, scratch), &scratch->buffer);
+    if (result != VKAO_SUCCESS)
+        return result;
+    ctx->vk.GetBufferMemoryRequirements(ctx->device, scratch->buffer, &r);
+    scratch->whole = (struct vkao_block){r.size, r.alignment, 0, 0, UINT32_MAX, false};
+    out->memoryTypeBits &= r.memoryTypeBits;
+    for (uint32_t i = 0; i < VKAO_IMAGE_COUNT; ++i) {
+        struct vkao_block *block = &scratch->blocks[i];
+        if (!plan->images[i].format)
+            continue;
+        result = create_image(program, plan->images[i].format, plan->images[i].extent,
+                              &scratch->images[i], &r);
+        if (result != VKAO_SUCCESS)
+            return result;
+        *block = (struct vkao_block){.size = r.size, .alignment = r.alignment};
+        set_lifetime(program, (enum vkao_resource)i, block);
+        blocks[count++] = block;
+        out->memoryTypeBits &= r.memoryTypeBits;
+    }
+    for (uint32_t i = 0; i < count; ++i) {
+        if (blocks[i]->alignment < granularity)
+            blocks[i]->alignment = granularity;
+        if (out->alignment < blocks[i]->alignment)
+            out->alignment = blocks[i]->alignment;
+    }
+    out->size = vkao_place(blocks, count);
     return VKAO_SUCCESS;
 }
 
-vkao_result scratch_create(const vkao_frame *frame, struct scratch *scratch,
-                           VkMemoryRequirements *out)
+static vkao_result bind_image(const vkao_context *ctx, struct vkao_scratch_image *image,
+                              VkDeviceMemory memory, VkDeviceSize offset)
 {
-    vkao_result result = VKAO_SUCCESS;
-    *out = (VkMemoryRequirements){.alignment = 1, .memoryTypeBits = UINT32_MAX};
-    plan_images(frame, scratch->images);
-    plan_buffer(frame, &scratch->buffer);
-    if (scratch->buffer.bytes)
-        result = create_buffer(frame->ctx, &scratch->buffer, out);
-    for (int i = 0; result == VKAO_SUCCESS && i < SCRATCH_COUNT; ++i) {
-        if (scratch->images[i].format != VK_FORMAT_UNDEFINED)
-            result = create_image(frame->ctx, &scratch->images[i], out);
-    }
-    return result;
-}
-
-static vkao_result bind_image(const vkao_context *ctx, struct scratch_image *image,
-                              const char *name, VkDeviceMemory memory, VkDeviceSize offset)
-{
-    VkResult result =
-        ctx->vk.BindImageMemory(ctx->device, image->image, memory, offset + image->offset);
+    VkResult result = ctx->vk.BindImageMemory(ctx->device, image->image, memory, offset);
     if (result != VK_SUCCESS)
         return vkao_vk_failed(&ctx->log, "vkBindImageMemory", result);
     result =
@@ -216,85 +181,72 @@ static vkao_result bind_image(const vkao_context *ctx, struct scratch_image *ima
         image->view = VK_NULL_HANDLE;
         return vkao_vk_failed(&ctx->log, "vkCreateImageView", result);
     }
-    vkao_set_name(ctx, VK_OBJECT_TYPE_IMAGE, (uint64_t)image->image, name);
+    vkao_set_name(ctx, VK_OBJECT_TYPE_IMAGE, (uint64_t)image->image, "vkao scratch");
     return VKAO_SUCCESS;
 }
 
-const struct scratch_view *scratch_view(uint32_t binding)
+static vkao_result create_view(const vkao_context *ctx, const struct vkao_scratch *scratch,
+                               const struct vkao_use *use, VkBufferView *view)
 {
-    static const struct scratch_view views[SCRATCH_VIEWS] = {
-#define VIEW(name) [VKAO_BINDING_##name - VKAO_BINDING_Z]
-        VIEW(Z) = {PART_VIEW_Z, VK_FORMAT_R32_SFLOAT},
-        VIEW(Z4) = {PART_VIEW_Z, VK_FORMAT_R32G32B32A32_SFLOAT},
-        VIEW(PACKED_WRITE) = {PART_PACKED, VK_FORMAT_R8_UINT},
-        VIEW(PACKED_WRITE2) = {PART_PACKED, VK_FORMAT_R16_UINT},
-        VIEW(PACKED_READ4) = {PART_PACKED, VK_FORMAT_R32_UINT},
-        VIEW(HALFWAY_READ2) = {PART_HALFWAY, VK_FORMAT_R32_UINT},
-        VIEW(BLURRED_READ2) = {PART_BLURRED, VK_FORMAT_R32_UINT},
-        VIEW(Z_WORDS) = {PART_VIEW_Z, VK_FORMAT_UNDEFINED},
-        VIEW(HALFWAY_WORDS) = {PART_HALFWAY, VK_FORMAT_UNDEFINED},
-        VIEW(BLURRED_WORDS) = {PART_BLURRED, VK_FORMAT_UNDEFINED},
-        VIEW(STAGED_WORDS) = {PART_STAGED, VK_FORMAT_UNDEFINED},
-        VIEW(PACKED_WORDS) = {PART_PACKED, VK_FORMAT_UNDEFINED},
-        VIEW(TILES) = {PART_TILES, VK_FORMAT_UNDEFINED},
-#undef VIEW
-    };
-    return binding >= VKAO_BINDING_Z ? &views[binding - VKAO_BINDING_Z] : NULL;
+    const struct vkao_block *part = &scratch->blocks[use->resource];
+    VkResult result =
+        ctx->vk.CreateBufferView(ctx->device,
+                                 &(VkBufferViewCreateInfo){
+                                     .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                     .buffer = scratch->buffer,
+                                     .format = use->texels,
+                                     .offset = part->offset,
+                                     .range = part->size,
+                                 },
+                                 ctx->allocator, view);
+    if (result == VK_SUCCESS)
+        return VKAO_SUCCESS;
+    *view = VK_NULL_HANDLE;
+    return vkao_vk_failed(&ctx->log, "vkCreateBufferView", result);
 }
 
-static vkao_result bind_buffer(const vkao_context *ctx, struct scratch_buffer *buffer,
+static vkao_result bind_buffer(const struct vkao_program *program, struct vkao_scratch *scratch,
                                VkDeviceMemory memory, VkDeviceSize offset)
 {
-    VkResult result =
-        ctx->vk.BindBufferMemory(ctx->device, buffer->buffer, memory, offset + buffer->offset);
-    if (result != VK_SUCCESS)
-        return vkao_vk_failed(&ctx->log, "vkBindBufferMemory", result);
-    for (uint32_t i = 0; i < SCRATCH_VIEWS; ++i) {
-        const struct scratch_view *view = scratch_view(VKAO_BINDING_Z + i);
-        if (!view->format || !buffer->parts[view->part].bytes)
-            continue;
-        result = ctx->vk.CreateBufferView(ctx->device,
-                                          &(VkBufferViewCreateInfo){
-                                              .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
-                                              .buffer = buffer->buffer,
-                                              .format = view->format,
-                                              .offset = buffer->parts[view->part].offset,
-                                              .range = buffer->parts[view->part].bytes,
-                                          },
-                                          ctx->allocator, &buffer->views[i]);
-        if (result != VK_SUCCESS) {
-            buffer->views[i] = VK_NULL_HANDLE;
-            return vkao_vk_failed(&ctx->log, "vkCreateBufferView", result);
-        }
-    }
-    vkao_set_name(ctx, VK_OBJECT_TYPE_BUFFER, (uint64_t)buffer->buffer, "vkao scratch");
-    return VKAO_SUCCESS;
-}
-
-vkao_result scratch_bind(const vkao_context *ctx, struct scratch *scratch, VkDeviceMemory memory,
-                         VkDeviceSize offset)
-{
-    static const char *const names[SCRATCH_COUNT] = {"vkao view z", "vkao noisy ao",
-                                                     "vkao halfway ao", "vkao ao"};
+    const vkao_context *ctx = program->ctx;
+    VkResult bound = ctx->vk.BindBufferMemory(ctx->device, scratch->buffer, memory, offset);
+    if (bound != VK_SUCCESS)
+        return vkao_vk_failed(&ctx->log, "vkBindBufferMemory", bound);
+    vkao_set_name(ctx, VK_OBJECT_TYPE_BUFFER, (uint64_t)scratch->buffer, "vkao scratch");
     vkao_result result = VKAO_SUCCESS;
-    if (scratch->buffer.buffer)
-        result = bind_buffer(ctx, &scratch->buffer, memory, offset);
-    for (int i = 0; result == VKAO_SUCCESS && i < SCRATCH_COUNT; ++i) {
-        if (scratch->images[i].image)
-            result = bind_image(ctx, &scratch->images[i], names[i], memory, offset);
+    for (uint32_t i = 0; i < program->count; ++i) {
+        const struct vkao_step *step = &program->steps[i];
+        for (uint32_t k = 0; result == VKAO_SUCCESS && k < step->use_count; ++k) {
+            if (vkao_use_type(&step->uses[k]) == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER)
+                result = create_view(ctx, scratch, &step->uses[k], &scratch->views[i][k]);
+        }
     }
     return result;
 }
 
-void scratch_destroy(const vkao_context *ctx, struct scratch *scratch)
+vkao_result vkao_scratch_bind(const struct vkao_program *program, struct vkao_scratch *scratch,
+                              VkDeviceMemory memory, VkDeviceSize offset)
 {
-    for (uint32_t i = 0; i < SCRATCH_VIEWS; ++i) {
-        if (scratch->buffer.views[i])
-            ctx->vk.DestroyBufferView(ctx->device, scratch->buffer.views[i], ctx->allocator);
+    vkao_result result = bind_buffer(program, scratch, memory, offset + scratch->whole.offset);
+    for (uint32_t i = 0; result == VKAO_SUCCESS && i < VKAO_IMAGE_COUNT; ++i) {
+        if (scratch->images[i].image)
+            result = bind_image(program->ctx, &scratch->images[i], memory,
+                                offset + scratch->blocks[i].offset);
     }
-    if (scratch->buffer.buffer)
-        ctx->vk.DestroyBuffer(ctx->device, scratch->buffer.buffer, ctx->allocator);
-    for (int i = 0; i < SCRATCH_COUNT; ++i) {
+    return result;
+}
+
+void vkao_scratch_destroy(const vkao_context *ctx, struct vkao_scratch *scratch)
+{
+    for (uint32_t i = 0; i < VKAO_MOST_PASSES; ++i) {
+        for (uint32_t k = 0; k < VKAO_MOST_USES; ++k) {
+            if (scratch->views[i][k])
+                ctx->vk.DestroyBufferView(ctx->device, scratch->views[i][k], ctx->allocator);
+        }
+    }
+    if (scratch->buffer)
+        ctx->vk.DestroyBuffer(ctx->device, scratch->buffer, ctx->allocator);
+    for (uint32_t i = 0; i < VKAO_IMAGE_COUNT; ++i) {
         if (scratch->images[i].view)
             ctx->vk.DestroyImageView(ctx->device, scratch->images[i].view, ctx->allocator);
         if (scratch->images[i].image)

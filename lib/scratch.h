@@ -1,75 +1,56 @@
 /* SPDX-License-Identifier: MIT
  *
- * What a frame needs between its stages, in one block of device memory: images, or for CPUs a buffer in their place
- * (shaders/params.h says how texels lie in it). */
+ * What a frame needs between its passes, in one block of device memory: images, and a buffer with
+ * the constants and what the CPU's passes keep. Resources whose lifetimes do not meet share
+ * memory. */
 #ifndef VKAO_SCRATCH_H_
 #define VKAO_SCRATCH_H_
 
-#include "vk.h"
+#include "passes.h"
 
-#include "params.h"
-
-enum scratch_slot {
-    SCRATCH_VIEW_Z,
-    SCRATCH_NOISY,   /* if the SSAO stage feeds BLUR and the caller gave no ao_noisy */
-    SCRATCH_HALFWAY, /* between the two directions of the blur */
-    SCRATCH_AO,      /* if COMPOSITE reads AO and the caller gave no ao */
-    SCRATCH_COUNT
+/* Something that lies in memory while passes first..last run. */
+struct vkao_block {
+    VkDeviceSize size, alignment, offset; /* size 0 = nothing */
+    uint32_t first, last;
+    bool follows; /* its memory was another's before */
 };
 
-struct scratch_image {
+struct vkao_scratch_image {
     VkFormat format; /* UNDEFINED = not needed */
     VkExtent2D extent;
     VkImage image;
     VkImageView view;
-    VkDeviceSize offset;
 };
 
-enum scratch_part {
-    PART_VIEW_Z,
-    PART_PACKED,
-    PART_HALFWAY,
-    PART_BLURRED,
-    PART_STAGED,
-    PART_TILES,
-    PART_COUNT
-};
-
-/* Bindings from VKAO_BINDING_Z on. */
-enum { SCRATCH_VIEWS = VKAO_BINDING_COUNT - VKAO_BINDING_Z };
-
-struct scratch_view {
-    enum scratch_part part;
-    VkFormat format; /* of texels; UNDEFINED = as words */
-};
-
-/* What a VKAO_BINDING_* is of the buffer, NULL if it is not in it. */
-const struct scratch_view *scratch_view(uint32_t binding);
-
-struct scratch_buffer {
-    uint32_t stride;           /* texels in a row */
-    uint32_t staged_stride;    /* the same of PART_STAGED */
-    VkDeviceSize staged_texel; /* bytes */
-    struct {
-        VkDeviceSize offset, bytes; /* in the buffer; 0 bytes = not needed */
-    } parts[PART_COUNT];
-    VkDeviceSize bytes; /* 0 = not needed */
+struct vkao_scratch {
+    struct vkao_scratch_image images[VKAO_IMAGE_COUNT];
+    /* of images in the memory, of parts in the buffer */
+    struct vkao_block blocks[VKAO_RESOURCE_COUNT];
+    struct vkao_block whole; /* the buffer in the memory */
     VkBuffer buffer;
-    VkBufferView views[SCRATCH_VIEWS]; /* [binding - VKAO_BINDING_Z] */
-    VkDeviceSize offset;               /* in the memory */
+    VkBufferView views[VKAO_MOST_PASSES][VKAO_MOST_USES]; /* of uses as texels */
 };
 
-struct scratch {
-    struct scratch_image images[SCRATCH_COUNT];
-    struct scratch_buffer buffer;
+/* What to create. The rest is filled in. */
+struct vkao_scratch_plan {
+    struct {
+        VkFormat format;
+        VkExtent2D extent;
+    } images[VKAO_IMAGE_COUNT];
+    VkDeviceSize parts[VKAO_RESOURCE_COUNT]; /* bytes, from VKAO_RESOURCE_CONSTANTS on */
 };
 
-/* Creates what a checked frame needs, unbound, and lays it out in one block. On failure the rest is for
- * scratch_destroy. */
-vkao_result scratch_create(const vkao_frame *frame, struct scratch *scratch,
-                           VkMemoryRequirements *out);
-vkao_result scratch_bind(const vkao_context *ctx, struct scratch *scratch, VkDeviceMemory memory,
-                         VkDeviceSize offset);
-void scratch_destroy(const vkao_context *ctx, struct scratch *scratch);
+/* Places blocks so that those that live at the same time do not overlap; returns the size of
+ * all. */
+VkDeviceSize vkao_place(struct vkao_block *blocks[], uint32_t count);
+
+/* Creates it, unbound, and tells the memory that it takes. On failure the rest is for
+ * vkao_scratch_destroy. */
+vkao_result vkao_scratch_create(const struct vkao_program *program,
+                                const struct vkao_scratch_plan *plan, struct vkao_scratch *scratch,
+                                VkMemoryRequirements *out);
+vkao_result vkao_scratch_bind(const struct vkao_program *program, struct vkao_scratch *scratch,
+                              VkDeviceMemory memory, VkDeviceSize offset);
+void vkao_scratch_destroy(const vkao_context *ctx, struct vkao_scratch *scratch);
 
 #endif

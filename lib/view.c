@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "view.h"
 
-#include "vk.h"
+#include "formats.h"
 
 #include <float.h>
 #include <math.h>
@@ -55,11 +55,22 @@ static vkao_result read_projection(const struct vkao_logger *log, const vkao_vie
     for (size_t i = 0; i < sizeof zero / sizeof zero[0]; ++i) {
         if (m[zero[i]] != 0.0f)
             return vkao_refuse(
-                log, VKAO_ERROR_INVALID_ARGUMENT,
-                "view.projection[%d] is %g, want 0: sheared or rotated projections are "
-                "not supported",
-                zero[i], (double)m[zero[i]]);
+                log, VKAO_ERROR_INVALID_ARGUMENT, "view.projection[%d] is %g, want 0: %s", zero[i],
+                (double)m[zero[i]],
+                zero[i] == 2 || zero[i] == 6
+                    ? "the near plane is oblique, or rows stand where columns should; of an "
+                      "oblique "
+                      "view give VIEW_Z, which does not depend on planes, with the plain matrix"
+                    : "sheared and rotated projections are not supported, and m[column * 4 + row] "
+                      "holds columns");
     }
+    /* -near far / (far - near), or near, stands where w's factor of z should, and that where the
+     * former should. */
+    if (m[15] == 0.0f && fabsf(m[11]) != 1.0f && fabsf(m[14]) == 1.0f)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.projection is transposed: [11] is %g and [14] is %g, want [11] 1 "
+                           "or -1 in perspective, as m[column * 4 + row] holds columns",
+                           (double)m[11], (double)m[14]);
     bool perspective = m[11] != 0.0f && m[15] == 0.0f,
          orthographic = m[11] == 0.0f && m[15] != 0.0f;
     if ((!perspective && !orthographic) || m[0] == 0.0f || m[5] == 0.0f ||
@@ -69,6 +80,13 @@ static vkao_result read_projection(const struct vkao_logger *log, const vkao_vie
                            "(column-major, [0] %g [5] %g [10] %g [11] %g [14] %g [15] %g)",
                            (double)m[0], (double)m[5], (double)m[10], (double)m[11], (double)m[14],
                            (double)m[15]);
+    /* What lies between the planes lies in front of the eye, whichever is near. */
+    if (perspective && (0.5 * (double)m[11] - (double)m[10]) * (double)m[11] / (double)m[14] <= 0.0)
+        return vkao_refuse(
+            log, VKAO_ERROR_INVALID_ARGUMENT,
+            "view.projection puts depth 0.5 behind the eye ([10] %g [11] %g [14] %g): "
+            "is it transposed? m[column * 4 + row] holds columns",
+            (double)m[10], (double)m[11], (double)m[14]);
     /* Scale so that w is distance along the axis, or 1. */
     double w = perspective ? fabs((double)m[11]) : (double)m[15];
     *p = (struct projection){
@@ -167,21 +185,26 @@ static void read_unproject(const struct projection *p, const vkao_view *view,
     out->reference_z = p->orthographic ? (float)fabs(2.0 / p->x_scale) : 0.0f;
 }
 
-/* The far plane read back from a float matrix is off by up to this much, relative to far / near; what lies that close
- * to it is background too. */
+/* The far plane read back from a float matrix is off by up to this much, relative to far / near;
+ * what lies that close to it is background too. */
 static float far_limit(double near, double far)
 {
     double ratio = near > 0.0 ? far / near : 1.0;
     return (float)(far * (1.0 - fmin(0.5, 0x1p-22 * ratio)));
 }
 
-/* Device depth to view z. The step of the depth format tells how far z may be off: fixed-point steps are the same
- * everywhere, floating ones shrink towards 0, which is why reversed floating depth is accurate. */
-static void read_depth(const struct projection *p, const vkao_view *view, VkFormat format,
+/* Device depth to view z. The step of the depth format tells how far z may be off: fixed-point
+ * steps are the same everywhere, floating ones shrink towards 0, which is why reversed floating
+ * depth is accurate. */
+static void read_depth(const struct projection *p, const vkao_effect_info *effect, VkFormat format,
                        struct view_constants *out)
 {
     bool floating;
-    double step = vk_format_depth_step(format, &floating);
+    double step = vkao_format_depth_step(format, &floating);
+    if (effect->depth_bits && effect->depth_encoding == VKAO_DEPTH_PROJECTED) {
+        floating = effect->depth_bits == 32;
+        step = floating ? 0x1p-24 : ldexp(1.0, -(int)effect->depth_bits);
+    }
     double rounding = 0x1p-22; /* of the view z that prepare stores, and of the arithmetic on it */
     out->far_z = FLT_MAX;
     out->depth_error[0] = (float)rounding;
@@ -189,11 +212,12 @@ static void read_depth(const struct projection *p, const vkao_view *view, VkForm
         double z0 = p->forward * -p->z_1 / p->z_z, z1 = p->forward * (1.0 - p->z_1) / p->z_z;
         out->far_depth = z1 > z0 ? 1.0f : 0.0f;
         double far = fmax(z0, z1), near = fmin(z0, z1);
-        /* Orthographic xy does not depend on z: moving the eye back keeps z positive and changes nothing. */
+        /* Orthographic xy does not depend on z: moving the eye back keeps z positive and changes
+         * nothing. */
         double shift = near > 0.0 ? 0.0 : 0.001 * (far - near) - near;
         out->linearize[0] = (float)(z0 + shift);
         out->linearize[1] = (float)(z1 - z0);
-        bool projected = view->depth_encoding == VKAO_DEPTH_PROJECTED;
+        bool projected = effect->depth_encoding == VKAO_DEPTH_PROJECTED;
         out->depth_error[0] = projected ? (float)(step * (far - near)) : 0.0f;
         out->depth_error[1] = (float)(projected ? rounding : rounding + 2.0 * step);
         if (!projected)
@@ -207,28 +231,21 @@ static void read_depth(const struct projection *p, const vkao_view *view, VkForm
         out->far_depth = one_is_far ? 1.0f : 0.0f;
         out->linearize[0] = (float)mul;
         out->linearize[1] = (float)add;
-        if (view->depth_encoding == VKAO_DEPTH_PROJECTED) {
+        if (effect->depth_encoding == VKAO_DEPTH_PROJECTED) {
             if (!floating || one_is_far)
                 out->depth_error[1] = (float)(step / fabs(mul));
         } else if (isfinite(far) && far > 0.0) {
             out->far_z = far_limit(fmin(at_zero, at_one), far);
         }
-        /* The point and its occluder err by half a step each; a step is up to twice the format's above a power of two. */
-        if (view->depth_encoding != VKAO_DEPTH_PROJECTED || (floating && !one_is_far))
+        /* The point and its occluder err by half a step each; a step is up to twice the format's
+         * above a power of two. */
+        if (effect->depth_encoding != VKAO_DEPTH_PROJECTED || (floating && !one_is_far))
             out->depth_error[0] += (float)(2.0 * step);
     }
 }
 
-static vkao_result check_enums(const struct vkao_logger *log, const vkao_view *view)
+static vkao_result check_members(const struct vkao_logger *log, const vkao_view *view)
 {
-    if ((uint32_t)view->depth_encoding > VKAO_DEPTH_INVERSE_Z)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "view.depth_encoding is %d, want 0..%d", (int)view->depth_encoding,
-                           (int)VKAO_DEPTH_INVERSE_Z);
-    if ((uint32_t)view->normal_encoding > VKAO_NORMALS_OCT_UNORM)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "view.normal_encoding is %d, want 0..%d", (int)view->normal_encoding,
-                           (int)VKAO_NORMALS_OCT_UNORM);
     if ((uint32_t)view->axis > VKAO_VIEW_AXIS_POSITIVE_Z)
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.axis is %d, want 0..%d",
                            (int)view->axis, (int)VKAO_VIEW_AXIS_POSITIVE_Z);
@@ -236,46 +253,46 @@ static vkao_result check_enums(const struct vkao_logger *log, const vkao_view *v
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "view.viewport is %ux%u, want both 0 or none",
                            view->viewport.extent.width, view->viewport.extent.height);
-    if (view->reserved || view->reserved_too)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.reserved is %u, want 0",
-                           view->reserved | view->reserved_too);
-    if ((uint32_t)view->bent_encoding > VKAO_NORMALS_OCT_UNORM)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.bent_encoding is %d, want 0..%d",
-                           (int)view->bent_encoding, (int)VKAO_NORMALS_OCT_UNORM);
+    if (view->viewport.extent.width > INT32_MAX || view->viewport.extent.height > INT32_MAX)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.viewport is %dx%d, want a positive size: for a viewport of "
+                           "negative height, negate row 1 of view.projection",
+                           (int)view->viewport.extent.width, (int)view->viewport.extent.height);
+    if (view->padding)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.padding is %u, want 0",
+                           view->padding);
     return VKAO_SUCCESS;
 }
 
-vkao_result view_rects(const struct vkao_logger *log, const vkao_view *view, VkExtent2D extent,
-                       struct vkao_rect *valid, struct vkao_rect *rect)
+vkao_result vkao_view_rects(const struct vkao_logger *log, const vkao_view *view, VkExtent2D extent,
+                            struct vkao_rect *valid, struct vkao_rect *rect)
 {
-    vkao_result result = check_enums(log, view);
+    vkao_result result = check_members(log, view);
     return result == VKAO_SUCCESS ? resolve_rects(log, view, extent, valid, rect) : result;
 }
 
-vkao_result view_constants_init(const struct vkao_logger *log, const vkao_view *view,
-                                VkExtent2D extent, VkFormat depth_format,
-                                struct view_constants *out)
+vkao_result vkao_view_constants_init(const struct vkao_logger *log, const vkao_view *view,
+                                     const vkao_effect_info *effect, VkExtent2D extent,
+                                     VkFormat depth_format, struct view_constants *out)
 {
     struct projection p = {0};
-    vkao_result result = check_enums(log, view);
+    vkao_result result = check_members(log, view);
     if (result == VKAO_SUCCESS)
         result = check_finite(log, "normal_to_view", view->normal_to_view, 9);
     if (result == VKAO_SUCCESS)
         result = read_projection(log, view, &p);
     if (result != VKAO_SUCCESS)
         return result;
-    *out = (struct view_constants){
-        .orthographic = p.orthographic,
-        .depth_encoding = (uint32_t)view->depth_encoding,
-    };
+    if (p.orthographic != (effect->projection == VKAO_PROJECTION_ORTHOGRAPHIC))
+        return vkao_refuse(
+            log, VKAO_ERROR_INVALID_ARGUMENT, "view.projection is %s, but effect.projection is %u",
+            p.orthographic ? "orthographic" : "perspective", (unsigned)effect->projection);
+    *out = (struct view_constants){.orthographic = p.orthographic};
     result = resolve_rects(log, view, extent, &out->valid, &out->rect);
     if (result != VKAO_SUCCESS)
         return result;
-    vkao_normal_encoding bent = view->bent_encoding ? view->bent_encoding : view->normal_encoding;
-    out->encodings =
-        (uint32_t)view->normal_encoding | (uint32_t)(bent ? bent : VKAO_NORMALS_XYZ_SNORM) << 8;
     read_unproject(&p, view, out);
-    read_depth(&p, view, depth_format, out);
+    read_depth(&p, effect, depth_format, out);
     for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 3; ++column) {
             float v = view->normal_to_view[column * 3 + row];
@@ -285,10 +302,9 @@ vkao_result view_constants_init(const struct vkao_logger *log, const vkao_view *
     return check_unproject(log, &p, out);
 }
 
-struct view_constants view_halve(const struct view_constants *view)
+struct view_constants vkao_view_halve(const struct view_constants *view)
 {
     struct view_constants half = *view;
-    half.grid_shift = 1;
     half.unproject[0] *= 2.0f;
     half.unproject[1] *= 2.0f;
     half.inverse_unproject[0] *= 0.5f;
@@ -300,18 +316,12 @@ struct view_constants view_halve(const struct view_constants *view)
     half.rect = (struct vkao_rect){view->rect.x0 / 2, view->rect.y0 / 2,
                                    x1 < half.valid.x1 ? x1 : half.valid.x1,
                                    y1 < half.valid.y1 ? y1 : half.valid.y1};
-    half.rect = rect_grow(half.rect, 1, 1, half.valid);
+    half.rect = vkao_rect_grow(half.rect, 1, 1, half.valid);
     return half;
 }
 
-void view_halve_precision(struct view_constants *view)
-{
-    /* Devices may cut where they could round: a whole step, of z itself in perspective or not. */
-    view->depth_error[view->orthographic ? 1 : 0] += 0x1p-10f;
-    view->far_z = fminf(view->far_z, 65504.0f);
-}
-
-struct vkao_rect rect_grow(struct vkao_rect rect, uint32_t x, uint32_t y, struct vkao_rect bounds)
+struct vkao_rect vkao_rect_grow(struct vkao_rect rect, uint32_t x, uint32_t y,
+                                struct vkao_rect bounds)
 {
     struct vkao_rect grown = {
         .x0 = rect.x0 - bounds.x0 > x ? rect.x0 - x : bounds.x0,
@@ -322,7 +332,7 @@ struct vkao_rect rect_grow(struct vkao_rect rect, uint32_t x, uint32_t y, struct
     return grown;
 }
 
-void rect_pack(struct vkao_rect rect, uint32_t out[2])
+void vkao_rect_pack(struct vkao_rect rect, uint32_t out[2])
 {
     out[0] = rect.x0 | rect.y0 << 16;
     out[1] = rect.x1 | rect.y1 << 16;

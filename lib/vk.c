@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "vk.h"
 
-#include "params.h"
-
-bool vk_table_load(struct vk_table *vk, const vkao_context_info *info, const char **missing)
+bool vkao_vk_table_load(struct vk_table *vk, const vkao_context_info *info, const char **missing)
 {
     *missing = NULL;
 #define VKAO_LOAD_INSTANCE(name)                                                                   \
@@ -22,13 +20,17 @@ bool vk_table_load(struct vk_table *vk, const vkao_context_info *info, const cha
     VKAO_INSTANCE_FUNCTIONS(VKAO_LOAD_INSTANCE)
     VKAO_DEVICE_FUNCTIONS(VKAO_LOAD_DEVICE)
     VKAO_DEBUG_FUNCTIONS(VKAO_LOAD_DEBUG)
+    /* Never called. Whatever the device is, those of an instance for Vulkan 1.0 lack it, and with
+     * it what shaders here are compiled for. */
+    if (!info->get_device_proc_addr(info->device, "vkTrimCommandPool"))
+        *missing = "vkTrimCommandPool";
 #undef VKAO_LOAD_INSTANCE
 #undef VKAO_LOAD_DEVICE
 #undef VKAO_LOAD_DEBUG
     return !*missing;
 }
 
-vkao_result vk_result(VkResult result)
+vkao_result vkao_from_vk(VkResult result)
 {
     switch (result) {
     case VK_SUCCESS:
@@ -40,119 +42,12 @@ vkao_result vk_result(VkResult result)
     case VK_ERROR_FRAGMENTED_POOL:
         return VKAO_ERROR_OUT_OF_DEVICE_MEMORY;
     default:
-        return VKAO_ERROR_VULKAN;
+        /* What is no error should not have come. */
+        return (vkao_result)(VKAO_ERROR_VULKAN + (int)(result < 0 ? result : VK_ERROR_UNKNOWN));
     }
 }
 
-bool vk_format_is_ao(VkFormat format)
-{
-    return vk_format_staged(format) != VKAO_STAGED_NONE;
-}
-
-uint32_t vk_format_staged(VkFormat format)
-{
-    switch (format) {
-    case VK_FORMAT_R8_UNORM:
-        return VKAO_STAGED_UNORM8;
-    case VK_FORMAT_R16_UNORM:
-        return VKAO_STAGED_UNORM16;
-    case VK_FORMAT_R16_SFLOAT:
-        return VKAO_STAGED_FLOAT16;
-    case VK_FORMAT_R32_SFLOAT:
-        return VKAO_STAGED_FLOAT32;
-    default:
-        return VKAO_STAGED_NONE;
-    }
-}
-
-struct depth_format {
-    VkFormat format;
-    float step;
-    bool floating;
-};
-
-static const struct depth_format depth_formats[] = {
-    {VK_FORMAT_D16_UNORM, 0x1p-16f, false},
-    {VK_FORMAT_D16_UNORM_S8_UINT, 0x1p-16f, false},
-    {VK_FORMAT_X8_D24_UNORM_PACK32, 0x1p-24f, false},
-    {VK_FORMAT_D24_UNORM_S8_UINT, 0x1p-24f, false},
-    {VK_FORMAT_D32_SFLOAT, 0x1p-24f, true},
-    {VK_FORMAT_D32_SFLOAT_S8_UINT, 0x1p-24f, true},
-    {VK_FORMAT_R16_UNORM, 0x1p-16f, false},
-    {VK_FORMAT_R16_SFLOAT, 0x1p-11f, true},
-    {VK_FORMAT_R32_SFLOAT, 0x1p-24f, true},
-};
-
-float vk_format_depth_step(VkFormat format, bool *floating)
-{
-    for (size_t i = 0; i < sizeof depth_formats / sizeof depth_formats[0]; ++i) {
-        if (depth_formats[i].format == format) {
-            *floating = depth_formats[i].floating;
-            return depth_formats[i].step;
-        }
-    }
-    *floating = false;
-    return 0.0f;
-}
-
-bool vk_format_is_depth(VkFormat format)
-{
-    bool floating;
-    return vk_format_depth_step(format, &floating) > 0.0f;
-}
-
-bool vk_format_is_sampled_float(VkFormat format)
-{
-    static const VkFormat integers[] = {
-        VK_FORMAT_R8_UINT,
-        VK_FORMAT_R8_SINT,
-        VK_FORMAT_R8G8_UINT,
-        VK_FORMAT_R8G8_SINT,
-        VK_FORMAT_R8G8B8_UINT,
-        VK_FORMAT_R8G8B8_SINT,
-        VK_FORMAT_B8G8R8_UINT,
-        VK_FORMAT_B8G8R8_SINT,
-        VK_FORMAT_R8G8B8A8_UINT,
-        VK_FORMAT_R8G8B8A8_SINT,
-        VK_FORMAT_B8G8R8A8_UINT,
-        VK_FORMAT_B8G8R8A8_SINT,
-        VK_FORMAT_A8B8G8R8_UINT_PACK32,
-        VK_FORMAT_A8B8G8R8_SINT_PACK32,
-        VK_FORMAT_A2R10G10B10_UINT_PACK32,
-        VK_FORMAT_A2R10G10B10_SINT_PACK32,
-        VK_FORMAT_A2B10G10R10_UINT_PACK32,
-        VK_FORMAT_A2B10G10R10_SINT_PACK32,
-        VK_FORMAT_R16_UINT,
-        VK_FORMAT_R16_SINT,
-        VK_FORMAT_R16G16_UINT,
-        VK_FORMAT_R16G16_SINT,
-        VK_FORMAT_R16G16B16_UINT,
-        VK_FORMAT_R16G16B16_SINT,
-        VK_FORMAT_R16G16B16A16_UINT,
-        VK_FORMAT_R16G16B16A16_SINT,
-        VK_FORMAT_R32_UINT,
-        VK_FORMAT_R32_SINT,
-        VK_FORMAT_R32G32_UINT,
-        VK_FORMAT_R32G32_SINT,
-        VK_FORMAT_R32G32B32_UINT,
-        VK_FORMAT_R32G32B32_SINT,
-        VK_FORMAT_R32G32B32A32_UINT,
-        VK_FORMAT_R32G32B32A32_SINT,
-        VK_FORMAT_S8_UINT,
-    };
-    /* 64-bit components and everything that later versions and extensions added but packed 16-bit formats */
-    if (format <= VK_FORMAT_UNDEFINED ||
-        (format >= VK_FORMAT_R64_UINT && format <= VK_FORMAT_R64G64B64A64_SFLOAT) ||
-        format > VK_FORMAT_ASTC_12x12_SRGB_BLOCK)
-        return false;
-    for (size_t i = 0; i < sizeof integers / sizeof integers[0]; ++i) {
-        if (integers[i] == format)
-            return false;
-    }
-    return true;
-}
-
-uint32_t vk_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits)
+uint32_t vkao_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits)
 {
     for (uint32_t i = 0; i < memory->memoryTypeCount; ++i) {
         if ((type_bits >> i & 1u) &&

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * All Vulkan plumbing: the function table through which every call goes, result mapping, formats, memory types. */
+ * All Vulkan plumbing: the function table through which every call goes, result mapping, formats,
+ * memory types. */
 #ifndef VKAO_VK_H_
 #define VKAO_VK_H_
 
@@ -64,22 +65,11 @@ struct vk_table {
 };
 
 /* False if a required function is missing; *missing then names it. */
-bool vk_table_load(struct vk_table *vk, const vkao_context_info *info, const char **missing);
+bool vkao_vk_table_load(struct vk_table *vk, const vkao_context_info *info, const char **missing);
 
-vkao_result vk_result(VkResult result);
-
-/* Formats that texture2D can read: everything but integers, multi-planar and stencil-only. */
-bool vk_format_is_sampled_float(VkFormat format);
-/* Formats of AO images. */
-bool vk_format_is_ao(VkFormat format);
-/* The VKAO_STAGED_* that such a format can be copied from. */
-uint32_t vk_format_staged(VkFormat format);
-/* Depth formats and one-component floats. */
-bool vk_format_is_depth(VkFormat format);
-/* Size of one step of a depth value in [0.5,1), and whether the format floats; 0 for other formats. */
-float vk_format_depth_step(VkFormat format, bool *floating);
+vkao_result vkao_from_vk(VkResult result);
 
 /* Index of a memory type among type_bits with DEVICE_LOCAL, or UINT32_MAX. */
-uint32_t vk_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits);
+uint32_t vkao_memory_type(const VkPhysicalDeviceMemoryProperties *memory, uint32_t type_bits);
 
 #endif

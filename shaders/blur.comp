@@ -1,69 +1,63 @@
 /* SPDX-License-Identifier: MIT
  *
- * One direction of the separable cross-bilateral blur (Petschnigg et al. 2004; Eisemann and Durand 2004). The weight
- * of tap k is blur_weight, times max(0, 1 - sharpness * |z_k - z - slope k| / z), slope being the smaller of the two
- * neighbour differences, times max(0, n.n_k)^normal_power. Continuing the slope keeps tilted walls in one piece where
- * a plain depth difference would cut them up. AO is not clamped on the way: one slice per texel often sees more than
- * its share, and a clamp would turn that noise into bias. */
+ * One direction of the separable cross-bilateral blur (Petschnigg et al. 2004; Eisemann and Durand
+ * 2004). The weight of tap k is blur_weight, times max(0, 1 - sharpness * |z_k - z - slope k| / z),
+ * slope being the smaller of the two neighbour differences, times max(0, n.n_k)^normal_power.
+ * Continuing the slope keeps tilted walls in one piece where a plain depth difference would cut
+ * them up. AO is not clamped on the way: one slice per texel often sees more than its share, and a
+ * clamp would turn that noise into bias. With VKAO_LAST the result is final. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #define VKAO_GLSL
 #include "params.h"
 
-layout(constant_id = VKAO_CONSTANT_BLUR_VERTICAL) const bool VERTICAL = false;
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
-layout(push_constant) uniform Block { vkao_blur_block params; };
-layout(binding = VKAO_BINDING_NOISY_READ) uniform texture2D noisy_image;
-layout(binding = VKAO_BINDING_NOISY_WRITE) uniform writeonly image2D noisy_out;
-layout(binding = VKAO_BINDING_HALFWAY_READ) uniform texture2D halfway_image;
-layout(binding = VKAO_BINDING_HALFWAY_WRITE) uniform writeonly image2D halfway_out;
+layout(push_constant) uniform Block { vkao_dispatch here; };
+#include "settings.glsl"
+layout(binding = VKAO_BINDING_SOURCE) uniform texture2D source_image;
 #include "view.glsl"
-#include "finish.glsl"
 #include "surface.glsl"
+#ifdef VKAO_LAST
+#include "finish.glsl"
+#else
+layout(binding = VKAO_BINDING_TARGET) uniform writeonly image2D target_image;
+#endif
 
 const ivec2 AXIS = VERTICAL ? ivec2(0, 1) : ivec2(1, 0);
 
 vec4 load_noisy(ivec2 texel)
 {
-    vec4 v = VERTICAL ? texelFetch(halfway_image, texel, 0) : texelFetch(noisy_image, texel, 0);
+    vec4 v = texelFetch(source_image, texel, 0);
     return BENT_NORMALS ? v : v.xxxx;
 }
 
 float local_slope(ivec2 texel, float z)
 {
-    return local_slope(surface_z(load_view_z(texel - AXIS)), z, surface_z(load_view_z(texel + AXIS)));
-}
-
-float normal_weight(vec3 normal, ivec2 texel)
-{
-    vec3 other = decode_normal(texel << grid_shift());
-    if (normal == vec3(0.0) || other == vec3(0.0))
-        return 1.0;
-    return pow(max(dot(normal, other), 1.0e-6), params.normal_power);
+    return local_slope(surface_z(load_view_z(texel - AXIS)), z,
+                       surface_z(load_view_z(texel + AXIS)));
 }
 
 vec4 blurred(ivec2 texel, float z)
 {
     float slope = local_slope(texel, z);
     float edge = edge_stop(z, params.sharpness, params.reference_z);
-    bool use_normals = flag(VKAO_FLAG_BLUR_NORMALS);
-    vec3 normal = use_normals ? decode_normal(texel << grid_shift()) : vec3(0.0);
+    vec4 normal = NORMAL_POWER > 0.0 ? stored_normal(texel << GRID_SHIFT) : vec4(0.0);
     vec4 sum = load_noisy(texel);
     float weights = 1.0;
-    int k = -int(params.radius);
+    int k = -RADIUS;
     for (;;) {
         ivec2 at = texel + k * AXIS;
         float tap_z = k == 0 ? 0.0 : load_view_z(at);
         if (tap_z > 0.0) {
             float off = off_surface(z, slope, tap_z, local_slope(at, tap_z), float(k));
-            float w = blur_weight(k, int(params.radius)) * max(0.0, 1.0 - edge * off);
-            if (use_normals)
-                w *= normal_weight(normal, at);
+            float w = blur_weight(k, RADIUS) * max(0.0, 1.0 - edge * off);
+            if (NORMAL_POWER > 0.0)
+                w *= normal_weight(normal, stored_normal(at << GRID_SHIFT), NORMAL_POWER);
             sum += w * load_noisy(at);
             weights += w;
         }
-        if (++k > int(params.radius))
+        if (++k > RADIUS)
             break;
     }
     return sum / weights;
@@ -71,17 +65,16 @@ vec4 blurred(ivec2 texel, float z)
 
 void main()
 {
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(params.rect.x);
-    if (any(greaterThanEqual(texel, unpack_texel(params.rect.y))))
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(here.rect.x);
+    if (any(greaterThanEqual(texel, unpack_texel(here.rect.y))))
         return;
     float z = load_view_z(texel);
     vec4 result = z > 0.0 ? blurred(texel, z) : vec4(0.0, 0.0, 0.0, 1.0);
-    result.w = is_sane(result.w) ? result.w : 1.0; /* an ao_noisy of the caller's may hold anything */
-    vec4 stored = BENT_NORMALS ? result : result.wwww;
-    if (!VERTICAL)
-        imageStore(halfway_out, texel, stored);
-    else if (grid_shift() > 0)
-        imageStore(noisy_out, texel, stored); /* upsample finishes */
-    else
-        finish(texel, result, z == 0.0);
+    /* an ao_noisy of the caller's may hold anything */
+    result.w = is_sane(result.w) ? result.w : 1.0;
+#ifdef VKAO_LAST
+    finish(texel, result, z == 0.0);
+#else
+    imageStore(target_image, texel, BENT_NORMALS ? result : result.wwww);
+#endif
 }

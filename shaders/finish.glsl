@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: MIT
  *
- * The end of the line, whichever stage it falls to: intensity and power, bent normals in the caller's space and
- * encoding. They come after the blur because they are not linear: noise would turn into bias. The includer's params
- * have intensity, power, encodings and the rows of normal_to_view. */
+ * The end of the line, whichever stage it falls to: intensity and power, bent normals in the
+ * caller's space and encoding. They come after the blur because they are not linear: noise would
+ * turn into bias. */
 #ifndef VKAO_FINISH_GLSL_
 #define VKAO_FINISH_GLSL_
 
 layout(binding = VKAO_BINDING_AO_WRITE) uniform writeonly image2D ao_out;
+#ifndef VKAO_NO_BENT_NORMALS
 layout(binding = VKAO_BINDING_BENT_WRITE) uniform writeonly image2D bent_out;
+#endif
 
 vec2 encode_octahedral(vec3 n)
 {
+    /* The zero vector has no code: it becomes that of +z. */
     vec2 e = n.xy / max(abs(n.x) + abs(n.y) + abs(n.z), 1.0e-30);
     vec2 side = vec2(e.x >= 0.0 ? 1.0 : -1.0, e.y >= 0.0 ? 1.0 : -1.0);
     return n.z >= 0.0 ? e : (1.0 - abs(e.yx)) * side;
@@ -27,23 +30,26 @@ vec4 encode_normal(vec3 n, uint encoding)
 float final_ao(float visibility, bool background)
 {
     float ao = clamp(visibility, 0.0, 1.0);
-    if (!flag(VKAO_FLAG_PHYSICAL))
+    if (TONED)
         ao = pow(clamp(1.0 - params.intensity * (1.0 - visibility), 0.0, 1.0), params.power);
     return background ? 1.0 : ao;
 }
 
-/* result.w: visibility; result.xyz: mean visible direction in view space, of any length; that of background is zero, as
- * its normal is, which octahedral codes know as (0, 0, 1). */
+/* result.w: visibility; result.xyz: mean visible direction in view space, of any length; that of
+ * background is zero, as its normal is. */
 void finish(ivec2 texel, vec4 result, bool background)
 {
     imageStore(ao_out, texel, vec4(final_ao(result.w, background)));
+#ifndef VKAO_NO_BENT_NORMALS
     if (BENT_NORMALS) {
-        vec3 n = params.normal_x.xyz * result.x + params.normal_y.xyz * result.y + params.normal_z.xyz * result.z;
+        vec3 n = params.normal_x.xyz * result.x + params.normal_y.xyz * result.y +
+                 params.normal_z.xyz * result.z;
         float length2 = dot(n, n);
-        vec4 zero = encode_normal(vec3(0.0, 0.0, 0.0), bent_encoding());
-        vec4 code = encode_normal(n * inversesqrt(max(length2, 1.0e-30)), bent_encoding());
+        vec4 zero = encode_normal(vec3(0.0, 0.0, 0.0), BENT_ENCODING);
+        vec4 code = encode_normal(n * inversesqrt(max(length2, 1.0e-30)), BENT_ENCODING);
         imageStore(bent_out, texel, background || length2 == 0.0 ? zero : code);
     }
+#endif
 }
 
 #endif

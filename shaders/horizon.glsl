@@ -1,122 +1,99 @@
 /* SPDX-License-Identifier: MIT
  *
- * What hbao, gtao and vbao share. A slice is the half plane pair through the direction to the eye V and a direction on
- * screen; inside it, points have coordinates x along O, away from the shaded point, and y along V. Both sides are
- * marched outwards, together. The
- * cosine-weighted visibility of the hemisphere is the mean over slices of
+ * What hbao, gtao and vbao share. A slice is the half plane pair through the direction to the eye V
+ * and a direction on screen; inside it, points have coordinates x along O, away from the shaded
+ * point, and y along V. Both sides are marched outwards, together: of a vec2, .x is the side along
+ * O and .y the other. The cosine-weighted visibility of the hemisphere is the mean over slices of
  *     L * integral of cos(theta - n) |sin theta| over the visible theta,
- * theta being the angle to V, n that of the normal projected into the slice, L the projection's length
- * (Jimenez et al., 'Practical Real-Time Strategies for Accurate Indirect Occlusion', 2016). */
+ * theta being the angle to V, n that of the normal projected into the slice, L the projection's
+ * length (Jimenez et al., 'Practical Real-Time Strategies for Accurate Indirect Occlusion',
+ * 2016). */
 #ifndef VKAO_HORIZON_GLSL_
 #define VKAO_HORIZON_GLSL_
 
 const float PI = 3.14159265358979324;
+const vec2 SIDES = vec2(1.0, -1.0);
 
 struct Slice {
-    Real2 step;          /* direction on screen, in texels that one scene unit has at unit distance */
-    real per_texel;      /* 1 / its length */
-    real scale;          /* scene units -> the same at the shaded point */
-    Real2 to_x, to_y;    /* texels off the shaded point -> x and y in radii, per unit of view z in perspective */
-    real center_z;       /* view z of the shaded point */
-    real eye, origin;    /* y is origin - eye * view z, and what to_y adds */
-    Real3 outward;       /* O: unit, in the slice, at right angles to V */
-    real normal_length;  /* L */
-    real cos_n, sin_n;   /* of the projected normal's angle from V, towards O */
+    /* direction on screen, in texels that one scene unit has at unit distance */
+    vec2 step;
+    float per_texel;     /* 1 / its length */
+    float scale;         /* scene units -> the same at the shaded point */
+    /* texels off the shaded point -> x and y in radii, per unit of view z in perspective */
+    vec2 to_x, to_y;
+    float eye, origin;   /* y is origin - eye * view z, and what to_y adds */
+    vec3 outward;        /* O: unit, in the slice, at right angles to V */
+    float normal_length; /* L */
+    float cos_n, sin_n;  /* of the projected normal's angle from V, towards O */
 };
 
-/* Unit vector to the eye. It does not depend on view z: all that is made of it is ready before that is loaded. */
-Real3 eye_direction(ivec2 texel)
-{
-    if (orthographic())
-        return Real3(real(0.0), real(0.0), real(-1.0));
-    Real3 away = view_positions(texel, real(1.0));
-    return times(away, -inversesqrt(dot3(away, away)));
-}
-
-/* turn in [0,1) is half the circle. */
-Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
+/* turn in [0,1) is half the circle. to_eye is V. */
+Slice make_slice(float turn, vec3 position, vec3 normal, vec3 to_eye)
 {
     Slice s;
-    Real2 d = half_turn(turn);
-    s.step = Real2(d.x * params.inverse_unproject.x, d.y * params.inverse_unproject.y);
-    s.per_texel = inversesqrt(s.step.x * s.step.x + s.step.y * s.step.y);
-    s.center_z = position.z;
-    s.scale = orthographic() ? real(1.0) : 1.0 / position.z;
-    real along = d.x * to_eye.x + d.y * to_eye.y;
-    /* As long as what is left of d without its share along V; 1 - along^2 is nothing at the edge of a field of view of
-     * nearly 180 degrees. */
-    Real3 across = Real3(d.y * to_eye.z, -d.x * to_eye.z, d.x * to_eye.y - d.y * to_eye.x);
-    real inverse_o = inversesqrt(dot3(across, across));
-    s.outward = times(Real3(d.x - along * to_eye.x, d.y - along * to_eye.y, -along * to_eye.z), inverse_o);
-    across = times(across, inverse_o);
-    real off = dot3(normal, across), facing = dot3(normal, to_eye), out_n = dot3(normal, s.outward);
-    /* A sample's texel lies off the slice by rounding. It is moved into it along the tangent plane, which keeps its
-     * height over that plane, so that a tilted wall still lies flat in the slice. */
-    real moved = off / max(facing, real(VKAO_STEEPEST));
+    vec3 d = vec3(half_turn_x(turn), half_turn_y(turn), 0.0);
+    s.step = d.xy * params.inverse_unproject;
+    s.per_texel = inversesqrt(dot(s.step, s.step));
+    s.scale = ORTHOGRAPHIC ? 1.0 : 1.0 / position.z;
+    /* As long as what is left of d without its share along V; 1 - (d.V)^2 is nothing at the edge of
+     * a field of view of nearly 180 degrees. */
+    vec3 across = cross(d, to_eye);
+    float inverse_length = inversesqrt(dot(across, across));
+    s.outward = (d - dot(d, to_eye) * to_eye) * inverse_length;
+    across *= inverse_length;
+    float off = dot(normal, across), facing = dot(normal, to_eye);
+    /* A sample's texel lies off the slice by rounding. It is moved into it along the tangent plane,
+     * which keeps its height over that plane, so that a tilted wall still lies flat in the
+     * slice. */
+    float moved = off / max(facing, VKAO_STEEPEST);
     vec2 radii = params.unproject.xy * params.inverse_radius;
-    s.to_x = Real2(radii.x * s.outward.x, radii.y * s.outward.y);
-    s.to_y = Real2(radii.x * (to_eye.x + across.x * moved), radii.y * (to_eye.y + across.y * moved));
-    s.eye = params.inverse_radius * (orthographic() ? real(1.0) : -1.0 / to_eye.z);
-    /* It is taken to lie as deep as its depth may be wrong: a wall must not occlude itself by the steps of a format. */
-    s.origin = s.eye * position.z - (2.0 * params.inverse_radius) * depth_error(position.z);
-    real length2 = max(1.0 - off * off, real(1.0e-12)), inverse = inversesqrt(length2);
-    s.normal_length = length2 * inverse;
-    s.cos_n = clamp(facing * inverse, real(0.0), real(1.0));
-    s.sin_n = out_n * inverse;
+    s.to_x = radii * s.outward.xy;
+    s.to_y = radii * (to_eye.xy + across.xy * moved);
+    s.eye = params.inverse_radius * (ORTHOGRAPHIC ? 1.0 : -1.0 / to_eye.z);
+    /* It is taken to lie as deep as its depth may be wrong: a wall must not occlude itself by the
+     * steps of a format. */
+    s.origin = s.eye * position.z - 2.0 * params.inverse_radius * depth_error(position.z);
+    s.normal_length = sqrt(max(1.0 - off * off, 1.0e-12));
+    s.cos_n = clamp(facing / s.normal_length, 0.0, 1.0);
+    s.sin_n = dot(normal, s.outward) / s.normal_length;
     return s;
 }
 
-/* Texels off the shaded point, on the first side. */
-struct Offset {
-    Rounded x, y;
-};
-
-/* Distance of step t along the slice, a polynomial of t. Steps crowd near the point. */
+/* Distance of step t along the slice, a polynomial of t: q (LINEAR + (1 - LINEAR) q) of the reach,
+ * with q = (t + jitter) / steps. Steps crowd near the point. */
 struct Steps {
-    real k0, k1, k2;
+    float k0, k1, k2;
 };
 
-/* q (LINEAR + (1 - LINEAR) q) of the reach, q = (t + jitter) / steps */
-Steps make_steps(Slice s, real jitter, float reach)
+Steps make_steps(Slice s, float jitter, float reach)
 {
-    float n = 1.0 / float(step_count()), square = reach * (1.0 - VKAO_STEP_LINEAR) * n * n;
-    float line = reach * VKAO_STEP_LINEAR * n;
-    return Steps(s.scale * (jitter * (line + square * jitter)), s.scale * (line + 2.0 * square * jitter),
-                 s.scale * square);
+    /* Farther than any image is wide, but few enough texels for an integer. */
+    float most = min(s.scale * reach, 1.0e9 * s.per_texel);
+    float n = 1.0 / float(step_count());
+    float line = most * VKAO_STEP_LINEAR * n, square = most * (1.0 - VKAO_STEP_LINEAR) * n * n;
+    return Steps(jitter * (line + square * jitter), line + 2.0 * square * jitter, square);
 }
 
-/* At least 1 + t/2 texels. */
-Offset step_offset(Slice s, Steps steps, uint t)
+/* Whole texels off the shaded point, on the first side; at least 1 + t/2. */
+vec2 step_offset(Slice s, Steps steps, uint t)
 {
-    real far = steps.k0 + float(t) * (steps.k1 + float(t) * steps.k2);
-    real least = s.per_texel * (1.0 + 0.5 * float(t));
-    far = choose(least, far, above(far, least));
-    return Offset(rounded(s.step.x * far), rounded(s.step.y * far));
+    float far = steps.k0 + float(t) * (steps.k1 + float(t) * steps.k2);
+    return roundEven(s.step * max(far, s.per_texel * (1.0 + 0.5 * float(t))));
 }
 
 /* View z of the texels at +offset and -offset. */
-reals load_sides(ivec2 texel, Offset offset)
+vec2 load_sides(ivec2 texel, vec2 offset)
 {
-    ivec2 first = border_texel(texel);
-    whole x = first.x + whole(BESIDE), y = whole(first.y);
-    ints at_x = ints((x - ROUND_BITS) + offset.x.bits, (x + ROUND_BITS) - offset.x.bits);
-    ints at_y = ints((y - ROUND_BITS) + offset.y.bits, (y + ROUND_BITS) - offset.y.bits);
-    return border_view_zs(at_x, at_y);
+    ivec2 at = ivec2(offset);
+    return vec2(load_view_z(texel + at), load_view_z(texel - at));
 }
 
 /* Their coordinates in the slice, in radii. */
-void slice_points(Slice s, Offset offset, reals z, out reals x, out reals y)
+void slice_points(Slice s, vec2 offset, vec2 z, out vec2 x, out vec2 y)
 {
-    reals dx = both(s.to_x.x * offset.x.number + s.to_x.y * offset.y.number);
-    reals dy = SIDES * both(s.to_y.x * offset.x.number + s.to_y.y * offset.y.number);
-    x = orthographic() ? dx : z * dx;
-    y = orthographic() ? both(s.origin) + dy - z * params.inverse_radius : both(s.origin) + z * (dy - both(s.eye));
-}
-
-/* How an occluder at squared distance d2, in radii, counts: the definition of both ray-traced truths. */
-reals falloff_weight(reals d2)
-{
-    return flag(VKAO_FLAG_THRESHOLD) ? reals(lessThanEqual(d2, reals(1.0))) : max(reals(0.0), 1.0 - d2);
+    vec2 dx = vec2(dot(s.to_x, offset)), dy = SIDES * dot(s.to_y, offset);
+    x = ORTHOGRAPHIC ? dx : z * dx;
+    y = s.origin + (ORTHOGRAPHIC ? dy - z * params.inverse_radius : z * (dy - s.eye));
 }
 
 #endif

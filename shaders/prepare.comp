@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Depth of any encoding -> positive view z, once, so that no later tap divides. Background becomes 0. At half
- * resolution every second texel of every second row is taken as it is: an average of depths is no depth. */
+ * Depth of any encoding -> positive view z, once, so that no later tap divides. Background becomes
+ * 0. At half resolution every second texel of every second row is taken as it is: an average of
+ * depths is no depth. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -9,8 +10,9 @@
 #include "params.h"
 
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
-layout(push_constant) uniform Block { vkao_prepare_block params; };
-layout(binding = VKAO_BINDING_VIEW_Z, VKAO_VIEW_Z_FORMAT) uniform writeonly image2D view_z_image;
+layout(push_constant) uniform Block { vkao_dispatch here; };
+#include "settings.glsl"
+layout(binding = VKAO_BINDING_VIEW_Z_WRITE) uniform writeonly image2D view_z_image;
 #include "depth.glsl"
 
 void main()
@@ -21,6 +23,6 @@ void main()
     if (any(greaterThanEqual(texel, high + VKAO_VIEW_Z_BORDER)))
         return;
     bool inside = all(greaterThanEqual(texel, low)) && all(lessThan(texel, high));
-    float z = inside ? view_z_from_depth(texel << grid_shift()) : 0.0;
+    float z = inside ? view_z_from_depth(texel << GRID_SHIFT) : 0.0;
     imageStore(view_z_image, texel + VKAO_VIEW_Z_BORDER, vec4(z));
 }

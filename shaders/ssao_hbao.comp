@@ -1,55 +1,53 @@
 /* SPDX-License-Identifier: MIT
  *
- * Horizon-based ambient occlusion (Bavoil, Sainz and Dimitrov 2008), true-horizon form: marching outwards, each sample
- * that rises over the horizon so far adds the rise of its sine over the tangent plane, weighted by the falloff at its
- * own distance; visibility is 1 - the mean over directions. Measured on nine G-buffers with ray-traced truth at 1x8:
- * RMSE .087 (geometric mean), against .103 with squared sines, which are cosine-weighted in a slice of their own, and
- * .118 for the point form, max(0, sine - bias) * falloff averaged over samples. */
+ * Horizon-based ambient occlusion (Bavoil, Sainz and Dimitrov 2008), true-horizon form: marching
+ * outwards, each sample that rises over the horizon so far adds the rise of its sine over the
+ * tangent plane, weighted by the falloff at its own distance; visibility is 1 - the mean over
+ * directions. Measured on nine G-buffers with ray-traced truth at 1x8: RMSE .087 (geometric mean),
+ * against .103 with squared sines, which are cosine-weighted in a slice of their own, and .118 for
+ * the point form, max(0, sine - bias) * falloff averaged over samples. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_shader_16bit_storage : enable
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
-#define VKAO_SIDE_BY_SIDE
 #include "ssao.glsl"
 #include "horizon.glsl"
 
 /* Of both sides together. */
-real occlusion(Slice s, ivec2 texel, real jitter)
+float occlusion(Slice s, ivec2 texel, float jitter)
 {
-    Steps steps = make_steps(s, jitter, params.normal_x.w);
-    reals sine = reals(params.bias_cosine), occluded = reals(0.0);
-    reals along = SIDES * both(s.normal_length * s.sin_n), facing = both(s.normal_length * s.cos_n);
+    Steps steps = make_steps(s, jitter, params.radius);
+    vec2 sine = vec2(params.bias_cosine), occluded = vec2(0.0);
+    vec2 along = SIDES * (s.normal_length * s.sin_n);
     uint t = 0u;
     [[unroll]] for (;;) {
-        Offset offset = step_offset(s, steps, t);
-        reals z = load_sides(texel, offset), x, y;
+        vec2 offset = step_offset(s, steps, t), z = load_sides(texel, offset), x, y;
         slice_points(s, offset, z, x, y);
-        reals d2 = x * x + y * y;
-        reals weight = mix(reals(0.0), falloff_weight(d2), greaterThan(z, reals(0.0)));
-        reals elevation = (along * x + facing * y) * inversesqrt(d2);
-        reals higher = mix(sine, max(sine, elevation), greaterThan(weight, reals(0.0)));
+        vec2 d2 = x * x + y * y;
+        vec2 weight = mix(vec2(0.0), falloff_weight(d2), greaterThan(z, vec2(0.0)));
+        vec2 elevation = (along * x + s.normal_length * s.cos_n * y) * inversesqrt(d2);
+        vec2 higher = mix(sine, max(sine, elevation), greaterThan(weight, vec2(0.0)));
         occluded += weight * (higher - sine);
         sine = higher;
         if (++t >= step_count())
             break;
     }
-    return first_side(occluded) + other_side(occluded);
+    return occluded.x + occluded.y;
 }
 
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
+Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
 {
-    Real3 to_eye = eye_direction(texel);
+    vec3 to_eye = direction_to_eye(position);
     Noise noise = texel_noise(texel, slice_count());
-    real occluded = real(0.0);
-    float share = 1.0 / float(slice_count());
+    float occluded = 0.0, share = 1.0 / float(slice_count());
     uint k = 0u;
     [[unroll]] for (;;) {
-        occluded += occlusion(make_slice((float(k) + noise.turn) * share, position, normal, to_eye), texel, noise.jitter);
+        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, to_eye);
+        occluded += occlusion(s, texel, noise.jitter);
         if (++k >= slice_count())
             break;
     }
-    return Visibility(Real3(real(0.0), real(0.0), real(0.0)), 1.0 - 0.5 * share * occluded);
+    return Visibility(vec3(0.0), 1.0 - 0.5 * share * occluded);
 }

@@ -1,107 +1,52 @@
 /* SPDX-License-Identifier: MIT
  *
- * Normal-oriented hemisphere (Filion and McNaughton, 'StarCraft II: Effects and Techniques', 2008), with a
- * cosine-weighted kernel in pairs of points: the directions of pair k of n lie over the point k of a Fibonacci disk and
- * over the one across it,
+ * Normal-oriented hemisphere (Filion and McNaughton, 'StarCraft II: Effects and Techniques', 2008),
+ * with a cosine-weighted kernel in pairs of points: the directions of pair k of n lie over the
+ * point k of a Fibonacci disk and over the one across it,
  *     r = sqrt((k + 1/2) / n), angle = k * golden angle + noise, height sqrt(1 - r^2),
- * so that the mean over k needs no weights. Of the two lengths one is of the shorter half; each half is stratified over
- * k by the golden ratio, and within its stratum a length moves with a second noise. Their distribution carries the
- * falloff, see point_length. A point is blocked if the scene stands in front of it; each blocked point counts by
- * range_weight. */
+ * so that the mean over k needs no weights. Of the two lengths one is of the shorter half; each
+ * half is stratified over k by the golden ratio, and within its stratum a length moves with a
+ * second noise. Their distribution carries the falloff, see point_length. A point is blocked if the
+ * scene stands in front of it; each blocked point counts by range_weight. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_shader_16bit_storage : enable
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
-#define VKAO_SIDE_BY_SIDE
 #include "ssao.glsl"
+#include "kernel.glsl"
 
-/* What a step in view space adds to (x, y, 1) * z, in perspective, or (x, y, z), x and y being texels off the shaded
- * one, which is seen at sight * z. A point is projected by one division, without going through view space. */
-Real3 to_texels(Real3 direction, Real3 sight)
+/* What the point at offset counts. */
+float blocked(vec3 position, vec3 normal, vec3 offset)
 {
-    real x = direction.x, y = direction.y;
-    if (!orthographic()) {
-        x -= sight.x * direction.z;
-        y -= sight.y * direction.z;
-    }
-    return Real3(x * params.inverse_unproject.x, y * params.inverse_unproject.y, direction.z);
+    vec3 point = position + offset;
+    if (point.z <= 0.0)
+        return 0.0;
+    ivec2 at = nearest_texel(point);
+    float scene_z = load_view_z(at);
+    vec3 occluder = view_position(vec2(at), scene_z);
+    float least = dot(normal, offset) + params.bias + depth_error(position.z);
+    bool is_blocked = scene_z > 0.0 && stands_in_front(occluder, position, normal, least);
+    return is_blocked ? range_weight(vec2(scene_z - position.z), params.radius).x : 0.0;
 }
 
-Real3 weighted(Real3 a, real wa, Real3 b, real wb)
+Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
 {
-    return plus(times(a, wa), times(b, wb));
-}
-
-/* One coordinate of the directions of a pair: as high, and across the normal from each other. */
-reals mirrored(float height, real up, vec2 at, real across, real along)
-{
-    return both(height * up) + SIDES * both(at.x * across + at.y * along);
-}
-
-/* View z of the texels nearest to points that are some texels off. */
-reals load_nearest(ivec2 texel, RoundedSides x, RoundedSides y)
-{
-    ivec2 origin = border_texel(texel - ROUND_BITS);
-    whole origin_x = origin.x + whole(BESIDE);
-    return border_view_zs(x.bits + ints(origin_x, origin_x), y.bits + origin.y);
-}
-
-/* Of pair k, in radii. Straight between the ends of its stratum: that saves a root for each. */
-reals pair_lengths(uint k, uint pairs, real jitter)
-{
-    float n = float(pairs), low = golden_sequence(k) * (n - 1.0) / n, high = low + 1.0 / n;
-    vec2 near = 0.5 * vec2(low, high), far = near + 0.5;
-    vec2 from = vec2(point_length(near.x), point_length(far.x)), to = vec2(point_length(near.y), point_length(far.y));
-    return reals(from.x + (to.x - from.x) * jitter, from.y + (to.y - from.y) * jitter);
-}
-
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
-{
-    float radius = params.normal_x.w;
-    Real3 sight = view_positions(texel, real(1.0));
-    Real3 t, b;
-    tangents(normal, t, b);
-    /* The kernel is turned with its frame, which is as long as the radius: the directions in it are constants then. */
     Noise noise = texel_noise(texel, 1u);
-    Real2 turn = full_turn(noise.turn);
-    turn = Real2(turn.x * radius, turn.y * radius);
-    Real3 across = to_texels(weighted(t, turn.x, b, turn.y), sight);
-    Real3 along = to_texels(weighted(b, turn.x, t, -turn.y), sight);
-    Real3 up = to_texels(times(normal, real(radius)), sight);
-    /* stands_in_front, in texels and radii: the height of an occluder is dot(normal, occluder) - dot(normal, position),
-     * and in perspective the latter is position.z times that of where the texel is seen. */
-    Real3 n = times(normal, real(params.inverse_radius));
-    real slope_x = n.x * params.unproject.x, slope_y = n.y * params.unproject.y;
-    real facing = orthographic() ? n.z : n.x * sight.x + n.y * sight.y + n.z;
-    real least = (params.normal_y.w + depth_error(position.z)) * params.inverse_radius + facing * position.z;
+    vec3 t, b;
+    tangents(normal, t, b);
     uint pairs = (sample_count() + 1u) / 2u, k = 0u;
-    reals blocked = reals(0.0);
+    float sum = 0.0;
     [[unroll]] for (;;) {
-        float r2 = (float(k) + 0.5) / float(pairs), r = sqrt(r2), height = sqrt(1.0 - r2);
-        float angle = float(k) * GOLDEN_ANGLE;
-        vec2 at = r * vec2(cos(angle), sin(angle));
-        reals len = pair_lengths(k, pairs, noise.jitter);
-        reals x = len * mirrored(height, up.x, at, across.x, along.x);
-        reals y = len * mirrored(height, up.y, at, across.y, along.y);
-        reals z = both(position.z) + len * mirrored(height, up.z, at, across.z, along.z);
-        if (!orthographic()) {
-            reals inverse = 1.0 / z;
-            x *= inverse;
-            y *= inverse;
-        }
-        RoundedSides at_x = rounded(x), at_y = rounded(y);
-        reals scene_z = load_nearest(texel, at_x, at_y);
-        reals over = both(slope_x) * at_x.number + both(slope_y) * at_y.number;
-        over = orthographic() ? over + both(facing) * scene_z : (over + both(facing)) * scene_z;
-        reals weight = range_weight(scene_z - both(position.z), radius);
-        weight = mix(reals(0.0), weight, greaterThan(over, height * len + both(least)));
-        blocked += mix(reals(0.0), weight, greaterThan(lesser(scene_z, z), reals(0.0)));
+        float r2 = (float(k) + 0.5) / float(pairs),
+              angle = float(k) * GOLDEN_ANGLE + TWO_PI * noise.turn;
+        vec3 across = sqrt(r2) * (cos(angle) * t + sin(angle) * b), up = sqrt(1.0 - r2) * normal;
+        vec2 lengths = params.radius * pair_lengths(k, pairs, noise.jitter);
+        sum += blocked(position, normal, lengths.x * (up + across)) +
+               blocked(position, normal, lengths.y * (up - across));
         if (++k >= pairs)
             break;
     }
-    real sum = first_side(blocked) + other_side(blocked);
-    return Visibility(Real3(real(0.0), real(0.0), real(0.0)), 1.0 - sum / float(2u * pairs));
+    return Visibility(vec3(0.0), 1.0 - sum / float(2u * pairs));
 }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * The ray cast with a threshold distance, inside the depth image: cosine-distributed rays from the shaded point, marched
- * in equal steps to the radius, hit where the ray is behind the surface by less than the surface is thick. Unbiased for
- * its model of the scene, and slow: what the other methods are measured against. Rays are stratified by the golden ratio
- * and the noise; noise_index gives another set. */
+ * The ray cast with a threshold distance, inside the depth image: cosine-distributed rays from the
+ * shaded point, marched in equal steps to the radius, hit where the ray is behind the surface by
+ * less than the surface is thick. Unbiased for its model of the scene, and slow: what the other
+ * methods are measured against. Rays are stratified by the golden ratio and the noise; noise_index
+ * gives another set. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -11,13 +12,12 @@
 #define VKAO_GLSL
 #include "params.h"
 #include "ssao.glsl"
-#include "horizon.glsl"
 
 /* Weight of the first hit, 0 if there is none. */
 float first_hit(vec3 position, vec3 normal, vec3 direction, float jitter)
 {
-    float radius = params.normal_x.w;
-    float bias = params.normal_y.w + depth_error(position.z);
+    float radius = params.radius;
+    float bias = params.bias + depth_error(position.z);
     vec3 to_eye = direction_to_eye(position);
     uint t = 0u;
     for (;;) {
@@ -25,42 +25,41 @@ float first_hit(vec3 position, vec3 normal, vec3 direction, float jitter)
         vec3 point = position + d * direction;
         if (point.z <= 0.0)
             return 0.0;
-        ivec2 at = ivec2(floor(project_to_texel(point) + 0.5));
+        ivec2 at = nearest_texel(point);
         float z = load_view_z(at);
         vec3 surface = view_position(vec2(at), z);
         vec3 v = surface - position;
         float lateral = length(v - dot(v, to_eye) * to_eye);
         float behind = dot(to_eye, surface - point);
-        float depth = params.thickness_base * radius + params.thickness_slope * min(lateral, radius);
+        float depth =
+            params.thickness_base * radius + params.thickness_slope * min(lateral, radius);
         if (z > 0.0 && dot(normal, surface - point) > bias && behind > 0.0 && behind < depth) {
             d *= params.inverse_radius;
-            return falloff_weight(reals(d * d)).x;
+            return falloff_weight(vec2(d * d)).x;
         }
         if (++t >= step_count())
             return 0.0;
     }
 }
 
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
+Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
 {
     Noise noise = texel_noise(texel, 1u);
     float turn = TWO_PI * noise.turn, shift = noise.jitter;
-    Real3 t, b;
+    vec3 t, b, bent = vec3(0.0);
     tangents(normal, t, b);
-    vec3 p = lane3(position, 0), n = lane3(normal, 0);
-    vec3 bent = vec3(0.0);
     float lost = 0.0;
     uint k = 0u;
     for (;;) {
         float r2 = (float(k) + shift) / float(sample_count());
         float angle = float(k) * GOLDEN_ANGLE + turn;
-        vec3 across = cos(angle) * lane3(t, 0) + sin(angle) * lane3(b, 0);
-        vec3 direction = sqrt(r2) * across + sqrt(1.0 - r2) * n;
-        float hit = first_hit(p, n, direction, fract(golden_sequence(k) + shift));
+        vec3 across = cos(angle) * t + sin(angle) * b;
+        vec3 direction = sqrt(r2) * across + sqrt(1.0 - r2) * normal;
+        float hit = first_hit(position, normal, direction, fract(golden_sequence(k) + shift));
         lost += hit;
         bent += (1.0 - hit) * direction;
         if (++k >= sample_count())
             break;
     }
-    return Visibility(Real3(bent.x, bent.y, bent.z), 1.0 - lost / float(sample_count()));
+    return Visibility(bent, 1.0 - lost / float(sample_count()));
 }

@@ -1,12 +1,15 @@
 /* SPDX-License-Identifier: MIT
  *
- * What blur and upsampling in buffers share: depths continued by their slope, and normals. */
+ * How alike two texels of a surface are, for blur and upsampling: depths continued by their slope,
+ * and normals. */
 #ifndef VKAO_SURFACE_GLSL_
 #define VKAO_SURFACE_GLSL_
 
-/* What stands for the z of background: no slope leads there, and it is so far off any surface that the square of the
- * distance times the least edge_stop is no float: background weighs exactly nothing, in the blur and in upsampling.
- * What it holds is often not even written. */
+#include "view.glsl"
+
+/* What stands for the z of background: no slope leads there, and it is so far off any surface that
+ * the square of the distance times the least edge_stop is no float: background weighs exactly
+ * nothing, in the blur and in upsampling. What it holds is often not even written. */
 const float BACKGROUND_Z = 1.0e38;
 
 float surface_z(float z)
@@ -22,33 +25,41 @@ float local_slope(float before, float z, float after)
     return abs(slope) < 0.1 * BACKGROUND_Z ? slope : 0.0;
 }
 
-/* How far a tap k texels away lies off the surface that goes on from the centre by its slope. At half resolution, where
- * a blur spans twice as much and more lies between two texels, the centre must also lie on the tap's surface: what only
- * meets at an edge is told apart without normals. */
+/* How far a tap k texels away lies off the surface that goes on from the centre by its slope. At
+ * half resolution, where a blur spans twice as much and more lies between two texels, the centre
+ * must also lie on the tap's surface: what only meets at an edge is told apart without normals. */
 float off_surface(float z, float slope, float tap_z, float tap_slope, float k)
 {
     float off = abs(tap_z - z - slope * k);
-    return flag(VKAO_FLAG_HALF_RESOLUTION) ? max(off, abs(tap_z - z - tap_slope * k)) : off;
+    return GRID_SHIFT > 0u ? max(off, abs(tap_z - z - tap_slope * k)) : off;
 }
 
-/* 1 / the distance off the continued slope at which a tap counts nothing; never 0, so that background never counts. */
+/* 1 / the distance off the continued slope at which a tap counts nothing; never 0, so that
+ * background never counts. */
 float edge_stop(float z, float sharpness, float reference_z)
 {
     return max(sharpness / (reference_z > 0.0 ? reference_z : z), 1.0e-18);
 }
 
-/* What tap k counts on a flat surface. Falling to 0 over 4 texels, or over 2 of a small blur, it makes the blur the mean
- * of tiles as long as that (see tile_noise), whatever the radius: 1 2 1, 1 2 2 2 1, 1 2 3 4 3 2 1, 1 2 3 4 4 4 3 2 1. */
+/* What tap k counts on a flat surface. Falling to 0 over 4 texels, or over 2 of a small blur, it
+ * makes the blur the mean of tiles as long as that (see tile_noise), whatever the radius: 1 2 1, 1
+ * 2 2 2 1, 1 2 3 4 3 2 1, 1 2 3 4 4 4 3 2 1. */
 float blur_weight(int k, int radius)
 {
     return min(1.0, float(radius + 1 - abs(k)) * (radius < 3 ? 0.5 : 0.25));
 }
 
-/* w is 1 where there is no normal: then the others decide. */
+/* A stored normal of the image; w is 1 where there is none to trust: then depths decide. */
+vec4 stored_normal(ivec2 texel)
+{
+    vec3 n = decode_normal(texel);
+    return vec4(n, n == vec3(0.0) ? 1.0 : 0.0);
+}
+
 float normal_weight(vec4 normal, vec4 other, float power)
 {
     float c = max(max(dot(normal.xyz, other.xyz), 1.0e-6), max(normal.w, other.w));
-    if (flag(VKAO_FLAG_NORMAL_POWER_8)) {
+    if (NORMAL_POWER == 8.0) {
         float c2 = c * c, c4 = c2 * c2;
         return c4 * c4;
     }

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * AO of every second texel of every second row -> all texels: joint bilateral upsampling (Kopf et al. 2007). A texel
- * takes from the one, two or four half-resolution texels that it coincides with or lies between, by the depth and normal
- * weights of the blur. Depth is continued by the slope at the full-resolution texel. Where no neighbour lies on its
- * surface, the least wrong one decides. */
+ * AO of every second texel of every second row -> all texels: joint bilateral upsampling (Kopf et
+ * al. 2007). A texel takes from the one, two or four half-resolution texels that it coincides with
+ * or lies between, by the depth and normal weights of the blur. Depth is continued by the slope at
+ * the full-resolution texel. Where no neighbour lies on its surface, the least wrong one
+ * decides. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -11,30 +12,30 @@
 #include "params.h"
 
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
-layout(push_constant) uniform Block { vkao_upsample_block params; };
-layout(binding = VKAO_BINDING_NOISY_READ) uniform texture2D half_image;
+layout(push_constant) uniform Block { vkao_dispatch here; };
+#include "settings.glsl"
+layout(binding = VKAO_BINDING_SOURCE) uniform texture2D half_image;
 #include "view.glsl"
 #include "depth.glsl"
+#include "surface.glsl"
 #include "finish.glsl"
 
 float full_view_z(ivec2 texel)
 {
-    return in_rect(texel, params.full_valid) ? view_z_from_depth(texel) : 0.0;
+    return in_rect(texel, params.image_valid) ? view_z_from_depth(texel) : 0.0;
 }
 
 float slope_along(ivec2 texel, ivec2 axis, float z)
 {
-    float before = full_view_z(texel - axis), after = full_view_z(texel + axis);
-    float a = before > 0.0 ? z - before : 3.0e38, b = after > 0.0 ? after - z : 3.0e38;
-    float slope = abs(a) < abs(b) ? a : b;
-    return abs(slope) < 3.0e38 ? slope : 0.0;
+    return local_slope(surface_z(full_view_z(texel - axis)), z,
+                       surface_z(full_view_z(texel + axis)));
 }
 
 vec4 upsampled(ivec2 texel, float z)
 {
     vec2 slope = vec2(slope_along(texel, ivec2(1, 0), z), slope_along(texel, ivec2(0, 1), z));
-    float edge = params.normal_x.w / (params.normal_z.w > 0.0 ? params.normal_z.w : z);
-    vec3 normal = flag(VKAO_FLAG_BLUR_NORMALS) ? decode_normal(texel) : vec3(0.0);
+    float edge = edge_stop(z, params.sharpness, params.reference_z);
+    vec4 normal = NORMAL_POWER > 0.0 ? stored_normal(texel) : vec4(0.0);
     vec4 sum = vec4(0.0);
     float weights = 0.0;
     /* Even texels are of half resolution; the others lie in the middle of two or four. */
@@ -47,9 +48,8 @@ vec4 upsampled(ivec2 texel, float z)
                 continue;
             float off = edge * abs(half_z - z - dot(slope, vec2(2 * at - texel)));
             float w = max(0.0, 1.0 - off);
-            vec3 other = normal == vec3(0.0) ? vec3(0.0) : decode_normal(2 * at);
-            if (other != vec3(0.0))
-                w *= pow(max(dot(normal, other), 1.0e-6), params.normal_y.w);
+            if (NORMAL_POWER > 0.0)
+                w *= normal_weight(normal, stored_normal(2 * at), NORMAL_POWER);
             /* Far below any honest weight: decides only if there is none. */
             w += 1.0e-6 / (1.0 + off * off);
             vec4 v = texelFetch(half_image, at, 0);
@@ -63,8 +63,8 @@ vec4 upsampled(ivec2 texel, float z)
 
 void main()
 {
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(params.rect.x);
-    if (any(greaterThanEqual(texel, unpack_texel(params.rect.y))))
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(here.rect.x);
+    if (any(greaterThanEqual(texel, unpack_texel(here.rect.y))))
         return;
     float z = view_z_from_depth(texel);
     finish(texel, z > 0.0 ? upsampled(texel, z) : vec4(0.0), z == 0.0);

@@ -1,17 +1,13 @@
 /* SPDX-License-Identifier: MIT
  *
- * Texels, view space and normals. The includer defines params, its push constant block, before including this. */
+ * Texels, view space and normals. */
 #ifndef VKAO_VIEW_GLSL_
 #define VKAO_VIEW_GLSL_
 
-#include "flags.glsl"
+#include "settings.glsl"
 
-#ifdef VKAO_BUFFERS
-#include "buffers.glsl"
-layout(binding = VKAO_BINDING_Z, r32f) uniform readonly imageBuffer view_z_texels;
-#else
-layout(binding = VKAO_BINDING_VIEW_Z, VKAO_VIEW_Z_FORMAT) uniform readonly image2D view_z_image;
-#endif
+#include "view_z.glsl"
+
 layout(binding = VKAO_BINDING_NORMALS) uniform texture2D normals_image;
 
 ivec2 unpack_texel(uint packed_texel)
@@ -21,17 +17,8 @@ ivec2 unpack_texel(uint packed_texel)
 
 bool in_rect(ivec2 texel, uvec2 rect)
 {
-    return all(greaterThanEqual(texel, unpack_texel(rect.x))) && all(lessThan(texel, unpack_texel(rect.y)));
-}
-
-/* A texel of the valid ones or of the border around them. */
-float fetch_view_z(ivec2 texel)
-{
-#ifdef VKAO_BUFFERS
-    return imageLoad(view_z_texels, z_row(texel.y) + texel.x).x;
-#else
-    return imageLoad(view_z_image, texel + VKAO_VIEW_Z_BORDER).x;
-#endif
+    return all(greaterThanEqual(texel, unpack_texel(rect.x))) &&
+           all(lessThan(texel, unpack_texel(rect.y)));
 }
 
 /* From where border_view_z counts: the first texel of the border. */
@@ -40,17 +27,13 @@ ivec2 border_texel(ivec2 texel)
     return texel - unpack_texel(params.valid.x) + 1;
 }
 
-/* View z, 0 = background or outside the valid texels: prepare writes a border of zeros around them, to which what is
- * outside is moved. As an unsigned number, what is too small is too large. */
+/* View z, 0 = background or outside the valid texels: prepare writes a border of zeros around them,
+ * to which what is outside is moved. As an unsigned number, what is too small is too large. */
 float border_view_z(ivec2 at)
 {
     ivec2 low = unpack_texel(params.valid.x) - 1, high = unpack_texel(params.valid.y);
     uvec2 inside = min(uvec2(at), uvec2(high - low));
-#ifdef VKAO_BUFFERS
-    return imageLoad(view_z_texels, int(inside.y * params.stride + inside.x) + (z_row(low.y) + low.x)).x;
-#else
-    return imageLoad(view_z_image, ivec2(inside) + low + VKAO_VIEW_Z_BORDER).x;
-#endif
+    return fetch_view_z_from(low, inside);
 }
 
 float load_view_z(ivec2 texel)
@@ -67,8 +50,8 @@ vec3 decode_octahedral(vec2 e)
     return n;
 }
 
-/* A stored direction in its own space, unit length; zero if there is none to trust: none given, not finite, or
- * shorter than 0.5, which is what averaging over an edge leaves. */
+/* A stored direction in its own space, unit length; zero if there is none to trust: none given, not
+ * finite, or shorter than 0.5, which is what averaging over an edge leaves. */
 vec3 decode_direction(vec3 n, uint encoding)
 {
     if (encoding == VKAO_GLSL_NORMALS_XYZ_UNORM || encoding == VKAO_GLSL_NORMALS_OCT_UNORM)
@@ -82,39 +65,35 @@ vec3 decode_direction(vec3 n, uint encoding)
 /* texel is the image's, also where the grid is coarser. */
 vec3 decode_normal(ivec2 texel)
 {
-    if (normal_encoding() == VKAO_GLSL_NORMALS_FROM_DEPTH)
+    if (NORMAL_ENCODING == VKAO_GLSL_NORMALS_FROM_DEPTH)
         return vec3(0.0);
-    return decode_direction(texelFetch(normals_image, texel, 0).xyz, normal_encoding());
+    return decode_direction(texelFetch(normals_image, texel, 0).xyz, NORMAL_ENCODING);
 }
-
-#ifdef VKAO_UNPROJECT
 
 /* texel may lie between texels; integers are centres. */
 vec3 view_position(vec2 texel, float z)
 {
     vec2 xy = texel * params.unproject.xy + params.unproject.zw;
-    return vec3(orthographic() ? xy : xy * z, z);
+    return vec3(ORTHOGRAPHIC ? xy : xy * z, z);
 }
 
 vec2 project_to_texel(vec3 position)
 {
-    vec2 xy = orthographic() ? position.xy : position.xy / position.z;
+    vec2 xy = ORTHOGRAPHIC ? position.xy : position.xy / position.z;
     return (xy - params.unproject.zw) / params.unproject.xy;
 }
 
 /* Unit vector from the position to the eye. */
 vec3 direction_to_eye(vec3 position)
 {
-    return orthographic() ? vec3(0.0, 0.0, -1.0) : -normalize(position);
+    return ORTHOGRAPHIC ? vec3(0.0, 0.0, -1.0) : -normalize(position);
 }
 
 /* Stored directions to view space. */
 vec3 to_view(vec3 stored)
 {
-    if (flag(VKAO_FLAG_NORMALS_ALIGNED))
-        return vec3(params.normal_x.x, params.normal_y.y, params.normal_z.z) * stored;
-    return vec3(dot(params.normal_x.xyz, stored), dot(params.normal_y.xyz, stored), dot(params.normal_z.xyz, stored));
+    return vec3(dot(params.normal_x.xyz, stored), dot(params.normal_y.xyz, stored),
+                dot(params.normal_z.xyz, stored));
 }
 
-#endif
 #endif

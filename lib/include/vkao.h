@@ -2,31 +2,51 @@
  *
  * vkao.h - screen-space ambient occlusion recorded into the caller's Vulkan command buffer.
  *
- * The library never creates a device, submits, waits, maps memory or calls a Vulkan function it was not
- * handed. vkao_cmd_* functions allocate nothing. There is no global state: contexts are independent.
+ * Three objects. A vkao_context holds what is known of a device. A vkao_effect is compiled for
+ * settings that select code. A vkao_frame holds the images and the scratch memory of an effect.
+ * Recording takes a frame, a view and a vkao_params, which holds all that may change from one
+ * recording to the next.
  *
- * Ambient occlusion is stored as visibility in [0,1]: 1 = open, 0 = fully occluded. Before the blur it is an
- * estimate that may lie on both sides of that, in ao_noisy and in the ao of frames without BLUR; it is right as a
- * mean. Nothing that vkao writes is NaN or infinite, whatever depth, normals and ao_noisy hold; colours are the
- * caller's, see vkao_composite_mode. Lengths are scene units
- * of the projection matrix unless a name says texels. Matrices are column-major, m[column * 4 + row], as in
- * GLSL. Texel (0,0) is the image's first; NDC (-1,-1) is the corner of that texel in a full-image viewport,
- * as when Vulkan rasterises with a positive viewport height.
+ * The library never creates a device, submits, waits, maps memory or calls a Vulkan function it was
+ * not handed. vkao_cmd_* functions allocate nothing. There is no global state: contexts are
+ * independent.
+ *
+ * Ambient occlusion is stored as visibility in [0,1]: 1 = open, 0 = fully occluded. Before the blur
+ * it is an estimate that may lie on both sides of that, in ao_noisy and in the ao of effects
+ * without BLUR; it is right as a mean. Nothing that vkao writes is NaN or infinite, whatever depth,
+ * normals and ao_noisy hold; colours are the caller's, see vkao_composite_mode. Lengths are scene
+ * units of the projection matrix unless a name says texels. Matrices are column-major, m[column * 4
+ * + row], as in GLSL. Texel (0,0) is the image's first; NDC (-1,-1) is the corner of that texel in
+ * a full-image viewport, as when Vulkan rasterises with a positive viewport height. An engine with
+ * a negative viewport height negates row 1 of the matrix: m[1], m[5], m[9], m[13].
  *
  * Synchronization contract, the same for every vkao_cmd_* function:
- *  - Before: images that a stage reads are visible to COMPUTE_SHADER / SHADER_READ in their declared layout;
- *    images that it writes are in VK_IMAGE_LAYOUT_GENERAL and earlier accesses to them have finished.
- *  - After: written images were last touched by COMPUTE_SHADER / SHADER_WRITE, still in GENERAL. The barrier
- *    to your own next use is yours.
- *  - Between vkao calls on one queue the library's own barriers order everything, scratch included, also
- *    across submits. Across queues, a semaphore is yours.
- *  - State left behind: compute pipeline, compute descriptor set 0, push constants. Nothing else changes.
+ *  - Before: images that a stage reads are visible to COMPUTE_SHADER / SHADER_READ in their
+ *    declared layout. Images that it writes are in VK_IMAGE_LAYOUT_GENERAL, and earlier accesses to
+ *    them have finished before COMPUTE_SHADER and TRANSFER. The external dependency of the depth
+ *    pass does it for depth and normals: srcStageMask LATE_FRAGMENT_TESTS |
+ *    COLOR_ATTACHMENT_OUTPUT, srcAccessMask DEPTH_STENCIL_ATTACHMENT_WRITE |
+ *    COLOR_ATTACHMENT_WRITE, dstStageMask COMPUTE_SHADER, dstAccessMask SHADER_READ.
+ *  - After: written images were last touched by COMPUTE_SHADER / SHADER_WRITE, still in GENERAL.
+ *    The barrier to your own next use is yours. A copy that the library made counts as such a
+ *    write.
+ *  - After: images that were read are still being read by COMPUTE_SHADER. Whoever writes them next
+ *    waits: the next frame's depth pass needs COMPUTE_SHADER in srcStageMask of its first external
+ *    dependency, with dstStageMask EARLY_FRAGMENT_TESTS | COLOR_ATTACHMENT_OUTPUT, srcAccessMask 0,
+ *    and for the change of layout dstAccessMask DEPTH_STENCIL_ATTACHMENT_WRITE |
+ *    COLOR_ATTACHMENT_WRITE.
+ *  - Between vkao calls on one queue the library's own barriers order everything, scratch included,
+ *    also across submits. Across queues, a semaphore is yours.
+ *  - State left behind: compute pipeline, compute descriptor set 0, push constants. Nothing else
+ *    changes.
  *  - Record outside a render pass, in any command buffer whose queue family supports compute.
  *
- * Struct rule: set struct_size = sizeof (the *_default() functions do). Bytes beyond the caller's size read
- * as zero, and zero always means the behaviour from before the field existed. A struct larger than the
- * library knows is accepted only if the extra bytes are zero. No struct has implicit padding on 64-bit
- * targets. Enums only grow.
+ * Struct rule: set struct_size = sizeof (the *_default() functions do). A smaller struct of an
+ * earlier 0.2 is accepted: its missing bytes read as zero, and zero always means the behaviour from
+ * before the field existed. A larger struct is accepted only if the bytes that the library does not
+ * know are zero. A size that no version can have is refused and nothing is read beyond it; so is a
+ * context info that is too short for its log, without a word. No struct has implicit padding on
+ * 64-bit targets. Enums only grow.
  *
  * On any error nothing has been created or recorded, and *out is NULL.
  */
@@ -34,7 +54,6 @@
 #define VKAO_H_
 
 #include <stdint.h>
-#include <string.h>
 #include <vulkan/vulkan_core.h>
 
 #if defined(_WIN32) && !defined(VKAO_STATIC)
@@ -59,7 +78,7 @@ extern "C" {
 #endif
 
 #define VKAO_VERSION_MAJOR 0
-#define VKAO_VERSION_MINOR 1
+#define VKAO_VERSION_MINOR 2
 #define VKAO_VERSION_PATCH 0
 #define VKAO_MIN_API_VERSION VK_API_VERSION_1_1 /* no extension needed */
 
@@ -69,15 +88,18 @@ VKAO_API uint32_t vkao_version(void);
 typedef enum vkao_result {
     VKAO_SUCCESS = 0,
     VKAO_ERROR_INVALID_ARGUMENT = -1, /* caller bug; the log names the field and its value */
-    VKAO_ERROR_UNSUPPORTED = -2,      /* device lacks a feature, format or limit; the log says which */
+    /* device lacks a feature, format or limit; the log says which */
+    VKAO_ERROR_UNSUPPORTED = -2,
     VKAO_ERROR_OUT_OF_HOST_MEMORY = -3,
     VKAO_ERROR_OUT_OF_DEVICE_MEMORY = -4,
-    VKAO_ERROR_VULKAN = -5, /* any other VkResult; the log has its value */
+    VKAO_ERROR_VULKAN = -1000, /* any other VkResult: this plus it. So is every value below */
     VKAO_RESULT_MAX_ENUM = 0x7fffffff
 } vkao_result;
 
 /* Static English text, never NULL, for unknown values too. */
 VKAO_API const char *vkao_result_string(vkao_result result);
+/* The VkResult that a Vulkan call failed with. VK_SUCCESS if the error did not come from Vulkan. */
+VKAO_API VkResult vkao_vk_result(vkao_result result);
 
 typedef enum vkao_log_level {
     VKAO_LOG_DEFAULT = 0, /* in vkao_context_info: VKAO_LOG_WARNING */
@@ -87,79 +109,47 @@ typedef enum vkao_log_level {
     VKAO_LOG_LEVEL_MAX_ENUM = 0x7fffffff
 } vkao_log_level;
 
-/* message: UTF-8, no newline, valid during the call. Runs on the thread that called vkao; must not call vkao. */
+/* message: UTF-8, no newline, valid during the call. Runs on the thread that called vkao; must not
+ * call vkao. */
 typedef void (*vkao_log_fn)(void *user_data, vkao_log_level level, const char *message);
 
 typedef enum vkao_ssao_method {
-    /* Points in the full sphere (Mittring 2007). Two forms, see vkao_sphere_form. Needs no normals. */
+    /* Points in the full sphere (Mittring 2007). Two forms, see vkao_sphere_form. Needs no
+     * normals. */
     VKAO_SSAO_SPHERE = 0,
     /* Cosine-distributed points in the normal-oriented hemisphere (Filion and McNaughton 2008). */
     VKAO_SSAO_HEMISPHERE = 1,
     /* Horizons, true-horizon form (Bavoil et al. 2008). */
     VKAO_SSAO_HBAO = 2,
-    /* Cosine-weighted horizons (Jimenez et al. 2016), normalised so that an open wall is exactly 1. */
+    /* Cosine-weighted horizons (Jimenez et al. 2016), normalised so that an open wall is exactly
+     * 1. */
     VKAO_SSAO_GTAO = 3,
-    /* Visibility bitmask (Therrien et al. 2023) with cosine-correct sectors, first hits and thickness: the closest
-     * to ray-traced AO for its time. */
+    /* Visibility bitmask (Therrien et al. 2023) with cosine-correct sectors, first hits and
+     * thickness: the closest to ray-traced AO for its time. */
     VKAO_SSAO_VBAO = 4,
-    /* Cosine-distributed rays marched through the depth image: slow, the yardstick of the others. */
+    /* Cosine-distributed rays marched through the depth image: slow, the yardstick of the
+     * others. */
     VKAO_SSAO_RAYMARCH = 5,
     VKAO_SSAO_METHOD_MAX_ENUM = 0x7fffffff
 } vkao_ssao_method;
 
-/* --- Context: one per VkDevice --- */
+/* --- Context: what is known of a VkDevice --- */
 
-/* Stages that a frame is built for. SSAO and BLUR imply the prepare stage (depth -> view z in scratch).
- * Without BLUR the SSAO stage writes `ao` itself. */
-typedef uint32_t vkao_stage_flags;
-#define VKAO_STAGE_SSAO 0x1u      /* reads depth, normals;             writes ao_noisy */
-#define VKAO_STAGE_BLUR 0x2u      /* reads ao_noisy, depth, normals;   writes ao */
-#define VKAO_STAGE_COMPOSITE 0x4u /* reads ao, color, direct;          writes output */
-#define VKAO_STAGE_ALL 0x7u
-
-typedef struct vkao_view vkao_view;
-typedef struct vkao_ssao_params vkao_ssao_params;
-typedef struct vkao_blur_params vkao_blur_params;
-
-/* In what the stages hand each other their results, where the caller has no image for them. The results are the same
- * but for rounding below 1/1000. */
-typedef enum vkao_scratch_layout {
-    VKAO_SCRATCH_AUTO = 0,    /* BUFFERS on CPUs without half_view_z, else IMAGES */
-    VKAO_SCRATCH_IMAGES = 1,  /* caches of GPUs are made for them */
-    VKAO_SCRATCH_BUFFERS = 2, /* several texels per invocation; far faster on CPUs. Not with half_view_z */
-    VKAO_SCRATCH_LAYOUT_MAX_ENUM = 0x7fffffff
-} vkao_scratch_layout;
-
-/* Settings to compile pipelines for specially, loops unrolled and choices made: worth a factor of two on CPUs, little
- * on GPUs. A recording uses them if all of this is the same: of the view the encodings, perspective or orthographic,
- * which depth is far, and whether normal_to_view only turns axes round; of ssao the method, falloff, sphere_form and
- * counts; of blur the radius, whether normal_power is 0, 8 or another, and whether intensity and power are both 1. All
- * other members are free. Frames with images.ao_noisy fit no variant where scratch is in BUFFERS. A recording that fits
- * no variant uses the general pipelines. */
-typedef struct vkao_variant {
-    uint32_t struct_size;
-    VkBool32 half_resolution; /* as in vkao_frame_info */
-    VkBool32 bent_normals;    /* VK_TRUE: for frames with images.bent_normals */
-    VkFormat staged_ao;       /* images.ao.format of frames with images.ao_image; UNDEFINED = of frames without */
-    const vkao_view *view;
-    const vkao_ssao_params *ssao;
-    const vkao_blur_params *blur; /* NULL = no BLUR */
-} vkao_variant;
-
-/* Has to call job(data, i) once for each i < count, in any order and in any threads, and to return when all are done;
- * count may be 0. */
-typedef void (*vkao_parallel_fn)(void *user_data, uint32_t count, void (*job)(void *data, uint32_t i), void *data);
-
-/* Pipelines and layouts. Immutable once created; owns no device memory.
- * Thread-safety: any number of threads may use one context at once; destroying it is the exception. */
+/* Thread-safety: any number of threads may use one context at once; destroying it is the
+ * exception. */
 typedef struct vkao_context vkao_context;
+
+/* Called while a stage is being recorded, where it begins and where it ends: to write timestamps,
+ * for example. name: "prepare", "ssao", "blur", "upsample" or "composite". Must not call vkao. */
+typedef void (*vkao_mark_fn)(void *user_data, VkCommandBuffer cmd, const char *name,
+                             VkBool32 begins);
 
 typedef struct vkao_context_info {
     uint32_t struct_size;
-    /* Bit (1u << method) per vkao_ssao_method to prepare. 0 = all. Recording another method is an error. */
-    uint32_t method_mask;
+    vkao_log_level log_level; /* most verbose level delivered. Default VKAO_LOG_WARNING */
 
-    /* Handles must outlive the context. The device was created with apiVersion >= VKAO_MIN_API_VERSION. */
+    /* Handles must outlive the context. Instance and device were created for apiVersion >=
+     * VKAO_MIN_API_VERSION. */
     VkInstance instance;
     VkPhysicalDevice physical_device;
     VkDevice device;
@@ -168,144 +158,60 @@ typedef struct vkao_context_info {
     PFN_vkGetInstanceProcAddr get_instance_proc_addr;
     PFN_vkGetDeviceProcAddr get_device_proc_addr;
 
-    /* Features the device was created with; must include vkao_add_required_features(). Required; read during
-     * vkao_context_create only. */
-    const VkPhysicalDeviceFeatures *enabled_features;
-    /* Host allocations of the library and of the driver on its behalf. NULL = malloc and the driver's default.
-     * Copied; its functions and pUserData must stay valid while any object of this context lives. */
+    /* Features that the device was created with, and the chain behind them as vkCreateDevice got
+     * it; must include vkao_add_required_features(). Required; read during vkao_context_create
+     * only. A chain that has VkPhysicalDevice16BitStorageFeatures or
+     * VkPhysicalDeviceVulkan11Features with storageBuffer16BitAccess makes SSAO a twentieth faster
+     * on CPUs. */
+    const VkPhysicalDeviceFeatures2 *enabled_features;
+    /* Host allocations of the library and of the driver on its behalf. NULL = malloc and the
+     * driver's default. Copied; its functions and pUserData must stay valid while any object of
+     * this context lives. */
     const VkAllocationCallbacks *allocator;
-    /* Optional, caller-owned, used during vkao_context_create only. */
-    VkPipelineCache pipeline_cache;
 
     vkao_log_fn log; /* NULL = silent */
     void *log_user_data;
-    vkao_log_level log_level; /* most verbose level delivered. Default VKAO_LOG_WARNING */
-    /* VK_TRUE: name objects and label stages through VK_EXT_debug_utils, if the instance enabled it. */
+    vkao_mark_fn mark; /* NULL = none */
+    void *mark_user_data;
+    /* VK_TRUE: name objects and label stages through VK_EXT_debug_utils, if the instance enabled
+     * it. */
     VkBool32 debug_labels;
-    /* VK_TRUE: keep view z in 16-bit floats, at half the memory and bandwidth; then 65504 scene units are as far as it
-     * sees, and details of less than 1/1000 of their distance get lost. Needs shaderStorageImageExtendedFormats among
-     * enabled_features. Default: 32-bit floats */
-    VkBool32 half_view_z;
-    uint32_t variant_count;
-    const vkao_variant *variants; /* variant_count of them, or NULL; read during vkao_context_create only */
-    /* VK_TRUE: compile nothing but the variants and COMPOSITE, for the shortest start. Recording SSAO or BLUR with
-     * other settings is then an error. */
-    VkBool32 variants_only;
-    vkao_scratch_layout scratch_layout; /* Default AUTO */
-    /* Optional: compiles pipelines side by side during vkao_context_create; log and allocator are then called from its
-     * threads. NULL = one after the other. */
-    vkao_parallel_fn parallel;
-    void *parallel_user_data;
-    vkao_stage_flags stage_mask; /* stages that frames may have. 0 = all. Others cost no time here */
-    /* VK_TRUE: the device was created with VkPhysicalDevice16BitStorageFeatures.storageBuffer16BitAccess, which cannot
-     * be checked here. SSAO in BUFFERS takes a CPU a twentieth less then. Default VK_FALSE */
-    VkBool32 storage_16bit;
+    uint32_t padding; /* zero */
 } vkao_context_info;
 
-/* Sets the members that vkao needs to VK_TRUE, leaves the others alone. Call before vkCreateDevice. */
+VKAO_API vkao_context_info vkao_context_info_default(void);
+
+/* Sets the members that vkao needs to VK_TRUE, leaves the others alone. Call before
+ * vkCreateDevice. */
 VKAO_API void vkao_add_required_features(VkPhysicalDeviceFeatures *features);
 
-/* Compiles the pipelines; takes milliseconds to seconds, so call it while loading.
- * Errors: INVALID_ARGUMENT, UNSUPPORTED (feature, API version), OUT_OF_*_MEMORY, VULKAN. */
-VKAO_API VKAO_MUST_CHECK vkao_result vkao_context_create(const vkao_context_info *info, vkao_context **out);
+/* Compiles nothing, allocates no device memory. Errors: INVALID_ARGUMENT, UNSUPPORTED,
+ * OUT_OF_HOST_MEMORY. */
+VKAO_API VKAO_MUST_CHECK vkao_result vkao_context_create(const vkao_context_info *info,
+                                                         vkao_context **out);
 
-/* VK_TRUE if recordings with these settings find all their pipelines compiled for them. VK_FALSE too for what is not
- * valid. Thread-safe. */
-VKAO_API VkBool32 vkao_context_has_variant(const vkao_context *ctx, const vkao_variant *variant);
-
-/* All frames of the context must be destroyed first. NULL is ignored. Legal after device loss. */
+/* All effects and frames of the context must be destroyed first; if not, nothing happens but an
+ * error in the log. NULL is ignored. Legal after device loss. */
 VKAO_API void vkao_context_destroy(vkao_context *ctx);
 
-/* --- Frame: the images that one frame in flight works on --- */
+/* --- Effect: settings that select code, compiled --- */
 
-/* A caller-owned image as the library sees it: a 2D view with one mip level and one array layer. Layered or
- * stereo images need one view and one frame per layer. All zero = slot not used. */
-typedef struct vkao_image {
-    VkImageView view;
-    /* Read slots: SHADER_READ_ONLY_OPTIMAL, DEPTH_STENCIL_READ_ONLY_OPTIMAL, DEPTH_READ_ONLY_OPTIMAL family or
-     * GENERAL. Written slots: GENERAL. */
-    VkImageLayout layout;
-    VkFormat format; /* format of the view; UNDEFINED = slot not used */
-} vkao_image;
-
-/* Image usage: read slots SAMPLED, written slots STORAGE; ao_noisy and ao both, where one stage of the frame
- * writes them and another reads them. All images have the frame's extent. */
-typedef struct vkao_images {
-    uint32_t struct_size;
-    uint32_t reserved;   /* zero */
-    vkao_image depth;    /* depth-aspect view, or a one-component float format: see vkao_depth_encoding */
-    vkao_image normals;  /* optional: see vkao_normal_encoding */
-    vkao_image ao_noisy; /* R8/R16 unorm, R16/R32 float; unused = scratch. Input when SSAO is not a stage */
-    vkao_image ao;       /* as ao_noisy; unused = scratch if COMPOSITE reads it. Input if only COMPOSITE */
-    vkao_image color;    /* lit colour or indirect light, any float or unorm format; optional for AO_ONLY */
-    vkao_image direct;   /* direct light, required by VKAO_COMPOSITE_INDIRECT only; as color */
-    vkao_image output;   /* storage-capable colour format; may be color's image if both are GENERAL */
-    /* Mean unoccluded direction, written by BLUR after GTAO, VBAO or RAYMARCH, in the space of the normals and the
-     * encoding view.bent_encoding; zero on background, for which octahedral encodings have no code but that of
-     * (0,0,1): both components as 0. Input if only COMPOSITE. ao_noisy must then be unused. */
-    vkao_image bent_normals;
-    vkao_image albedo;   /* diffuse reflectance in rgb, for composite.multi_bounce; as color */
-    vkao_image specular; /* indirect specular light in rgb, roughness in alpha, for composite.specular; as color */
-    /* Optional: the image behind ao.view, created with TRANSFER_DST too. Where scratch is in BUFFERS and the frame has
-     * no ao_noisy and no bent_normals, BLUR then copies rows into it instead of storing texel by texel, which takes a
-     * CPU a third of BLUR's time. Ignored elsewhere. Waiting for the stage's shader writes waits for the copy. */
-    VkImage ao_image;
-    uint32_t ao_mip_level, ao_array_layer; /* of ao.view in ao_image */
-} vkao_images;
-
-static inline vkao_images vkao_images_default(void)
-{
-    vkao_images i;
-    memset(&i, 0, sizeof i);
-    i.struct_size = (uint32_t)sizeof i;
-    return i;
-}
-
-/* Descriptor set plus scratch memory. Recording does not modify it.
- * Thread-safety: recording one frame from several threads is fine; update and destroy need exclusive access. */
-typedef struct vkao_frame vkao_frame;
-
-typedef struct vkao_frame_info {
-    uint32_t struct_size;
-    vkao_stage_flags stages;   /* at least one */
-    VkExtent2D extent;         /* texels; size of every image, 1..maxImageDimension2D */
-    const vkao_images *images; /* read during the call only */
-    /* Place scratch here instead of allocating: DEVICE_LOCAL memory satisfying vkao_frame_scratch(), kept until
-     * destroy. Frames on one queue may share it, and you may alias it outside vkao recordings. */
-    VkDeviceMemory scratch_memory; /* VK_NULL_HANDLE = the library allocates exactly one block */
-    VkDeviceSize scratch_offset;   /* bytes; multiple of the queried alignment */
-    /* VK_TRUE: SSAO and BLUR run on every second texel of every second row, and BLUR ends with a depth- and
-     * normal-aware upsampling: a fourth of the work and of the scratch. Lengths keep their meaning; blur.radius counts
-     * half-resolution texels. Needs both stages, and no ao_noisy. view.valid must begin at even texels. */
-    VkBool32 half_resolution;
-    uint32_t reserved; /* zero */
-} vkao_frame_info;
-
-/* Exact device memory for this info: the one allocation that vkao_frame_create would make. size 0 = none.
- * Views may still be null; only stages, extent, formats, used slots and whether there is an ao_image matter. Errors as
- * vkao_frame_create. */
-VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_scratch(const vkao_context *ctx, const vkao_frame_info *info,
-                                                        VkMemoryRequirements *out);
-
-/* Errors: INVALID_ARGUMENT, UNSUPPORTED (a slot's format, extent over the device's limit), OUT_OF_*_MEMORY,
- * VULKAN. */
-VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_create(const vkao_context *ctx, const vkao_frame_info *info,
-                                                       vkao_frame **out);
-
-/* Points the frame at other images with the same used slots, formats and extent (rotating or transient images), and an
- * ao_image if there was one.
- * No allocation. The frame must not be in use by a pending command buffer. On error the frame is unchanged. */
-VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_update(vkao_frame *frame, const vkao_images *images);
-
-/* The frame must not be in use by a pending command buffer. NULL is ignored. Legal after device loss. */
-VKAO_API void vkao_frame_destroy(vkao_frame *frame);
-
-/* --- View: what the images show --- */
+typedef uint32_t vkao_stage_flags;
+#define VKAO_STAGE_SSAO 0x1u      /* reads depth, normals;             writes ao_noisy */
+#define VKAO_STAGE_BLUR 0x2u      /* reads ao_noisy, depth, normals;   writes ao */
+#define VKAO_STAGE_COMPOSITE 0x4u /* reads ao, color, direct;          writes output */
+#define VKAO_STAGE_ALL 0x7u
+/* For vkao_cmd_stage only: effects with SSAO or BLUR have it. Depth -> view z in scratch. */
+#define VKAO_STAGE_PREPARE 0x8u
 
 typedef enum vkao_depth_encoding {
-    VKAO_DEPTH_PROJECTED = 0, /* device depth z/w in [0,1] as rasterised: standard, reversed or infinite far */
-    VKAO_DEPTH_VIEW_Z = 1,    /* positive distance along the view axis */
-    VKAO_DEPTH_DISTANCE = 2,  /* positive distance from the eye (the Z channel of some ray tracers) */
+    /* Device depth z/w in [0,1] as rasterised with the view's own matrix: standard, reversed or
+     * infinite far. Depth of an oblique near plane is of another matrix, which nothing can tell by
+     * looking: give VIEW_Z instead. */
+    VKAO_DEPTH_PROJECTED = 0,
+    VKAO_DEPTH_VIEW_Z = 1, /* positive distance along the view axis */
+    /* positive distance from the eye (the Z channel of some ray tracers) */
+    VKAO_DEPTH_DISTANCE = 2,
     VKAO_DEPTH_INVERSE_Z = 3, /* 1 / view z; 0 = infinitely far */
     VKAO_DEPTH_ENCODING_MAX_ENUM = 0x7fffffff
 } vkao_depth_encoding;
@@ -319,55 +225,11 @@ typedef enum vkao_normal_encoding {
     VKAO_NORMAL_ENCODING_MAX_ENUM = 0x7fffffff
 } vkao_normal_encoding;
 
-/* Which way the camera looks along the view-space z axis. A perspective matrix says so itself; an orthographic
- * one does through its near and far planes, unless they lie equally far on both sides of the eye. */
-typedef enum vkao_view_axis {
-    VKAO_VIEW_AXIS_FROM_MATRIX = 0,
-    VKAO_VIEW_AXIS_NEGATIVE_Z = 1, /* right-handed view space, as OpenGL */
-    VKAO_VIEW_AXIS_POSITIVE_Z = 2, /* left-handed view space, as Direct3D */
-    VKAO_VIEW_AXIS_MAX_ENUM = 0x7fffffff
-} vkao_view_axis;
-
-/* Texels at or beyond the far plane, not in front of the camera, or not finite are background: AO = 1, and
- * they occlude nothing. So are those nearer than 1e-15 or farther than 1e15 scene units. */
-struct vkao_view {
-    uint32_t struct_size;
-    vkao_depth_encoding depth_encoding;
-    vkao_normal_encoding normal_encoding;
-    vkao_view_axis axis; /* orthographic matrices only; else FROM_MATRIX */
-    /* Texels that hold depth and normals; nothing outside is read. 0x0 = the whole image. For dynamic resolution
-     * set this alone: viewport and rect follow. */
-    VkRect2D valid;
-    /* Texels that NDC [-1,1] spans; may reach beyond the image. 0x0 = valid. Set it when the projection belongs
-     * to another rectangle than valid: overscan, a cropped data window, one view of an atlas. */
-    VkRect2D viewport;
-    /* Texels to write, inside valid. 0x0 = valid. Use it to split work; the parts add up to the whole. */
-    VkRect2D rect;
-    /* View space to Vulkan clip space, unjittered. Perspective or orthographic, off-centre, y-flipped, either
-     * hand, reversed or infinite depth are all read off the matrix. Finite, no shear, no rotation; a texel spans
-     * 1e-15 to 1e15 scene units, in perspective at distance 1. */
-    float projection[16];
-    /* Rotation of stored normals into view space, m[column * 3 + row]. Identity if they are view-space. May scale.
-     * Normals need not be unit length. One that faces away from the eye is turned round if it is the back of its
-     * surface that is seen. If not, as where interpolation over a mesh has carried it past the outline, or if it is
-     * shorter than 0.5 or not finite, the one that the neighbours' depths give takes its place. */
-    float normal_to_view[9];
-    uint32_t reserved; /* zero */
-    /* Of images.bent_normals. 0 = as normal_encoding, or XYZ_SNORM if that is FROM_DEPTH. */
-    vkao_normal_encoding bent_encoding;
-    uint32_t reserved_too; /* zero */
-};
-
-static inline vkao_view vkao_view_default(void)
-{
-    vkao_view v;
-    memset(&v, 0, sizeof v);
-    v.struct_size = (uint32_t)sizeof v;
-    v.normal_to_view[0] = v.normal_to_view[4] = v.normal_to_view[8] = 1.0f;
-    return v; /* projection stays zero, which is rejected: the caller must set it */
-}
-
-/* --- Stages --- */
+typedef enum vkao_projection {
+    VKAO_PROJECTION_PERSPECTIVE = 0,
+    VKAO_PROJECTION_ORTHOGRAPHIC = 1,
+    VKAO_PROJECTION_MAX_ENUM = 0x7fffffff
+} vkao_projection;
 
 /* How an occluder at distance t from the shaded point counts, for reach R. */
 typedef enum vkao_falloff {
@@ -377,94 +239,27 @@ typedef enum vkao_falloff {
 } vkao_falloff;
 
 typedef enum vkao_sphere_form {
-    /* Range-checked and rescaled by the '50 %' rule: visibility = min(1, 2 * (1 - blocked)), so that a wall,
-     * which fills half the sphere, is open. */
+    /* Range-checked and rescaled by the '50 %' rule: visibility = min(1, 2 * (1 - blocked)), so
+     * that a wall, which fills half the sphere, is open. */
     VKAO_SPHERE_RESCALED = 0,
-    /* The textbook form: blocking factor mean(1 / (1 + dz^2)), dz = blocking_scale * max(0, scene z - point z);
-     * visibility = 1 - factor. Greys flat walls and outlines convex edges; ignores falloff and bias. */
+    /* The textbook form: blocking factor mean(1 / (1 + dz^2)), dz = blocking_scale * max(0, scene z
+     * - point z); visibility = 1 - factor. Greys flat walls and outlines convex edges; ignores
+     * falloff and bias. */
     VKAO_SPHERE_LITERAL = 1,
     VKAO_SPHERE_FORM_MAX_ENUM = 0x7fffffff
 } vkao_sphere_form;
 
-struct vkao_ssao_params {
-    uint32_t struct_size;
-    vkao_ssao_method method;
-    vkao_falloff falloff;
-    vkao_sphere_form sphere_form; /* SPHERE only */
-    /* [1,1024] points per texel of SPHERE and HEMISPHERE, rays of RAYMARCH. HEMISPHERE and SPHERE_RESCALED take
-     * pairs: an odd count becomes one more. Default 16 */
-    uint32_t sample_count;
-    uint32_t noise_index;  /* any; 0 = the static pattern; a frame counter if something temporal follows */
-    float radius;          /* (0,inf) scene units that an occluder reaches. Default 0.5 */
-    /* [0,1] fraction of radius by which the scene must stand in front of a point to block it; hides acne from
-     * coarse depth or interpolated normals. Default 0.005 */
-    float bias;
-    float blocking_scale; /* (0,inf) 1 / scene units; the constant 50 of SPHERE_LITERAL. Default 50 */
-    uint32_t reserved;    /* zero */
-    uint32_t slice_count; /* [1,64] HBAO, GTAO, VBAO: directions, each marched to both sides; 0 = 1. Default 1 */
-    uint32_t step_count;  /* [1,256] samples on each side of a slice, or on each ray of RAYMARCH; 0 = 8. Default 8 */
-    /* [0,8] VBAO, RAYMARCH: how thick the scene is behind what is seen, relative to the measured default, which grows
-     * from .19 radius by .42 of the distance to the side, and with THRESHOLD 1.1 times that. 0 = 1. Default 1 */
-    float thickness;
-    uint32_t reserved_too; /* zero */
-};
-
-static inline vkao_ssao_params vkao_ssao_params_default(void)
-{
-    vkao_ssao_params p;
-    memset(&p, 0, sizeof p);
-    p.struct_size = (uint32_t)sizeof p;
-    p.method = VKAO_SSAO_VBAO;
-    p.sample_count = 16;
-    p.radius = 0.5f;
-    p.bias = 0.005f;
-    p.blocking_scale = 50.0f;
-    p.slice_count = 1;
-    p.step_count = 8;
-    p.thickness = 1.0f;
-    return p;
-}
-
-/* Separable cross-bilateral blur, two dispatches: a mean whose taps count less the further they lie off the surface
- * that the local depth slope continues, and the more their normal turns away. The noise of SSAO repeats after 4 texels,
- * that of 4 or more slices after 2: a radius of 2, or 1 with so many slices, leaves none of it where a surface goes on.
- * It also ends the chain: intensity and power belong here because they are right only after the noise is gone.
- * radius 0 applies intensity and power alone. */
-struct vkao_blur_params {
-    uint32_t struct_size;
-    uint32_t radius; /* [0,16] texels on each side; those near the ends count less. Default 3 */
-    /* [0,10000] edge stopping: a tap whose view z is off the continued slope by more than 1 / sharpness of its own
-     * distance counts nothing. 0 = depth is ignored. Default 200 */
-    float sharpness;
-    /* [0,128] edge stopping by normals: weight max(0, n.n')^normal_power; 0 = ignore them, as without a normals
-     * image. 8 is a good value, and on CPUs doubles the time of the blur. Default 0 */
-    float normal_power;
-    float intensity;   /* [0,8] scale of occlusion: 1 - intensity * (1 - visibility), clamped. Default 1: physical */
-    float power;       /* (0,8] exponent on visibility, after intensity. Default 1: physical */
-    uint32_t reserved; /* zero */
-};
-
-static inline vkao_blur_params vkao_blur_params_default(void)
-{
-    vkao_blur_params p;
-    memset(&p, 0, sizeof p);
-    p.struct_size = (uint32_t)sizeof p;
-    p.radius = 3;
-    p.sharpness = 200.0f;
-    p.intensity = 1.0f;
-    p.power = 1.0f;
-    return p;
-}
-
-/* Alpha is color's in MULTIPLY and INDIRECT. What light is multiplied by is always finite and in [0,1], also where
- * albedo, roughness or normals are not; a NaN or infinity of color, direct or specular itself passes through, as does
- * a sum beyond the range of output's format. */
+/* Alpha is color's in MULTIPLY and INDIRECT. What light is multiplied by is always finite and in
+ * [0,1], also where albedo, roughness or normals are not; a NaN or infinity of color, direct or
+ * specular itself passes through, as does a sum beyond the range of output's format. */
 typedef enum vkao_composite_mode {
     VKAO_COMPOSITE_MULTIPLY = 0, /* rgb = color * mix(tint, 1, a), a = mix(1, ao, strength) */
-    VKAO_COMPOSITE_INDIRECT = 1, /* rgb = direct + color * mix(tint, 1, a): AO on indirect light only */
-    VKAO_COMPOSITE_AO_ONLY = 2,  /* rgb = mix(tint, 1, a), alpha 1; color is not read */
-    /* To look at what the stages saw, at their own resolution; alpha 1. For frames with SSAO. */
-    VKAO_COMPOSITE_NOISY_AO = 3,     /* before the blur; needs BLUR at full resolution, and no bent normals */
+    /* rgb = direct + color * mix(tint, 1, a): AO on indirect light only */
+    VKAO_COMPOSITE_INDIRECT = 1,
+    VKAO_COMPOSITE_AO_ONLY = 2, /* rgb = mix(tint, 1, a), alpha 1; color is not read */
+    /* To look at what the stages saw, at their own resolution; alpha 1. For effects with SSAO. */
+    /* before the blur; needs BLUR at full resolution, and no bent normals */
+    VKAO_COMPOSITE_NOISY_AO = 3,
     VKAO_COMPOSITE_NORMALS = 4,      /* view space, * 0.5 + 0.5, blue towards the eye */
     VKAO_COMPOSITE_BENT_NORMALS = 5, /* the same of images.bent_normals */
     VKAO_COMPOSITE_VIEW_Z = 6,       /* view z / debug_distance */
@@ -479,27 +274,277 @@ typedef enum vkao_specular {
     VKAO_SPECULAR_MAX_ENUM = 0x7fffffff
 } vkao_specular;
 
-typedef struct vkao_composite_params {
-    uint32_t struct_size;
-    vkao_composite_mode mode;
-    float strength;    /* [0,1] 0 = as if open everywhere. Default 1 */
-    float tint[3];     /* [0,1] linear colour of full occlusion. Default black */
-    uint32_t reserved; /* zero */
-    /* VK_TRUE: brighten AO per channel by the light that bounces on, from images.albedo (Jimenez et al. 2016). */
-    VkBool32 multi_bounce;
-    vkao_specular specular; /* MULTIPLY and INDIRECT; needs images.specular and images.normals. Default NONE */
-    float debug_distance;   /* (0,inf) scene units that VIEW_Z shows as 1; 0 = 100. Default 100 */
-} vkao_composite_params;
+/* Has to call job(data, i) once for each i < count, in any order and in any threads, and to return
+ * when all are done; count may be 0. */
+typedef void (*vkao_parallel_fn)(void *user_data, uint32_t count,
+                                 void (*job)(void *data, uint32_t i), void *data);
 
-static inline vkao_composite_params vkao_composite_params_default(void)
-{
-    vkao_composite_params p;
-    memset(&p, 0, sizeof p);
-    p.struct_size = (uint32_t)sizeof p;
-    p.strength = 1.0f;
-    p.debug_distance = 100.0f;
-    return p;
-}
+typedef struct vkao_effect_info {
+    uint32_t struct_size;
+    /* at least one. Default SSAO and BLUR. Without BLUR, SSAO writes `ao` itself */
+    vkao_stage_flags stages;
+    /* VK_TRUE: SSAO and BLUR run on every second texel of every second row, and BLUR ends with a
+     * depth- and normal-aware upsampling: a fourth of the work and of the scratch. Lengths keep
+     * their meaning; blur_radius counts half-resolution texels. Needs both stages, and no noisy_ao.
+     * view.valid must begin at even texels. */
+    VkBool32 half_resolution;
+
+    /* --- What the images hold --- */
+    vkao_depth_encoding depth_encoding;
+    /* Bits that a PROJECTED depth had before it was copied into an image of more: 16 or 24, fixed
+     * point; 32, float. 0 = as the format of images.depth says. Too many let walls occlude
+     * themselves by the steps of the depth. */
+    uint32_t depth_bits;
+    vkao_projection projection; /* of the views to come */
+    vkao_normal_encoding normal_encoding;
+    /* Of images.bent_normals. 0 = as normal_encoding, or XYZ_SNORM if that is FROM_DEPTH. */
+    vkao_normal_encoding bent_encoding;
+    VkFormat ao_format; /* of images.ao, where it is written. UNDEFINED = R8_UNORM */
+    /* VK_TRUE: BLUR writes images.bent_normals. GTAO, VBAO, RAYMARCH; needs both stages */
+    VkBool32 bent_normals;
+    /* VK_TRUE: SSAO leaves what BLUR reads in images.ao_noisy. Needs both stages */
+    VkBool32 noisy_ao;
+
+    /* --- SSAO --- */
+    vkao_ssao_method method; /* Default VBAO */
+    vkao_falloff falloff;
+    vkao_sphere_form sphere_form; /* SPHERE only */
+    /* [0,1024] points per texel of SPHERE and HEMISPHERE, rays of RAYMARCH; 0 = 16. HEMISPHERE and
+     * SPHERE_RESCALED take pairs: an odd count becomes one more. Default 16 */
+    uint32_t sample_count;
+    /* [0,64] HBAO, GTAO, VBAO: directions, each marched to both sides; 0 = 1. Default 1 */
+    uint32_t slice_count;
+    /* [0,256] samples on each side of a slice, or on each ray of RAYMARCH; 0 = 8. Default 8 */
+    uint32_t step_count;
+
+    /* --- Blur. Separable, cross-bilateral, two dispatches: a mean whose taps count less the
+     * further they lie off the surface that the local depth slope continues, and the more their
+     * normal turns away. The noise of SSAO repeats after 4 texels, that of 4 or more slices after
+     * 2: a radius of 2, or 1 with so many slices, leaves none of it where a surface goes on. It
+     * ends the chain, as intensity and power are right only after the noise is gone. --- */
+    /* [0,16] texels on each side; those near the ends count less. 0: intensity and power alone.
+     * Default 3 */
+    uint32_t blur_radius;
+    /* [0,128] edge stopping by normals: weight max(0, n.n')^blur_normal_power; 0 = ignore them, as
+     * without a normals image. 8 is a good value, and on CPUs doubles the time of the blur. Default
+     * 0 */
+    float blur_normal_power;
+
+    /* --- Composite --- */
+    vkao_composite_mode composite_mode;
+    /* VK_TRUE: brighten AO per channel by the light that bounces on, from images.albedo (Jimenez et
+     * al. 2016). */
+    VkBool32 multi_bounce;
+    /* MULTIPLY and INDIRECT; needs images.specular and images.normals. Default NONE */
+    vkao_specular specular;
+
+    /* --- Compilation; read during vkao_effect_create only --- */
+    VkPipelineCache pipeline_cache; /* optional, the caller's */
+    /* Optional: compiles passes side by side; log and allocator are then called from its threads.
+     * NULL = one after the other. */
+    vkao_parallel_fn parallel;
+    void *parallel_user_data;
+} vkao_effect_info;
+
+VKAO_API vkao_effect_info vkao_effect_info_default(void);
+
+/* Immutable once created; owns no device memory. Thread-safety: any number of threads may create
+ * effects and use one at once; destroying it is the exception. */
+typedef struct vkao_effect vkao_effect;
+
+/* Compiles the passes of exactly these settings, loops unrolled and choices made. Takes
+ * milliseconds to seconds, so call it while loading or in a thread. Errors: INVALID_ARGUMENT,
+ * UNSUPPORTED, OUT_OF_*_MEMORY, VULKAN. */
+VKAO_API VKAO_MUST_CHECK vkao_result vkao_effect_create(const vkao_context *ctx,
+                                                        const vkao_effect_info *info,
+                                                        vkao_effect **out);
+
+/* What the effect was compiled for, with every 0 that stands for a default replaced by it. The
+ * members for compilation are zero. */
+VKAO_API vkao_effect_info vkao_effect_settings(const vkao_effect *effect);
+
+/* All frames of the effect must be destroyed first. NULL is ignored. Legal after device loss. */
+VKAO_API void vkao_effect_destroy(vkao_effect *effect);
+
+/* --- Frame: the images that one frame in flight works on --- */
+
+/* A caller-owned image as the library sees it: a 2D view with one mip level, one array layer and
+ * one sample. Layered or stereo images need one view and one frame per layer. Multisampled depth is
+ * resolved first: sample 0, MIN or MAX, never the average, which is the depth of nothing. sRGB
+ * images are written through a UNORM view, for which the image needs MUTABLE_FORMAT. All zero =
+ * slot not used. */
+typedef struct vkao_image {
+    VkImageView view;
+    /* Read slots: SHADER_READ_ONLY_OPTIMAL, DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+     * DEPTH_READ_ONLY_OPTIMAL family or GENERAL. Written slots: GENERAL. */
+    VkImageLayout layout;
+    VkFormat format; /* format of the view; UNDEFINED = slot not used */
+    /* Optional, of `ao` only: the image behind the view, if the view is of mip level 0 and array
+     * layer 0 and usage has TRANSFER_DST. The library then copies rows into it where that is
+     * faster, which takes a CPU a third of BLUR's time. Waiting for the stage's shader writes waits
+     * for the copies too. */
+    VkImage image;
+} vkao_image;
+
+/* Image usage: read slots SAMPLED, written slots STORAGE; ao_noisy and ao both, where one stage of
+ * the effect writes them and another reads them. All images have the frame's extent. */
+typedef struct vkao_images {
+    uint32_t struct_size;
+    uint32_t padding; /* zero */
+    /* depth-aspect view, or a one-component float format: see vkao_depth_encoding */
+    vkao_image depth;
+    vkao_image normals; /* optional: see vkao_normal_encoding */
+    /* R8/R16 unorm, R16/R32 float. Input of BLUR without SSAO; see effect.noisy_ao */
+    vkao_image ao_noisy;
+    /* as ao_noisy; unused = scratch if COMPOSITE reads it. Input if only COMPOSITE */
+    vkao_image ao;
+    /* lit colour or indirect light, any float or unorm format; MULTIPLY and INDIRECT */
+    vkao_image color;
+    vkao_image direct; /* direct light, INDIRECT only; as color */
+    /* storage-capable colour format; may be color's image if both are GENERAL */
+    vkao_image output;
+    /* Mean unoccluded direction in the space of the normals: see effect.bent_normals. Background is
+     * the zero vector, which is stored as xyz 0 (UNORM .5). Octahedral codes have none: there it is
+     * (0,0), the code of +z. Input if only COMPOSITE. */
+    vkao_image bent_normals;
+    vkao_image albedo; /* diffuse reflectance in rgb, for multi_bounce; as color */
+    /* indirect specular light in rgb, roughness in alpha, for effect.specular; as color */
+    vkao_image specular;
+} vkao_images;
+
+VKAO_API vkao_images vkao_images_default(void);
+
+/* Descriptor sets plus scratch memory. Recording does not modify it. Thread-safety: recording one
+ * frame from several threads is fine; update and destroy need exclusive access. */
+typedef struct vkao_frame vkao_frame;
+
+typedef struct vkao_frame_info {
+    uint32_t struct_size;
+    uint32_t padding;          /* zero */
+    VkExtent2D extent;         /* texels; size of every image, 1..maxImageDimension2D */
+    const vkao_images *images; /* read during the call only */
+    /* Place scratch here instead of allocating: DEVICE_LOCAL memory satisfying
+     * vkao_frame_scratch(), kept until destroy. Frames on one queue may share it, and you may alias
+     * it outside vkao recordings. */
+    VkDeviceMemory scratch_memory; /* VK_NULL_HANDLE = the library allocates exactly one block */
+    VkDeviceSize scratch_offset;   /* bytes; multiple of the queried alignment */
+} vkao_frame_info;
+
+VKAO_API vkao_frame_info vkao_frame_info_default(void);
+
+/* Exact device memory for this info: the one allocation that vkao_frame_create would make. Views
+ * may still be null; only extent, formats, used slots and whether ao has an image matter. Errors as
+ * vkao_frame_create. */
+VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_scratch(const vkao_effect *effect,
+                                                        const vkao_frame_info *info,
+                                                        VkMemoryRequirements *out);
+
+/* Errors: INVALID_ARGUMENT, UNSUPPORTED (a slot's format, extent over the device's limit),
+ * OUT_OF_*_MEMORY, VULKAN. On a CPU whose buffers cannot hold so large a frame it compiles passes
+ * that use images. */
+VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_create(const vkao_effect *effect,
+                                                       const vkao_frame_info *info,
+                                                       vkao_frame **out);
+
+/* Points the frame at other images with the same used slots, formats and extent (rotating or
+ * transient images). No allocation. The frame must not be in use by a pending command buffer. On
+ * error the frame is unchanged. */
+VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_update(vkao_frame *frame,
+                                                       const vkao_images *images);
+
+/* The frame must not be in use by a pending command buffer. NULL is ignored. Legal after device
+ * loss. */
+VKAO_API void vkao_frame_destroy(vkao_frame *frame);
+
+/* --- Recording: what may change each time --- */
+
+/* Which way the camera looks along the view-space z axis. A perspective matrix says so itself; an
+ * orthographic one does through its near and far planes, unless they lie equally far on both sides
+ * of the eye. */
+typedef enum vkao_view_axis {
+    VKAO_VIEW_AXIS_FROM_MATRIX = 0,
+    VKAO_VIEW_AXIS_NEGATIVE_Z = 1, /* right-handed view space, as OpenGL */
+    VKAO_VIEW_AXIS_POSITIVE_Z = 2, /* left-handed view space, as Direct3D */
+    VKAO_VIEW_AXIS_MAX_ENUM = 0x7fffffff
+} vkao_view_axis;
+
+/* What the images show. Texels at or beyond the far plane, not in front of the camera, or not
+ * finite are background: AO = 1, and they occlude nothing. So are those nearer than 1e-15 or
+ * farther than 1e15 scene units. */
+typedef struct vkao_view {
+    uint32_t struct_size;
+    vkao_view_axis axis; /* orthographic matrices only; else FROM_MATRIX */
+    /* Texels that hold depth and normals; nothing outside is read. 0x0 = the whole image. For
+     * dynamic resolution set this alone: viewport and rect follow. */
+    VkRect2D valid;
+    /* Texels that NDC [-1,1] spans; may reach beyond the image. 0x0 = valid. Set it when the
+     * projection belongs to another rectangle than valid: overscan, a cropped data window, one view
+     * of an atlas. */
+    VkRect2D viewport;
+    /* Texels to write, inside valid. 0x0 = valid. Use it to split work; the parts add up to the
+     * whole. */
+    VkRect2D rect;
+    /* View space to Vulkan clip space, unjittered. Perspective or orthographic as effect.projection
+     * says; off-centre, y-flipped, either hand, reversed or infinite depth are all read off the
+     * matrix. Finite, no shear, no rotation; a texel spans 1e-15 to 1e15 scene units, in
+     * perspective at distance 1. */
+    float projection[16];
+    /* Rotation of stored normals into view space, m[column * 3 + row]. Identity if they are
+     * view-space. May scale. Normals need not be unit length. One that faces away from the eye is
+     * turned round if it is the back of its surface that is seen. If not, as where interpolation
+     * over a mesh has carried it past the outline, or if it is shorter than 0.5 or not finite, the
+     * one that the neighbours' depths give takes its place. */
+    float normal_to_view[9];
+    uint32_t padding; /* zero */
+} vkao_view;
+
+/* projection stays zero, which is refused: the caller must set it. */
+VKAO_API vkao_view vkao_view_default(void);
+
+typedef struct vkao_params {
+    uint32_t struct_size;
+    /* any; 0 = the static pattern; a frame counter if something temporal follows */
+    uint32_t noise_index;
+    float radius; /* (0,inf) scene units that an occluder reaches. Default 0.5 */
+    /* [0,1] fraction of radius by which the scene must stand in front of a point to block it; hides
+     * acne from coarse depth or interpolated normals. Default 0.005 */
+    float bias;
+    /* [0,8] VBAO, RAYMARCH: how thick the scene is behind what is seen, relative to the measured
+     * default, which grows from .19 radius by .42 of the distance to the side, and with THRESHOLD
+     * 1.1 times that. 0 = 1. Default 1 */
+    float thickness;
+    /* (0,inf) 1 / scene units; the constant 50 of SPHERE_LITERAL. Default 50 */
+    float blocking_scale;
+    /* [0,10000] edge stopping of the blur: a tap whose view z is off the continued slope by more
+     * than 1 / sharpness of its own distance counts nothing. 0 = depth is ignored. Default 200 */
+    float sharpness;
+    /* [0,8] BLUR: scale of occlusion: 1 - intensity * (1 - visibility), clamped. Default 1:
+     * physical */
+    float intensity;
+    float power;    /* (0,8] BLUR: exponent on visibility, after intensity. Default 1: physical */
+    float strength; /* [0,1] COMPOSITE: 0 = as if open everywhere. Default 1 */
+    float tint[3];  /* [0,1] COMPOSITE: linear colour of full occlusion. Default black */
+    /* [0,inf) scene units that COMPOSITE_VIEW_Z shows as 1; 0 = 100. Default 100 */
+    float debug_distance;
+} vkao_params;
+
+VKAO_API vkao_params vkao_params_default(void);
+
+/* Record every stage of the frame's effect, in order. All arguments are checked before the first
+ * command is recorded, and read before the call returns. ao and output are written in view->rect
+ * only; ao_noisy also in the border that the blur reads. Errors: INVALID_ARGUMENT; then nothing was
+ * recorded. */
+VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_record(const vkao_frame *frame, VkCommandBuffer cmd,
+                                                     const vkao_view *view,
+                                                     const vkao_params *params);
+
+/* Record the named stages alone, which the effect must have; VKAO_STAGE_PREPARE is one of them
+ * here. It reads depth over view->valid and writes the frame's scratch, and comes first each time.
+ * Stages share scratch memory: record them in order, each once, over the same rect; to split a
+ * frame into rects, record all stages of one before the next. */
+VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_stage(const vkao_frame *frame, VkCommandBuffer cmd,
+                                                    vkao_stage_flags stages, const vkao_view *view,
+                                                    const vkao_params *params);
 
 /* --- Presets: one setting for every scene --- */
 
@@ -511,34 +556,54 @@ typedef enum vkao_quality {
     VKAO_QUALITY_MAX_ENUM = 0x7fffffff
 } vkao_quality;
 
-/* Sets what a preset decides and leaves the rest (radius, falloff, intensity ...) alone: half_resolution of the frame;
- * method, slice_count, step_count, bias, thickness; blur radius, sharpness, normal_power. Each pointer may be NULL; the
- * structs come from the *_default() functions. Errors: INVALID_ARGUMENT for an unknown quality. */
-VKAO_API vkao_result vkao_preset(vkao_quality quality, vkao_frame_info *frame, vkao_ssao_params *ssao,
-                                 vkao_blur_params *blur);
+/* Sets what a preset decides and leaves the rest (radius, falloff, intensity ...) alone:
+ * half_resolution, method, slice_count, step_count, blur_radius and blur_normal_power of the
+ * effect; bias, thickness and sharpness of the params. Each pointer may be NULL; the structs come
+ * from the *_default() functions. Errors: INVALID_ARGUMENT for an unknown quality. */
+VKAO_API vkao_result vkao_preset(vkao_quality quality, vkao_effect_info *effect,
+                                 vkao_params *params);
 
-/* Record one stage. The frame must have been built for it. Arguments are read before the call returns.
- * Errors: INVALID_ARGUMENT; then nothing was recorded.
- *
- * prepare reads depth over view->valid and writes the frame's scratch. It comes first each time a frame with SSAO
- * or BLUR is recorded; the other stages then see the scratch until other work reuses its memory. */
-VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_prepare(const vkao_frame *frame, VkCommandBuffer cmd,
-                                                      const vkao_view *view);
-VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_ssao(const vkao_frame *frame, VkCommandBuffer cmd,
-                                                   const vkao_view *view, const vkao_ssao_params *params);
-/* Reads ao_noisy up to params->radius texels around view->rect, inside view->valid: record ssao there first. */
-VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_blur(const vkao_frame *frame, VkCommandBuffer cmd,
-                                                   const vkao_view *view, const vkao_blur_params *params);
-VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_composite(const vkao_frame *frame, VkCommandBuffer cmd,
-                                                        const vkao_view *view, const vkao_composite_params *params);
+/* --- Tables: what can be set. The library's own checks and defaults read them; so can panels and
+ * command lines --- */
 
-/* Record every stage that the frame was built for, in order. Params of absent stages must be NULL. All arguments
- * are checked before the first command is recorded. ao and output are written in view->rect only; ao_noisy also
- * in the border that the blur reads. */
-VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_all(const vkao_frame *frame, VkCommandBuffer cmd,
-                                                  const vkao_view *view, const vkao_ssao_params *ssao,
-                                                  const vkao_blur_params *blur,
-                                                  const vkao_composite_params *composite);
+typedef enum vkao_parameter_type {
+    VKAO_PARAMETER_FLOAT = 0,
+    VKAO_PARAMETER_UINT = 1,
+    VKAO_PARAMETER_BOOL = 2,   /* VkBool32 */
+    VKAO_PARAMETER_CHOICE = 3, /* an enum */
+    VKAO_PARAMETER_COLOR = 4,  /* float[3] */
+    VKAO_PARAMETER_TYPE_MAX_ENUM = 0x7fffffff
+} vkao_parameter_type;
+
+typedef struct vkao_parameter {
+    const char *name; /* of the member: "radius" */
+    const char *unit; /* "scene units"; "" = none */
+    const char *help; /* a few words, lower case */
+    vkao_parameter_type type;
+    VkBool32 is_compiled;       /* VK_TRUE: a member of vkao_effect_info; else of vkao_params */
+    uint32_t offset;            /* of the member */
+    VkBool32 above_least;       /* VK_TRUE: least itself is out of range */
+    VkBool32 zero_is_standard;  /* VK_TRUE: 0 stands for the default */
+    uint32_t padding;           /* zero */
+    double least, most;         /* range; a CHOICE counts from 0 to most */
+    double standard;            /* default */
+    const char *const *choices; /* words of a CHOICE, most + 1 of them; else NULL */
+    vkao_stage_flags stages;    /* that read it */
+    uint32_t methods;           /* bits 1 << vkao_ssao_method of those that read it; 0 = any */
+} vkao_parameter;
+
+/* Static; *count: how many there are. */
+VKAO_API const vkao_parameter *vkao_parameters(uint32_t *count);
+
+typedef struct vkao_method {
+    const char *name; /* "vbao" */
+    const char *help;
+    VkBool32 has_bent_normals;
+    uint32_t padding; /* zero */
+} vkao_method;
+
+/* Static, by vkao_ssao_method; *count: how many there are. */
+VKAO_API const vkao_method *vkao_methods(uint32_t *count);
 
 #ifdef __cplusplus
 }

@@ -188,7 +188,8 @@ class Scratch:
         more = {'stdout': subprocess.PIPE, **more}
         return subprocess.Popen([program or _settings.vkao, *arguments], cwd=self.directory,
                                 text=True, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE,
-                                env={**os.environ, **loaded_driver(_settings.vkao), **(env or {})}, **more)
+                                env={**os.environ, **loaded_driver(_settings.vkao), **(env or {})},
+                                **more)
 
     def run(self, *arguments, timeout=TIMEOUT, **more):
         arguments = [str(a) for a in arguments]

@@ -80,5 +80,17 @@ def errors_are_those_against_the_truth(scratch):
     equal(results['images'][0]['foreground'], int(foreground.sum()), 'texels that count')
 
 
+@case
+def json_on_standard_output_stands_alone(scratch):
+    folder(scratch)
+    result = scratch.run('quality', 'corpus', '--no-raymarch', '--runs', 1, '--quiet', '--methods',
+                         'vbao-fast', '--json', '-',
+                         program=beside_vkao('..', 'bench', 'vkao-bench'))
+    equal(result.code, OK, str(result))
+    results = json.loads(result.stdout)
+    equal([(s['name'], s['method'], s['yardstick']) for s in results['settings']],
+          [('vbao-fast', 'vbao', False)], 'settings')
+
+
 if __name__ == '__main__':
     main()

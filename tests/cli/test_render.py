@@ -62,10 +62,11 @@ def images_as_large_as_buffers_can_be(scratch):
     depth = np.full((4076, 8192), 3.0, np.float32)
     depth[:2000] = 1e10
     write_exr(scratch.path('large.exr'), {'Z': depth})
-    ao = result(scratch, 'large.exr', '--fov', 50, '--normal', 'none', '--radius', 0.1, '--steps', 1,
-                '--blur', 0)
+    ao = result(scratch, 'large.exr', '--fov', 50, '--normal', 'none', '--radius', 0.1, '--steps',
+                1, '--blur', 0)
     equal(ao.shape, depth.shape, 'size')
-    check(np.all(ao[:1990] == 1) and abs(ao[2100:].mean() - 1) < 0.01, 'a wall under the sky is open')
+    check(np.all(ao[:1990] == 1) and abs(ao[2100:].mean() - 1) < 0.01,
+          'a wall under the sky is open')
 
 
 @case
@@ -142,8 +143,9 @@ def mode_ao_writes_one_half_channel_with_zip(scratch):
     raw = read_raw(scratch.bytes('ao.exr'))[0]
     equal(COMPRESSIONS[raw.attributes['compression'][1][0]], 'zip', 'compression')
     equal(raw.text('vkao/source'), 'in.exr', 'vkao/source')
-    parameters = json.loads(raw.text('vkao/params'))
-    equal((parameters['method'], parameters['radius'], parameters['camera']['fov_x_deg']),
+    record = json.loads(raw.text('vkao/params'))
+    used = record['parameters']
+    equal((used['method'], used['radius'], record['camera']['fov_x_deg']),
           ('vbao', RADIUS, FOV), 'vkao/params')
 
 

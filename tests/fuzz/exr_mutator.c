@@ -125,9 +125,9 @@ static uint32_t any(struct file *f, size_t count)
 
 static uint32_t any_number(struct file *f)
 {
-    static const uint32_t values[] = {0,     1,     2,          7,          8,          13,
-                                      16,    20,    255,        65535,      65536,      0x7fffffff,
-                                      0x80000000, 0xffffffff, 0x3fffffff, 0xc0000001, 0x7f800000};
+    static const uint32_t values[] = {
+        0,     1,     2,          7,          8,          13,         16,         20,        255,
+        65535, 65536, 0x7fffffff, 0x80000000, 0xffffffff, 0x3fffffff, 0xc0000001, 0x7f800000};
     const uint32_t kind = any(f, 24);
     return kind < sizeof values / sizeof *values ? values[kind] : next_random(&f->random);
 }
@@ -181,14 +181,44 @@ static void change_value(struct file *f, const struct attribute *a)
 static void change_text(struct file *f, size_t begin, size_t end)
 {
     static const char *const texts[] = {
-        "channels",  "compression", "dataWindow",       "displayWindow", "lineOrder",
-        "tiles",     "type",        "name",             "view",          "multiView",
-        "preview",   "chunkCount",  "pixelAspectRatio", "version",       "screenWindowWidth",
-        "chlist",    "box2i",       "box2f",            "v2i",           "v3f",
-        "m44f",      "m33f",        "float",            "int",           "string",
-        "double",    "tiledesc",    "stringvector",     "worldToCamera", "worldToNDC",
-        "cameraFov", "timeCode",    "chromaticities",   "opaque",        "stringvectorx",
-        "maxSamplesPerPixel",       "deepImageState",   "dwaCompressionLevel",
+        "channels",
+        "compression",
+        "dataWindow",
+        "displayWindow",
+        "lineOrder",
+        "tiles",
+        "type",
+        "name",
+        "view",
+        "multiView",
+        "preview",
+        "chunkCount",
+        "pixelAspectRatio",
+        "version",
+        "screenWindowWidth",
+        "chlist",
+        "box2i",
+        "box2f",
+        "v2i",
+        "v3f",
+        "m44f",
+        "m33f",
+        "float",
+        "int",
+        "string",
+        "double",
+        "tiledesc",
+        "stringvector",
+        "worldToCamera",
+        "worldToNDC",
+        "cameraFov",
+        "timeCode",
+        "chromaticities",
+        "opaque",
+        "stringvectorx",
+        "maxSamplesPerPixel",
+        "deepImageState",
+        "dwaCompressionLevel",
     };
     const char *text = texts[any(f, sizeof texts / sizeof *texts)];
     splice(f, begin, end - begin, text, strlen(text) + 1);
@@ -203,13 +233,27 @@ static void change_attribute(struct file *f)
         abort();
     memcpy(copy, f->data + a.name, size);
     switch (any(f, 10)) {
-    case 0: write_number(f->data + a.bytes, 4, any_number(f)); break;
-    case 1: f->data[a.bytes] = (uint8_t)(f->data[a.bytes] + any(f, 9) - 4); break;
-    case 2: splice(f, a.name, size, "", 0); break;
-    case 3: splice(f, f->layout.attributes[any(f, f->layout.attribute_count)].name, 0, copy, size); break;
-    case 4: change_text(f, a.name, a.type); break;
-    case 5: change_text(f, a.type, a.bytes); break;
-    default: change_value(f, &a); break;
+    case 0:
+        write_number(f->data + a.bytes, 4, any_number(f));
+        break;
+    case 1:
+        f->data[a.bytes] = (uint8_t)(f->data[a.bytes] + any(f, 9) - 4);
+        break;
+    case 2:
+        splice(f, a.name, size, "", 0);
+        break;
+    case 3:
+        splice(f, f->layout.attributes[any(f, f->layout.attribute_count)].name, 0, copy, size);
+        break;
+    case 4:
+        change_text(f, a.name, a.type);
+        break;
+    case 5:
+        change_text(f, a.type, a.bytes);
+        break;
+    default:
+        change_value(f, &a);
+        break;
     }
     free(copy);
 }

@@ -56,18 +56,22 @@ uint32_t fuzz_below(struct fuzz_input *in, uint32_t count)
 double fuzz_number(struct fuzz_input *in)
 {
     static const double values[] = {
-        0.0,  1.0,     -1.0,    0.5,      2.0,  1e-45, 1e-40,       1.1754943508222875e-38,
-        1e-9, 1e9,     3.4e38,  -3.4e38,  1e39, 1e300, 1e-300,      4.9406564584124654e-324,
+        0.0,  1.0,     -1.0,    0.5,      2.0,  1e-45, 1e-40,        1.1754943508222875e-38,
+        1e-9, 1e9,     3.4e38,  -3.4e38,  1e39, 1e300, 1e-300,       4.9406564584124654e-324,
         -0.0, 65504.0, 65536.0, 16777217, 90,   179.9, 180.0 - 1e-9, 360.0,
     };
     const uint32_t kind = fuzz_u8(in);
     if (kind < sizeof values / sizeof *values)
         return values[kind];
     switch (kind) {
-    case 250: return NAN;
-    case 251: return INFINITY;
-    case 252: return -INFINITY;
-    default: break;
+    case 250:
+        return NAN;
+    case 251:
+        return INFINITY;
+    case 252:
+        return -INFINITY;
+    default:
+        break;
     }
     if (kind < 128) /* everyday numbers: -128 to 127.996 */
         return ((double)fuzz_u8(in) * 256.0 + (double)fuzz_u8(in)) / 256.0 - 128.0;
@@ -79,9 +83,9 @@ double fuzz_number(struct fuzz_input *in)
 
 int32_t fuzz_integer(struct fuzz_input *in)
 {
-    static const int32_t values[] = {0,   1,     -1,    2,        -2,        255,       256,
-                                     511, 65535, 65536, INT32_MAX, INT32_MIN, INT32_MAX / 2,
-                                     INT32_MIN / 2};
+    static const int32_t values[] = {
+        0,   1,     -1,    2,         -2,        255,           256,
+        511, 65535, 65536, INT32_MAX, INT32_MIN, INT32_MAX / 2, INT32_MIN / 2};
     const uint32_t kind = fuzz_u8(in);
     if (kind < sizeof values / sizeof *values)
         return values[kind];

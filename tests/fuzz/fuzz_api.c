@@ -17,11 +17,13 @@ struct world {
     struct fuzz_input in;
     struct fake_vulkan *fake;
     vkao_context *context;
+    vkao_effect *effect;
     vkao_frame *frame;
-    vkao_stage_flags stages; /* of the frame */
+    vkao_stage_flags stages; /* of the effect */
+    VkBool32 orthographic;
     VkExtent2D extent;
     unsigned contexts;
-    bool logs;     /* the context has a log that hears errors */
+    bool logs; /* the context has a log that hears errors */
     void *owned[MOST_OWNED];
     size_t owned_count;
     /* Host memory, counted. */
@@ -102,7 +104,7 @@ static void *own(struct world *w, size_t size)
 
 static uint32_t any_word(struct fuzz_input *in)
 {
-    static const float floats[] = {0.0f,  -0.0f, 1.0f,  -1.0f, 0.5f,   2.0f,    1e-45f,
+    static const float floats[] = {0.0f,   -0.0f, 1.0f,    -1.0f, 0.5f,     2.0f,      1e-45f,
                                    1e-30f, 1e30f, 3.4e38f, NAN,   INFINITY, -INFINITY, 1.5f};
     const uint32_t kind = fuzz_u8(in);
     uint32_t bits;
@@ -163,7 +165,8 @@ static const void *pass(struct world *w, void *object, size_t size)
     else if (kind > 240)
         memcpy(object, &(uint32_t){(uint32_t)size + kind % 40 - 20}, 4);
     memcpy(&claim, object, sizeof claim);
-    const size_t room = claim < 4 ? 4 : claim > MOST_CLAIM ? MOST_CLAIM : claim;
+    /* A size that was not set is that of a struct that is there. */
+    const size_t room = claim == 0 ? size : claim < 4 ? 4 : claim > MOST_CLAIM ? MOST_CLAIM : claim;
     unsigned char *copy = own(w, room);
     memcpy(copy, object, size < room ? size : room);
     /* Whoever believes more has to stop here. */
@@ -180,7 +183,7 @@ static void default_view(struct world *w, vkao_view *view)
     *view = vkao_view_default();
     view->projection[0] = 1.0f;
     view->projection[5] = -1.5f;
-    if (fuzz_flag(in)) {
+    if ((fuzz_u8(in) > 250) == w->orthographic) {
         view->projection[10] = -1.01f;
         view->projection[11] = -1.0f;
         view->projection[14] = -0.101f;
@@ -189,9 +192,6 @@ static void default_view(struct world *w, vkao_view *view)
         view->projection[15] = 1.0f;
         view->axis = VKAO_VIEW_AXIS_NEGATIVE_Z;
     }
-    view->depth_encoding = (vkao_depth_encoding)fuzz_below(in, 4);
-    if (fuzz_flag(in))
-        view->normal_encoding = (vkao_normal_encoding)fuzz_below(in, 5);
     if (fuzz_flag(in)) {
         const uint32_t x = fuzz_below(in, w->extent.width), y = fuzz_below(in, w->extent.height);
         view->valid.offset = (VkOffset2D){(int32_t)x, (int32_t)y};
@@ -209,56 +209,49 @@ static const void *any_view(struct world *w)
     return pass(w, &view, sizeof view);
 }
 
-static const void *any_ssao(struct world *w)
+static const void *any_params(struct world *w)
 {
-    vkao_ssao_params p = vkao_ssao_params_default();
-    p.method = (vkao_ssao_method)fuzz_below(&w->in, 6);
-    p.slice_count = fuzz_below(&w->in, 5);
+    vkao_params p = vkao_params_default();
     scramble(&w->in, &p, sizeof p, NULL, 0);
     return pass(w, &p, sizeof p);
 }
 
-static const void *any_blur(struct world *w)
+static const void *any_effect(struct world *w)
 {
-    vkao_blur_params p = vkao_blur_params_default();
-    p.radius = fuzz_below(&w->in, 17);
-    scramble(&w->in, &p, sizeof p, NULL, 0);
-    return pass(w, &p, sizeof p);
-}
-
-static const void *any_composite(struct world *w)
-{
-    vkao_composite_params p = vkao_composite_params_default();
-    p.mode = (vkao_composite_mode)fuzz_below(&w->in, 7);
-    p.specular = (vkao_specular)fuzz_below(&w->in, 3);
-    p.multi_bounce = fuzz_flag(&w->in);
-    scramble(&w->in, &p, sizeof p, NULL, 0);
-    return pass(w, &p, sizeof p);
-}
-
-static void fill_variant(struct world *w, vkao_variant *variant)
-{
-    static const struct kept kept[] = {KEPT_TO(vkao_variant, view, blur)};
+    static const struct kept kept[] = {
+        KEPT_TO(vkao_effect_info, pipeline_cache, parallel_user_data)};
     static const VkFormat formats[] = {VK_FORMAT_UNDEFINED, VK_FORMAT_R8_UNORM,
-                                       VK_FORMAT_R16_UNORM, VK_FORMAT_R32_SFLOAT};
-    *variant = (vkao_variant){.struct_size = sizeof *variant,
-                              .half_resolution = fuzz_flag(&w->in),
-                              .bent_normals = fuzz_flag(&w->in),
-                              .staged_ao = formats[fuzz_below(&w->in, 4)],
-                              .view = any_view(w),
-                              .ssao = any_ssao(w),
-                              .blur = fuzz_flag(&w->in) ? any_blur(w) : NULL};
-    scramble(&w->in, variant, sizeof *variant, kept, 1);
-    /* In an array the next one begins where this one ends. */
-    if (variant->struct_size > sizeof *variant)
-        variant->struct_size = sizeof *variant;
+                                       VK_FORMAT_R16_SFLOAT, VK_FORMAT_R32_SFLOAT};
+    struct fuzz_input *in = &w->in;
+    vkao_effect_info e = vkao_effect_info_default();
+    e.stages = 1 + fuzz_below(in, 7);
+    e.half_resolution = fuzz_below(in, 4) == 3;
+    e.depth_encoding = (vkao_depth_encoding)fuzz_below(in, 4);
+    if (fuzz_flag(in))
+        e.normal_encoding = (vkao_normal_encoding)fuzz_below(in, 5);
+    e.projection = (vkao_projection)fuzz_below(in, 2);
+    e.ao_format = formats[fuzz_below(in, 4)];
+    e.bent_normals = fuzz_below(in, 4) == 3;
+    e.noisy_ao = fuzz_below(in, 8) == 7;
+    e.method = (vkao_ssao_method)fuzz_below(in, 6);
+    e.slice_count = fuzz_below(in, 5);
+    e.blur_radius = fuzz_below(in, 17);
+    e.composite_mode = (vkao_composite_mode)fuzz_below(in, 7);
+    e.specular = (vkao_specular)fuzz_below(in, 3);
+    e.multi_bounce = fuzz_flag(in);
+    e.parallel = fuzz_flag(in) ? run_backwards : NULL;
+    scramble(in, &e, sizeof e, kept, 1);
+    w->stages = e.stages;
+    w->orthographic = e.projection == VKAO_PROJECTION_ORTHOGRAPHIC;
+    return pass(w, &e, sizeof e);
 }
 
 static vkao_image *slot(vkao_images *images, size_t i)
 {
     vkao_image *const slots[SLOTS] = {
-        &images->depth,  &images->normals, &images->ao_noisy,     &images->ao,     &images->color,
-        &images->direct, &images->output,  &images->bent_normals, &images->albedo, &images->specular,
+        &images->depth,  &images->normals,  &images->ao_noisy, &images->ao,
+        &images->color,  &images->direct,   &images->output,   &images->bent_normals,
+        &images->albedo, &images->specular,
     };
     return slots[i];
 }
@@ -288,7 +281,7 @@ static void fill_images(struct world *w, vkao_images *images)
             continue;
         const uint32_t kind = fuzz_u8(&w->in);
         *slot(images, i) = (vkao_image){fake_caller_view(w->fake), VK_IMAGE_LAYOUT_GENERAL,
-                                        formats[i][kind % 3]};
+                                        formats[i][kind % 3], VK_NULL_HANDLE};
         if (kind > 245)
             slot(images, i)->layout = (VkImageLayout)fuzz_below(&w->in, 9);
         if (kind > 240 && kind < 246)
@@ -297,7 +290,7 @@ static void fill_images(struct world *w, vkao_images *images)
             slot(images, i)->view = VK_NULL_HANDLE;
     }
     if (used >> 15 && images->ao.format) {
-        images->ao_image = fake_caller_image(
+        images->ao.image = fake_caller_image(
             w->fake, &(VkImageCreateInfo){.format = images->ao.format,
                                           .extent = {w->extent.width, w->extent.height, 1},
                                           .mipLevels = 1,
@@ -307,7 +300,7 @@ static void fill_images(struct world *w, vkao_images *images)
 
 static const void *any_images(struct world *w)
 {
-    static const struct kept kept[] = {KEPT_TO(vkao_images, depth, ao_array_layer)};
+    static const struct kept kept[] = {KEPT_TO(vkao_images, depth, specular)};
     vkao_images images;
     fill_images(w, &images);
     scramble(&w->in, &images, sizeof images, kept, 1);
@@ -318,22 +311,18 @@ static const void *any_frame_info(struct world *w)
 {
     static const struct kept kept[] = {KEPT_TO(vkao_frame_info, images, scratch_memory),
                                        KEPT(vkao_frame_info, extent)};
-    static const uint32_t sizes[] = {100, 1, 2, 3, 7, 16, 63, 64, 1000, 4096, 128, 33, 17,
-                                     512, 0, 4097, UINT32_MAX};
-    vkao_frame_info info = {.struct_size = sizeof info,
-                            .stages = 1 + fuzz_below(&w->in, 7),
-                            .half_resolution = fuzz_below(&w->in, 4) == 3};
+    static const uint32_t sizes[] = {100,  1,   2,  3,  7,   16, 63,   64,        1000,
+                                     4096, 128, 33, 17, 512, 0,  4097, UINT32_MAX};
+    vkao_frame_info info = vkao_frame_info_default();
     w->extent.width = sizes[fuzz_u8(&w->in) % (sizeof sizes / sizeof *sizes)];
     w->extent.height = sizes[fuzz_u8(&w->in) % (sizeof sizes / sizeof *sizes)];
     info.extent = w->extent;
-    w->stages = info.stages;
     info.images = any_images(w);
     if (fuzz_below(&w->in, 8) == 7) {
         info.scratch_memory = fake_caller_memory(w->fake);
         info.scratch_offset = fuzz_flag(&w->in) ? 0 : fuzz_u32(&w->in);
     }
     scramble(&w->in, &info, sizeof info, kept, 2);
-    w->stages = info.stages;
     return pass(w, &info, sizeof info);
 }
 
@@ -369,8 +358,7 @@ static struct before begin(struct world *w)
 
 static void check_code(const struct world *w, const char *call, vkao_result result)
 {
-    FUZZ_CHECK(result <= VKAO_SUCCESS && result >= VKAO_ERROR_VULKAN, "%s returned %d", call,
-               (int)result);
+    FUZZ_CHECK(result <= VKAO_SUCCESS, "%s returned %d", call, (int)result);
     const char *failed = w->fake->failed;
     /* A name is a debugging aid: that it could not be set is no error. */
     const bool matters = failed && strcmp(failed, "vkSetDebugUtilsObjectNameEXT") != 0;
@@ -422,9 +410,16 @@ static void drop_frame(struct world *w)
     w->frame = NULL;
 }
 
-static void drop_context(struct world *w)
+static void drop_effect(struct world *w)
 {
     drop_frame(w);
+    vkao_effect_destroy(w->effect);
+    w->effect = NULL;
+}
+
+static void drop_context(struct world *w)
+{
+    drop_effect(w);
     vkao_context_destroy(w->context);
     w->context = NULL;
     FUZZ_CHECK(fake_live(w->fake) == 0, "%zu objects leak", fake_live(w->fake));
@@ -436,7 +431,7 @@ static void drop_context(struct world *w)
 static void choose_device(struct world *w)
 {
     static const char *const missing[] = {
-        "vkCreateBufferView",   "vkCmdDispatchIndirect",  "vkGetPhysicalDeviceProperties",
+        "vkCreateBufferView",    "vkCmdDispatchIndirect",  "vkGetPhysicalDeviceProperties",
         "vkDestroyShaderModule", "vkCmdCopyBufferToImage", "vkAllocateMemory"};
     struct fuzz_input *in = &w->in;
     struct fake_vulkan *fake = w->fake;
@@ -460,24 +455,24 @@ static void choose_device(struct world *w)
 static void create_context(struct world *w)
 {
     static const struct kept kept[] = {
-        KEPT_TO(vkao_context_info, instance, pipeline_cache),
-        KEPT_TO(vkao_context_info, log, log_level),
-        KEPT_TO(vkao_context_info, variant_count, variants),
-        KEPT_TO(vkao_context_info, parallel, parallel_user_data),
+        KEPT_TO(vkao_context_info, instance, mark_user_data),
+        KEPT(vkao_context_info, log_level),
     };
-    VkPhysicalDeviceFeatures features = {0};
+    VkPhysicalDevice16BitStorageFeatures storage = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_16BIT_STORAGE_FEATURES};
+    VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
     struct fuzz_input *in = &w->in;
     drop_context(w);
     if (w->contexts++ == MOST_CONTEXTS)
         return;
     choose_device(w);
-    vkao_add_required_features(&features);
+    vkao_add_required_features(&features.features);
     if (fuzz_below(in, 16) == 15)
-        features = (VkPhysicalDeviceFeatures){0};
-    features.shaderStorageImageExtendedFormats = fuzz_flag(in);
+        features.features = (VkPhysicalDeviceFeatures){0};
+    storage.storageBuffer16BitAccess = fuzz_flag(in);
+    features.pNext = fuzz_flag(in) ? &storage : NULL;
     vkao_context_info info = {
         .struct_size = sizeof info,
-        .method_mask = fuzz_below(in, 64),
         .instance = fake_instance(w->fake),
         .physical_device = fake_physical_device(w->fake),
         .device = fake_device(w->fake),
@@ -489,12 +484,6 @@ static void create_context(struct world *w)
         .log_user_data = w,
         .log_level = (vkao_log_level)fuzz_below(in, 4),
         .debug_labels = fuzz_flag(in),
-        .half_view_z = fuzz_below(in, 4) == 3,
-        .variants_only = fuzz_below(in, 4) == 3,
-        .scratch_layout = (vkao_scratch_layout)fuzz_below(in, 3),
-        .parallel = fuzz_flag(in) ? run_backwards : NULL,
-        .stage_mask = fuzz_below(in, 8),
-        .storage_16bit = fuzz_flag(in),
     };
     const uint32_t broken = fuzz_u8(in);
     if (broken == 1)
@@ -503,20 +492,11 @@ static void create_context(struct world *w)
         info.enabled_features = NULL;
     if (broken == 3)
         info.device = NULL;
-    info.variant_count = broken == 4 ? fuzz_u32(in) : fuzz_below(in, 3);
-    if (broken != 5 && info.variant_count <= 2) {
-        vkao_variant *variants = own(w, (info.variant_count + 1) * sizeof *variants);
-        for (uint32_t i = 0; i < info.variant_count; i++)
-            fill_variant(w, &variants[i]);
-        info.variants = variants;
-    } else if (info.variant_count <= 64) {
-        info.variants = NULL;
-    }
-    scramble(in, &info, sizeof info, kept, 4);
+    scramble(in, &info, sizeof info, kept, 2);
     const vkao_context_info *passed = pass(w, &info, sizeof info);
     w->fake->expected_allocator = info.allocator;
     /* Whether one was given is known only from a struct that is large enough to be read. */
-    w->logs = passed && passed->struct_size >= sizeof info && info.log;
+    w->logs = passed && (!passed->struct_size || passed->struct_size >= sizeof info) && info.log;
     const struct before before = begin(w);
     const vkao_result result = vkao_context_create(passed, &w->context);
     end(w, "vkao_context_create", &before, result, w->context);
@@ -524,16 +504,37 @@ static void create_context(struct world *w)
     w->logs = w->logs && w->context;
 }
 
-static void create_frame(struct world *w)
+static void create_effect(struct world *w)
 {
     const vkao_context *context = fuzz_u8(&w->in) == 255 ? NULL : w->context;
-    drop_frame(w);
-    const void *info = any_frame_info(w);
+    drop_effect(w);
+    const void *info = any_effect(w);
     const bool logs = w->logs;
     const struct before before = begin(w);
     w->logs = logs && context;
+    const vkao_result result = vkao_effect_create(context, info, &w->effect);
+    end(w, "vkao_effect_create", &before, result, w->effect);
+    FUZZ_CHECK(result != VKAO_SUCCESS || w->effect, "no effect");
+    if (w->effect) {
+        const vkao_effect_info settings = vkao_effect_settings(w->effect);
+        w->stages = settings.stages;
+        w->orthographic = settings.projection == VKAO_PROJECTION_ORTHOGRAPHIC;
+    }
+    w->logs = logs;
+}
+
+static void create_frame(struct world *w)
+{
+    drop_frame(w);
+    if (!w->effect)
+        create_effect(w);
+    const vkao_effect *effect = fuzz_u8(&w->in) == 255 ? NULL : w->effect;
+    const void *info = any_frame_info(w);
+    const bool logs = w->logs;
+    const struct before before = begin(w);
+    w->logs = logs && effect;
     w->frame = NULL;
-    const vkao_result result = vkao_frame_create(context, info, &w->frame);
+    const vkao_result result = vkao_frame_create(effect, info, &w->frame);
     end(w, "vkao_frame_create", &before, result, w->frame);
     FUZZ_CHECK(result != VKAO_SUCCESS || w->frame, "no frame");
     w->logs = logs;
@@ -546,8 +547,8 @@ static void query_scratch(struct world *w)
     const void *info = any_frame_info(w);
     const bool logs = w->logs;
     const struct before before = begin(w);
-    w->logs = logs && w->context;
-    const vkao_result result = vkao_frame_scratch(w->context, info, &requirements);
+    w->logs = logs && w->effect;
+    const vkao_result result = vkao_frame_scratch(w->effect, info, &requirements);
     end(w, "vkao_frame_scratch", &before, result, NULL);
     FUZZ_CHECK(fake_live(w->fake) == before.live, "the query left objects behind");
     if (result == VKAO_SUCCESS && requirements.size)
@@ -569,58 +570,34 @@ static void update_frame(struct world *w)
 
 static void record(struct world *w, uint32_t which)
 {
-    static const char *const names[] = {"vkao_cmd_prepare", "vkao_cmd_ssao", "vkao_cmd_blur",
-                                        "vkao_cmd_composite", "vkao_cmd_all"};
     const VkCommandBuffer cmd = fuzz_u8(&w->in) == 255 ? NULL : fake_command_buffer(w->fake);
     const vkao_frame *frame = fuzz_u8(&w->in) == 255 ? NULL : w->frame;
-    const uint32_t given = fuzz_u8(&w->in);
-    /* Params that the frame has no stage for must be NULL: mostly so. */
-    const vkao_stage_flags stages = given > 240 ? given : which == 4 ? w->stages : VKAO_STAGE_ALL;
+    const vkao_stage_flags stages = which == 4 ? fuzz_u8(&w->in) : 1u << which;
     const void *view = any_view(w);
-    const void *ssao = stages & VKAO_STAGE_SSAO ? any_ssao(w) : NULL;
-    const void *blur = stages & VKAO_STAGE_BLUR ? any_blur(w) : NULL;
-    const void *composite = stages & VKAO_STAGE_COMPOSITE ? any_composite(w) : NULL;
+    const void *params = any_params(w);
     const bool logs = w->logs;
     const struct before before = begin(w);
     w->logs = logs && frame;
-    vkao_result result = VKAO_SUCCESS;
-    switch (which) {
-    case 0: result = vkao_cmd_prepare(frame, cmd, view); break;
-    case 1: result = vkao_cmd_ssao(frame, cmd, view, ssao); break;
-    case 2: result = vkao_cmd_blur(frame, cmd, view, blur); break;
-    case 3: result = vkao_cmd_composite(frame, cmd, view, composite); break;
-    default: result = vkao_cmd_all(frame, cmd, view, ssao, blur, composite); break;
-    }
-    end(w, names[which], &before, result, NULL);
-    FUZZ_CHECK(fake_live(w->fake) == before.live, "%s created or destroyed", names[which]);
+    const bool all = fuzz_flag(&w->in);
+    const char *name = all ? "vkao_cmd_record" : "vkao_cmd_stage";
+    vkao_result result = all ? vkao_cmd_record(frame, cmd, view, params)
+                             : vkao_cmd_stage(frame, cmd, stages, view, params);
+    end(w, name, &before, result, NULL);
+    FUZZ_CHECK(fake_live(w->fake) == before.live, "%s created or destroyed", name);
     w->logs = logs;
-}
-
-static void ask_variant(struct world *w)
-{
-    vkao_variant variant;
-    fill_variant(w, &variant);
-    const void *passed = pass(w, &variant, sizeof variant);
-    const struct before before = begin(w);
-    const VkBool32 has = vkao_context_has_variant(w->context, passed);
-    FUZZ_CHECK(has == VK_FALSE || has == VK_TRUE, "%u", has);
-    FUZZ_CHECK(w->fake->call_count == 0 && fake_live(w->fake) == before.live,
-               "vkao_context_has_variant does something");
 }
 
 static void ask_preset(struct world *w)
 {
-    vkao_frame_info frame = {.struct_size = sizeof frame};
-    vkao_ssao_params ssao = vkao_ssao_params_default();
-    vkao_blur_params blur = vkao_blur_params_default();
+    vkao_effect_info effect = vkao_effect_info_default();
+    vkao_params params = vkao_params_default();
     const uint32_t given = fuzz_u8(&w->in);
     const vkao_quality quality = (vkao_quality)any_word(&w->in);
     const vkao_result result =
-        vkao_preset(quality, given & 1 ? &frame : NULL, given & 2 ? &ssao : NULL,
-                    given & 4 ? &blur : NULL);
+        vkao_preset(quality, given & 1 ? &effect : NULL, given & 2 ? &params : NULL);
     FUZZ_CHECK((result == VKAO_SUCCESS) == ((uint32_t)quality <= VKAO_QUALITY_BEST),
                "quality %d gives %d", (int)quality, (int)result);
-    FUZZ_CHECK(vkao_result_string((vkao_result)-(int)fuzz_below(&w->in, 8)), "no text");
+    FUZZ_CHECK(vkao_result_string((vkao_result) - (int)fuzz_below(&w->in, 8)), "no text");
     FUZZ_CHECK(vkao_version() > 0, "no version");
 }
 
@@ -628,16 +605,32 @@ static void one_call(struct world *w)
 {
     const uint32_t kind = fuzz_below(&w->in, 20);
     switch (kind) {
-    case 0: create_context(w); break;
+    case 0:
+        create_context(w);
+        break;
     case 1:
     case 2:
-    case 3: create_frame(w); break;
-    case 4: query_scratch(w); break;
-    case 5: update_frame(w); break;
-    case 6: ask_variant(w); break;
-    case 7: ask_preset(w); break;
-    case 8: drop_frame(w); break;
-    default: record(w, kind % 5); break;
+    case 3:
+        create_frame(w);
+        break;
+    case 4:
+        query_scratch(w);
+        break;
+    case 5:
+        update_frame(w);
+        break;
+    case 6:
+        create_effect(w);
+        break;
+    case 7:
+        ask_preset(w);
+        break;
+    case 8:
+        drop_frame(w);
+        break;
+    default:
+        record(w, kind % 5);
+        break;
     }
     while (w->owned_count)
         free(w->owned[--w->owned_count]);

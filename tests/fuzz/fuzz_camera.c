@@ -47,7 +47,7 @@ static void check_depth_types(const struct camera *camera, float scale)
             .pixel_aspect = 1.0f,
             .depth = depth,
             .depth_type = (enum depth_type)type,
-            .view = vkao_view_default(),
+            .view = ao_view_default(),
         };
         g.roles.kind[ROLE_DEPTH].channels[0] = &channel;
         for (int i = 0; i < WIDTH * HEIGHT; i++)

@@ -194,22 +194,22 @@ static void load(const struct exr_info *info, const struct gbuffer_options *opti
     const struct budget *budget = &options->budget;
     FUZZ_CHECK(!budget->pixels || texels <= budget->pixels, "%llu pixels",
                (unsigned long long)texels);
-    FUZZ_CHECK(!budget->memory || bytes <= budget->memory, "%llu bytes",
-               (unsigned long long)bytes);
+    FUZZ_CHECK(!budget->memory || bytes <= budget->memory, "%llu bytes", (unsigned long long)bytes);
     FUZZ_CHECK(placement_expand(&g, &placement, &err), "%s", err.message);
     FUZZ_CHECK(placement.left < MOST_PADDING && placement.top < MOST_PADDING, "padded by %ux%u",
                placement.left, placement.top);
-    vkao_ssao_params ssao = vkao_ssao_params_default();
-    ssao.radius = automatic_radius(&g);
-    ssao.bias = automatic_bias(&g, ssao.radius, ssao.bias);
-    for (int half = 0; half < 2; half++)
+    struct setting setting = setting_default();
+    setting.params.radius = automatic_radius(&g);
+    setting.params.bias = automatic_bias(&g, setting.params.radius, setting.params.bias);
+    for (int half = 0; half < 2; half++) {
+        setting.effect.half_resolution = (VkBool32)half;
         fuzz_check_job(&(struct fuzz_job){
             .width = g.width + placement.left,
             .height = g.height + placement.top,
-            .half_resolution = half,
             .view = &g.view,
-            .ssao = &ssao,
+            .setting = &setting,
         });
+    }
     gbuffer_free(&g);
 }
 
@@ -344,8 +344,7 @@ static void check_new_part(const struct exr_info *info, const struct exr_new_par
     free(values);
 }
 
-static void check_output(const struct exr_info *input, bool copied,
-                         const struct exr_new_part *made)
+static void check_output(const struct exr_info *input, bool copied, const struct exr_new_part *made)
 {
     struct exr_info info;
     struct tool_error err = {0};
@@ -380,9 +379,8 @@ static void append(struct fuzz_input *in, const struct exr_info *info)
         .attributes_from_part = fuzz_below(in, (uint32_t)info->part_count),
         .level = (float)fuzz_below(in, 12),
     };
-    const bool fits =
-        is_small(&part.data_window) && width_of(&part.data_window) *
-                                               height_of(&part.data_window) <= AO_PIXELS;
+    const bool fits = is_small(&part.data_window) &&
+                      width_of(&part.data_window) * height_of(&part.data_window) <= AO_PIXELS;
     if (!fits) {
         part.data_window.x_max = part.data_window.x_min;
         part.data_window.y_max = part.data_window.y_min;

@@ -172,8 +172,7 @@ static void fuzz_plan(char *text)
     snprintf(input, sizeof input, "%s/%s", fuzz_directory(), lines[0]);
     snprintf(output, sizeof output, "%s/%s", fuzz_directory(), lines[1]);
     char words[3][20] = {"--output", "--frames", "--camera"}, program[] = "vkao";
-    char *argv[] = {program,  input,    words[0], output, words[1],
-                    lines[2], words[2], lines[3], NULL};
+    char *argv[] = {program, input, words[0], output, words[1], lines[2], words[2], lines[3], NULL};
     struct frame_list list = {0};
     const bool is_list = !lines[2] || frame_list_parse(lines[2], FRAME_SYNTAX_VFX, &list, &err);
     const size_t frames = list.count;

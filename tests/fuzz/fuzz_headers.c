@@ -18,9 +18,10 @@ enum { MOST_PARTS = 4, MOST_CHANNELS = 16, MOST_ATTRIBUTES = 8, MOST_VIEWS = 3 }
 /* --- Names --- */
 
 static const char *const words[] = {
-    "",      "left",     "right", "ViewLayer", "beauty", "rgba", "depth",      "Depth.left",
-    "depth_right", "crypto", "mist", "A",      "R",      "Z",    "X",          "Y",
-    "dzdx",  "AO",       "N",     "P",         ".",      "..",   "left.right", "View Layer.Depth",
+    "",      "left",       "right",       "ViewLayer", "beauty",     "rgba",
+    "depth", "Depth.left", "depth_right", "crypto",    "mist",       "A",
+    "R",     "Z",          "X",           "Y",         "dzdx",       "AO",
+    "N",     "P",          ".",           "..",        "left.right", "View Layer.Depth",
 };
 
 static char *join(const char *a, const char *b, const char *c)
@@ -66,10 +67,14 @@ static char *known_name(struct fuzz_input *in)
 static char *any_name(struct fuzz_input *in)
 {
     switch (fuzz_below(in, 8)) {
-    case 0: return fuzz_text(in, 600);
-    case 1: return join(word(in), word(in), word(in));
-    case 2: return join("", "", word(in));
-    default: return known_name(in);
+    case 0:
+        return fuzz_text(in, 600);
+    case 1:
+        return join(word(in), word(in), word(in));
+    case 2:
+        return join("", "", word(in));
+    default:
+        return known_name(in);
     }
 }
 
@@ -106,14 +111,27 @@ static void fill_channels(struct fuzz_input *in, struct exr_part *part)
 }
 
 static const char *const attribute_names[] = {
-    "worldToCamera",       "worldToNDC",         "cameraFov",
-    "rs/camera/fov",       "arnold/camera/fov",  "unreal/camera/A/fov",
-    "unreal/camera/A/focalLength",               "unreal/camera/A/sensorWidth",
-    "CameraFocalLength",   "CameraFilmApertureHorizontal",
-    "pinholeFocalLength",  "sensorOverallDimensions",
-    "cameraFocalLength",   "cameraAperture",     "near",
-    "nearPlane",           "far",                "farPlane",
-    "cameraNearClip",      "cameraFarClip",      "vrayInfo/x",
+    "worldToCamera",
+    "worldToNDC",
+    "cameraFov",
+    "rs/camera/fov",
+    "arnold/camera/fov",
+    "unreal/camera/A/fov",
+    "unreal/camera/A/focalLength",
+    "unreal/camera/A/sensorWidth",
+    "CameraFocalLength",
+    "CameraFilmApertureHorizontal",
+    "pinholeFocalLength",
+    "sensorOverallDimensions",
+    "cameraFocalLength",
+    "cameraAperture",
+    "near",
+    "nearPlane",
+    "far",
+    "farPlane",
+    "cameraNearClip",
+    "cameraFarClip",
+    "vrayInfo/x",
     "unreal/",
 };
 
@@ -122,8 +140,7 @@ static void fill_attribute(struct fuzz_input *in, struct exr_attribute *a)
     static const size_t counts[] = {1, 16, 16, 2, 3, 4, 9, 1};
     const char *name =
         attribute_names[fuzz_below(in, sizeof attribute_names / sizeof *attribute_names)];
-    *a = (struct exr_attribute){.name = fuzz_copy(name, strlen(name)),
-                                .type = fuzz_copy("any", 3)};
+    *a = (struct exr_attribute){.name = fuzz_copy(name, strlen(name)), .type = fuzz_copy("any", 3)};
     const uint32_t kind = fuzz_below(in, 10);
     if (kind == 9)
         return;
@@ -261,7 +278,7 @@ static void check_camera(struct fuzz_input *in, const struct exr_info *info, siz
     const struct exr_part *p = &info->parts[part];
     struct camera camera = {0};
     struct camera_flags flags = {0};
-    vkao_view view = vkao_view_default();
+    struct ao_view view = ao_view_default();
     if (fuzz_flag(in))
         flags = (struct camera_flags){.fov_deg = 40, .fov_is_vertical = fuzz_flag(in)};
     camera_resolve(&flags, NULL, info, part, &camera);

@@ -34,29 +34,44 @@ static void split(const uint8_t *data, size_t size, struct command_line *line)
     memcpy(line->owned, line->argv, sizeof line->owned);
 }
 
+static void check_number(const struct option_row *row, double value)
+{
+    const struct option_range r = option_range(row);
+    const bool low = r.low_is_excluded ? value > r.low : value >= r.low;
+    const bool high = isinf(r.high) ? r.infinity_is_allowed || isfinite(value) : value <= r.high;
+    FUZZ_CHECK(low && high, "--%s is %g", row->name, value);
+}
+
+static void check_parameter(const struct options *o, const struct option_row *row,
+                            const vkao_parameter *p)
+{
+    const void *at = parameter_of_const(&o->setting, p);
+    float number;
+    uint32_t word;
+    memcpy(&number, at, sizeof number);
+    memcpy(&word, at, sizeof word);
+    if (p->type == VKAO_PARAMETER_FLOAT || p->type == VKAO_PARAMETER_COLOR)
+        check_number(row, (double)number);
+    else
+        FUZZ_CHECK((double)word <= p->most, "--%s is %u", row->name, word);
+}
+
 static void check_row(const struct options *o, const struct option_row *row)
 {
     const char *member = (const char *)o + row->offset;
     double value;
-    if (row->apply == apply_float || row->apply == apply_bias || row->apply == apply_normal_power) {
-        float narrow;
-        memcpy(&narrow, member, sizeof narrow);
-        value = (double)narrow;
-    } else if (row->apply == apply_uint || row->apply == apply_blur) {
+    if (option_parameter(row)) {
+        check_parameter(o, row, option_parameter(row));
+    } else if (row->apply == apply_uint) {
         uint32_t whole;
         memcpy(&whole, member, sizeof whole);
-        value = (double)whole;
+        check_number(row, (double)whole);
     } else if (row->apply == apply_double) {
         memcpy(&value, member, sizeof value);
-    } else {
-        return;
+        /* 0 is what stands there if the option was not given. */
+        if (value > 0 || value < 0)
+            check_number(row, value);
     }
-    const struct option_range *r = &row->range;
-    /* 0 is what stands there if the option was not given. */
-    const bool absent = !row->fallback && !(value > 0) && !(value < 0);
-    const bool low = r->low_is_excluded ? value > r->low : value >= r->low;
-    const bool high = isinf(r->high) ? r->infinity_is_allowed || isfinite(value) : value <= r->high;
-    FUZZ_CHECK(absent || (low && high), "--%s is %g", row->name, value);
 }
 
 static void check_words(const struct options *o)
@@ -79,7 +94,7 @@ static void check_words(const struct options *o)
 /* render resolves the radius and the planes; all else goes to the library as it is. */
 static void check_with_library(const struct options *o)
 {
-    vkao_view view = vkao_view_default();
+    struct ao_view view = ao_view_default();
     const struct exr_box box = {0, 0, 15, 8};
     struct exr_part part = {.data_window = box, .display_window = box, .pixel_aspect = 1.0f};
     const struct exr_info info = {.parts = &part, .part_count = 1};
@@ -91,18 +106,11 @@ static void check_with_library(const struct options *o)
         camera_project(&camera, &(struct camera_planes){0, 100}, &box, &box, &view);
     if (!camera_can_project(&view)) /* refused by name when the depth is prepared */
         return;
-    vkao_ssao_params ssao = o->ssao;
-    if (o->radius_is_auto)
-        ssao.radius = 1.0f;
     fuzz_check_job(&(struct fuzz_job){
         .width = 16,
         .height = 9,
-        .half_resolution = o->half_resolution,
-        .bent_normals = o->bent_normals,
         .view = &view,
-        .ssao = &ssao,
-        .blur = &o->blur,
-        .composite = &o->composite,
+        .setting = &o->setting,
     });
 }
 

@@ -19,14 +19,13 @@ static void keep_error(void *user_data, vkao_log_level level, const char *messag
         snprintf(last_error, sizeof last_error, "%s", message);
 }
 
-/* Once: the pipelines of all methods are many calls, even where each does nothing. */
 static void create_context(void)
 {
-    VkPhysicalDeviceFeatures features = {0};
+    VkPhysicalDeviceFeatures2 features = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
     fake_init(&fake);
     fake.max_dimension = UINT16_MAX;
     fake.max_texels = fake.max_buffer = UINT32_MAX;
-    vkao_add_required_features(&features);
+    vkao_add_required_features(&features.features);
     const vkao_context_info info = {
         .struct_size = sizeof info,
         .instance = fake_instance(&fake),
@@ -43,14 +42,12 @@ static void create_context(void)
 
 static vkao_image image_of(VkFormat format)
 {
-    return (vkao_image){fake_caller_view(&fake), VK_IMAGE_LAYOUT_GENERAL, format};
+    return (vkao_image){fake_caller_view(&fake), VK_IMAGE_LAYOUT_GENERAL, format, VK_NULL_HANDLE};
 }
 
 void fuzz_check_job(const struct fuzz_job *job)
 {
-    const vkao_ssao_params ssao = vkao_ssao_params_default();
-    const vkao_blur_params blur = vkao_blur_params_default();
-    const vkao_composite_params composite = vkao_composite_params_default();
+    const struct setting setting = job->setting ? *job->setting : setting_default();
     if (!context)
         create_context();
     const size_t objects = fake.object_count;
@@ -59,24 +56,27 @@ void fuzz_check_job(const struct fuzz_job *job)
     images.normals = image_of(VK_FORMAT_R32G32B32A32_SFLOAT);
     images.ao = image_of(VK_FORMAT_R32_SFLOAT);
     images.color = images.output = image_of(VK_FORMAT_R32G32B32A32_SFLOAT);
-    if (job->bent_normals)
+    if (setting.effect.bent_normals)
         images.bent_normals = image_of(VK_FORMAT_R32G32B32A32_SFLOAT);
-    const vkao_frame_info info = {
-        .struct_size = sizeof info,
-        .stages = VKAO_STAGE_ALL,
-        .extent = {job->width, job->height},
-        .images = &images,
-        .half_resolution = job->half_resolution,
-    };
-    vkao_frame *frame;
+    vkao_effect_info effect_info = setting.effect;
+    effect_info.stages = VKAO_STAGE_ALL;
+    ao_view_describe(job->view, &effect_info);
+    effect_info.ao_format = VK_FORMAT_R32_SFLOAT;
+    vkao_frame_info info = vkao_frame_info_default();
+    info.extent = (VkExtent2D){job->width, job->height};
+    info.images = &images;
+    const vkao_view view = ao_library_view(job->view);
+    vkao_effect *effect = NULL;
+    vkao_frame *frame = NULL;
     last_error[0] = '\0';
-    vkao_result result = vkao_frame_create(context, &info, &frame);
+    vkao_result result = vkao_effect_create(context, &effect_info, &effect);
+    if (result == VKAO_SUCCESS)
+        result = vkao_frame_create(effect, &info, &frame);
     FUZZ_CHECK(result == VKAO_SUCCESS, "%ux%u: %s", job->width, job->height, last_error);
-    result = vkao_cmd_all(frame, fake_command_buffer(&fake), job->view,
-                          job->ssao ? job->ssao : &ssao, job->blur ? job->blur : &blur,
-                          job->composite ? job->composite : &composite);
+    result = vkao_cmd_record(frame, fake_command_buffer(&fake), &view, &setting.params);
     FUZZ_CHECK(result == VKAO_SUCCESS, "%ux%u: %s", job->width, job->height, last_error);
     vkao_frame_destroy(frame);
+    vkao_effect_destroy(effect);
     FUZZ_CHECK(!fake.error[0], "%s", fake.error);
     /* The fake forgets nothing by itself. */
     fake_forget_calls(&fake);

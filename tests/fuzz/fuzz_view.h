@@ -1,19 +1,17 @@
 /* SPDX-License-Identifier: MIT
  *
- * What the tools make of an input is never what the library refuses: that would be exit status 70. */
+ * What the tools make of an input is never what the library refuses: that would be exit status
+ * 70. */
 #ifndef VKAO_TESTS_FUZZ_VIEW_H_
 #define VKAO_TESTS_FUZZ_VIEW_H_
 
 #include "gbuffer.h"
-#include "vkao.h"
+#include "setting.h"
 
 struct fuzz_job {
     uint32_t width, height;
-    bool half_resolution, bent_normals;
-    const vkao_view *view;
-    const vkao_ssao_params *ssao; /* NULL = defaults, as the two below */
-    const vkao_blur_params *blur;
-    const vkao_composite_params *composite;
+    const struct ao_view *view;
+    const struct setting *setting; /* NULL = defaults */
 };
 /* Breaks a promise unless the library records all stages of the job, over a driver that computes
  * nothing. */

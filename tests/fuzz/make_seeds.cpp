@@ -28,7 +28,8 @@
 #include <string>
 #include <vector>
 
-namespace {
+namespace
+{
 
 namespace Imf = OPENEXR_IMF_NAMESPACE;
 
@@ -71,8 +72,8 @@ struct pixels {
                                                         : &as_uint;
                 memcpy(&memory.back()[i * bytes], from, bytes);
             }
-            frame.insert(c.name(), Imf::Slice::Make(type, memory.back().data(), box, bytes,
-                                                    bytes * width));
+            frame.insert(c.name(),
+                         Imf::Slice::Make(type, memory.back().data(), box, bytes, bytes * width));
         }
     }
 };
@@ -94,11 +95,12 @@ struct deep_pixels {
             counts.push_back(i % 5 == 0 ? 2 : i % 2);
             pointers.push_back(samples[i].data());
         }
-        frame.insertSampleCountSlice(Imf::Slice(
-            Imf::UINT, reinterpret_cast<char *>(counts.data() - first), 4, 4 * width));
+        frame.insertSampleCountSlice(
+            Imf::Slice(Imf::UINT, reinterpret_cast<char *>(counts.data() - first), 4, 4 * width));
         for (auto c = channels.begin(); c != channels.end(); ++c)
             frame.insert(c.name(),
-                         Imf::DeepSlice(Imf::FLOAT, reinterpret_cast<char *>(pointers.data() - first),
+                         Imf::DeepSlice(Imf::FLOAT,
+                                        reinterpret_cast<char *>(pointers.data() - first),
                                         sizeof(float *), sizeof(float *) * width, sizeof(float)));
     }
 };
@@ -124,8 +126,8 @@ void add_attributes(Imf::Header &header)
     header.insert("cameraFov", Imf::FloatAttribute(50.0f));
     header.insert("worldToCamera",
                   Imf::M44fAttribute(Imath::M44f(1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0, 1, 2, 3, 1)));
-    header.insert("worldToNDC", Imf::M44fAttribute(Imath::M44f(2, 0, 0, 0, 0, 0, 1, 1, 0, -2, 0, 0,
-                                                               0, 0, -1, 0)));
+    header.insert("worldToNDC", Imf::M44fAttribute(
+                                    Imath::M44f(2, 0, 0, 0, 0, 0, 1, 1, 0, -2, 0, 0, 0, 0, -1, 0)));
     header.insert("timeCode", Imf::TimeCodeAttribute(Imf::TimeCode(0x12345678)));
     header.insert("chromaticities", Imf::ChromaticitiesAttribute(Imf::Chromaticities()));
     header.setPreviewImage(Imf::PreviewImage(2, 2));
@@ -172,9 +174,8 @@ std::vector<Imf::Header> make_headers(Imf::Compression compression, const std::s
     if (structure == "multi") {
         for (const char *part : {"beauty", "tiled", "mip", "deep", "deeptile"}) {
             const std::string kind = part;
-            const Imf::Compression deep = compression > Imf::ZIPS_COMPRESSION
-                                              ? Imf::ZIPS_COMPRESSION
-                                              : compression;
+            const Imf::Compression deep =
+                compression > Imf::ZIPS_COMPRESSION ? Imf::ZIPS_COMPRESSION : compression;
             headers.push_back(make_header(kind.rfind("deep", 0) == 0 ? deep : compression, kind));
             headers.back().setName(kind);
         }
@@ -187,8 +188,7 @@ std::vector<Imf::Header> make_headers(Imf::Compression compression, const std::s
     } else {
         headers.push_back(make_header(compression, structure));
         if (structure == "stereo") {
-            headers.back().insert("multiView",
-                                  Imf::StringVectorAttribute({"left", "right"}));
+            headers.back().insert("multiView", Imf::StringVectorAttribute({"left", "right"}));
             add_channels(headers.back(), "right.", true);
         }
     }

@@ -68,7 +68,7 @@ static void agrees_with_reference_for_every_parameter(void **state)
             ref_blur(&reference, &p.blur, p.view.normal_encoding, p.values[SLOT_NORMALS],
                      p.values[SLOT_NOISY], expected);
             snprintf(what, sizeof what, "row %zu, scene %zu", i, s);
-            check_close(what, p.values[SLOT_AO], expected, picture_texels(&p), 3e-4, 2e-3);
+            check_close(what, p.values[SLOT_AO], expected, picture_texels(&p), 3e-4, 2e-3, 0.02);
             ref_scene_free(&reference);
             free(expected);
             picture_free(&p);

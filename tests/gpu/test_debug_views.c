@@ -53,7 +53,7 @@ static void view_z_and_normals_are_those_of_the_grid(void **state)
         }
         picture_run(&p);
         check_close(show_normals ? "normals" : "view z", p.values[SLOT_OUTPUT], want,
-                    picture_texels(&p) * 4, 1e-6, 1e-5);
+                    picture_texels(&p) * 4, 1e-6, 1e-5, 1e-5);
         ref_scene_free(&full);
         ref_scene_free(&half);
         free(stored);

@@ -170,7 +170,8 @@ static void valid_part_with_an_offset_agrees_with_the_reference(void **state)
     picture_run(&p);
     picture_reference_scene(&p, &reference);
     ref_hemisphere(&reference, &p.ssao, expected);
-    check_close("valid (17,9) 50x40", p.values[SLOT_AO], expected, picture_texels(&p), 1e-4, 1e-3);
+    check_close("valid (17,9) 50x40", p.values[SLOT_AO], expected, picture_texels(&p), 1e-4, 1e-3,
+                0.02);
     ref_scene_free(&reference);
     free(expected);
     picture_free(&p);
@@ -186,10 +187,10 @@ static void stage_by_stage_equals_all(void **state)
     picture_run(&all);
     picture_open(&stages, &g);
     VkCommandBuffer cmd = gpu_begin(&fixture.gpu, &fixture.error);
-    check_vkao(vkao_cmd_prepare(g.frame, cmd, &stages.view));
-    check_vkao(vkao_cmd_ssao(g.frame, cmd, &stages.view, &stages.ssao));
-    check_vkao(vkao_cmd_blur(g.frame, cmd, &stages.view, &stages.blur));
-    check_vkao(vkao_cmd_composite(g.frame, cmd, &stages.view, &stages.composite));
+    picture_record_stages(&stages, &g, cmd, VKAO_STAGE_PREPARE);
+    picture_record_stages(&stages, &g, cmd, VKAO_STAGE_SSAO);
+    picture_record_stages(&stages, &g, cmd, VKAO_STAGE_BLUR);
+    picture_record_stages(&stages, &g, cmd, VKAO_STAGE_COMPOSITE);
     check(gpu_submit(&fixture.gpu, cmd, &fixture.error));
     picture_download(&stages, &g);
     check_equal("ao_noisy", stages.values[SLOT_NOISY], all.values[SLOT_NOISY],
@@ -215,7 +216,7 @@ static void scratch_images_give_the_same_output(void **state)
     picture_run(&own);
     picture_run(&scratch);
     check_close("output", scratch.values[SLOT_OUTPUT], own.values[SLOT_OUTPUT],
-                picture_texels(&own) * 4, 5e-4, 3e-3);
+                picture_texels(&own) * 4, 5e-4, 3e-3, 6e-3);
     picture_free(&own);
     picture_free(&scratch);
 }

@@ -6,10 +6,10 @@
 
 #include <stdio.h>
 
-static const vkao_ssao_params *hemisphere(void)
+static const struct ao_ssao *hemisphere(void)
 {
-    static vkao_ssao_params params;
-    params = vkao_ssao_params_default();
+    static struct ao_ssao params;
+    params = ao_ssao_default();
     params.method = VKAO_SSAO_HEMISPHERE;
     return &params;
 }

@@ -138,14 +138,12 @@ static void run_pattern(vkao_quality quality, bool blurred, uint32_t pattern,
 {
     struct picture p;
     struct lens lens = lens_orthographic(1.6, 1.2);
-    vkao_frame_info frame = {.struct_size = sizeof frame};
     picture_init(&p, WIDTH, HEIGHT, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
     p.view.depth_encoding = VKAO_DEPTH_VIEW_Z;
     p.view.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
     picture_render_scene(&p, scene, &lens, VK_FORMAT_R32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT);
     picture_set(&p, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
-    check_vkao(vkao_preset(quality, &frame, &p.ssao, &p.blur));
-    p.half_resolution = frame.half_resolution;
+    picture_preset(&p, quality);
     p.ssao.radius = 1.6f;
     p.ssao.noise_index = pattern;
     if (!blurred)

@@ -74,7 +74,7 @@ static void view_z_agrees_with_reference_for_every_format_encoding_and_far_plane
             ref_sphere(&reference, &p.ssao, expected);
             snprintf(what, sizeof what, "%s, format %d, encoding %d", lenses[l].name, (int)format,
                      (int)encoding);
-            check_close(what, p.values[SLOT_AO], expected, picture_texels(&p), 2e-4, 2e-3);
+            check_close(what, p.values[SLOT_AO], expected, picture_texels(&p), 2e-4, 2e-3, 0.02);
             assert_true(mean_of(expected, picture_texels(&p)) < 0.9);
             free(expected);
             ref_scene_free(&reference);

@@ -67,12 +67,13 @@ static void fill_memory(const struct picture *p, struct picture_gpu *g, unsigned
     vkao_frame_info info;
     VkMemoryRequirements need;
     picture_frame_info(p, g, &info);
-    check_vkao(vkao_frame_scratch(fixture.context, &info, &need));
+    check_vkao(vkao_frame_scratch(g->effect, &info, &need));
     assert_true(need.size <= scratch.bytes);
     VkCommandBuffer cmd = gpu_begin(&fixture.gpu, &fixture.error);
     check(cmd != NULL);
     gpu_full_barrier(cmd);
-    vkCmdFillBuffer(cmd, scratch.buffer, 0, (need.size + 3) & ~(VkDeviceSize)3, value * 0x01010101u);
+    vkCmdFillBuffer(cmd, scratch.buffer, 0, (need.size + 3) & ~(VkDeviceSize)3,
+                    value * 0x01010101u);
     gpu_full_barrier(cmd);
     check(gpu_submit(&fixture.gpu, cmd, &fixture.error));
     for (int i = 0; i < SLOT_COUNT; ++i) {
@@ -95,7 +96,8 @@ static VkRect2D rect_of(const struct picture *p)
     return (VkRect2D){{0, 0}, {p->width, p->height}};
 }
 
-/* Whether they are equal inside the rect, and outside as they were filled. ao_noisy is written beyond the rect too. */
+/* Whether they are equal inside the rect, and outside as they were filled. ao_noisy is written
+ * beyond the rect too. */
 static bool bytes_agree(const struct picture *p, enum picture_slot slot, const unsigned char *bytes,
                         const unsigned char *want, unsigned char value, const char *what)
 {
@@ -154,7 +156,13 @@ static void check_case(const struct picture *p, const char *what)
 
 /* --- Cases --- */
 
-#define NOWHERE {{0, 0}, {0, 0}}
+#define NOWHERE                                                                                    \
+    {                                                                                              \
+        {0, 0},                                                                                    \
+        {                                                                                          \
+            0, 0                                                                                   \
+        }                                                                                          \
+    }
 /* Whole images of all remainders, parts of images, parts of parts, and what lies in several strips
  * or tiles. */
 static const struct edge {
@@ -177,11 +185,12 @@ static const struct edge {
 };
 
 enum kind { FULL, HALF, BENT, HALF_BENT, NOISY, LIT, KINDS };
-static const char *const kind_names[KINDS] = {"full", "half", "bent", "half, bent", "ao_noisy", "lit"};
+static const char *const kind_names[KINDS] = {"full",       "half",     "bent",
+                                              "half, bent", "ao_noisy", "lit"};
 
-static void use_normals(struct picture *p, struct chance *chance)
+static void use_normals(struct picture *p, struct chance *settings, struct chance *chance)
 {
-    p->view.normal_encoding = (vkao_normal_encoding)chance_below(chance, 5);
+    p->view.normal_encoding = (vkao_normal_encoding)chance_below(settings, 5);
     picture_fill(p, SLOT_NORMALS, VK_FORMAT_R32G32B32A32_SFLOAT, 0.0);
     for (size_t i = 0; i < picture_texels(p) * 4; ++i)
         p->values[SLOT_NORMALS][i] = chance_between(chance, -1.0, 1.0);
@@ -189,23 +198,26 @@ static void use_normals(struct picture *p, struct chance *chance)
                    p->values[SLOT_NORMALS], p->width, p->height, 4);
 }
 
-static void make_depth(struct picture *p, struct chance *chance, enum hostile_pattern pattern)
+static void make_depth(struct picture *p, struct chance *settings, struct chance *chance)
 {
     const struct scene scenes[] = {scene_corner(), scene_fence(), scene_open_sky()};
     const double aspect = (double)p->width / p->height;
-    const struct lens lens = chance_yes(chance, 0.7) ? lens_perspective(0.8 * aspect, 0.8)
-                                                     : lens_orthographic(2.0 * aspect, 2.0);
+    const struct lens lens = chance_yes(settings, 0.7) ? lens_perspective(0.8 * aspect, 0.8)
+                                                       : lens_orthographic(2.0 * aspect, 2.0);
     picture_render_scene(p, &scenes[chance_below(chance, COUNT(scenes))], &lens,
                          VK_FORMAT_R32_SFLOAT, VK_FORMAT_UNDEFINED);
     if (chance_yes(chance, 0.9))
-        hostile_spread(chance, pattern, p->values[SLOT_DEPTH], p->width, p->height, 1);
+        hostile_spread(chance, (enum hostile_pattern)chance_below(chance, HOSTILE_PATTERNS),
+                       p->values[SLOT_DEPTH], p->width, p->height, 1);
 }
 
-static void make_outputs(struct picture *p, struct chance *chance, enum kind kind)
+static void make_outputs(struct picture *p, struct chance *settings, struct chance *chance,
+                         enum kind kind)
 {
     /* A software driver compiles for each format: one of them a kind. */
-    static const VkFormat ao[KINDS] = {VK_FORMAT_R8_UNORM,   VK_FORMAT_R32_SFLOAT, VK_FORMAT_R16_SFLOAT,
-                                       VK_FORMAT_R32_SFLOAT, VK_FORMAT_R16_UNORM,  VK_FORMAT_R32_SFLOAT};
+    static const VkFormat ao[KINDS] = {VK_FORMAT_R8_UNORM,   VK_FORMAT_R32_SFLOAT,
+                                       VK_FORMAT_R16_SFLOAT, VK_FORMAT_R32_SFLOAT,
+                                       VK_FORMAT_R16_UNORM,  VK_FORMAT_R32_SFLOAT};
     picture_set(p, SLOT_AO, ao[kind], NULL);
     p->staged = chance_yes(chance, 0.6);
     p->half_resolution = kind == HALF || kind == HALF_BENT;
@@ -218,40 +230,41 @@ static void make_outputs(struct picture *p, struct chance *chance, enum kind kin
                                                     VKAO_COMPOSITE_VIEW_Z, VKAO_COMPOSITE_NOISY_AO};
         p->stages |= VKAO_STAGE_COMPOSITE;
         picture_set(p, SLOT_OUTPUT, VK_FORMAT_R16G16B16A16_SFLOAT, NULL);
-        p->composite.mode = modes[chance_below(chance, kind == LIT ? 4 : 3)];
-        if (kind == LIT && p->composite.mode == VKAO_COMPOSITE_AO_ONLY && chance_yes(chance, 0.5))
+        p->composite.mode = modes[chance_below(settings, kind == LIT ? 4 : 3)];
+        if (kind == LIT && p->composite.mode == VKAO_COMPOSITE_AO_ONLY && chance_yes(settings, 0.5))
             p->formats[SLOT_AO] = VK_FORMAT_UNDEFINED; /* in scratch */
     }
 }
 
-static void make_blur(struct picture *p, struct chance *chance)
+static void make_blur(struct picture *p, struct chance *settings, struct chance *chance)
 {
     static const uint32_t radii[] = {0, 1, 2, 3, 5, 16};
     static const float sharpness[] = {0.0f, 0x1p-149f, 1.0f, 200.0f, 10000.0f},
                        powers[] = {0.0f, 8.0f, 2.5f};
-    p->blur.radius = radii[chance_below(chance, COUNT(radii))];
+    p->blur.radius = radii[chance_below(settings, COUNT(radii))];
     p->blur.sharpness = sharpness[chance_below(chance, COUNT(sharpness))];
-    p->blur.normal_power = powers[chance_below(chance, COUNT(powers))];
+    p->blur.normal_power = powers[chance_below(settings, COUNT(powers))];
     p->blur.intensity = chance_yes(chance, 0.7) ? 1.0f : 1.7f;
 }
 
-static void make(struct picture *p, struct chance *chance, const struct edge *edge,
-                 enum kind kind)
+/* settings: what is compiled, the same for all pictures of an effect. */
+static void make(struct picture *p, struct chance *settings, struct chance *chance,
+                 const struct edge *edge, enum kind kind)
 {
     picture_init(p, edge->width, edge->height, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
     p->view.valid = edge->valid;
     p->view.rect = edge->rect;
     p->view.viewport = edge->viewport;
-    p->view.depth_encoding = (vkao_depth_encoding)chance_below(chance, 4);
+    p->view.depth_encoding = (vkao_depth_encoding)chance_below(settings, 4);
     p->scratch_memory = scratch.memory;
-    make_depth(p, chance, (enum hostile_pattern)chance_below(chance, HOSTILE_PATTERNS));
-    use_normals(p, chance);
-    make_outputs(p, chance, kind);
-    make_blur(p, chance);
+    make_depth(p, settings, chance);
+    use_normals(p, settings, chance);
+    make_outputs(p, settings, chance, kind);
+    make_blur(p, settings, chance);
 }
 
 /* In the order of vkao_ssao_method, and the second form of SPHERE. */
-static const char *const method_names[] = {"sphere", "hemisphere", "hbao", "gtao",
+static const char *const method_names[] = {"sphere", "hemisphere", "hbao",           "gtao",
                                            "vbao",   "raymarch",   "sphere, literal"};
 enum { METHODS = sizeof method_names / sizeof method_names[0] };
 
@@ -269,98 +282,79 @@ static bool has_bent_normals(uint32_t method)
     return method >= VKAO_SSAO_GTAO && method <= VKAO_SSAO_RAYMARCH;
 }
 
-static void use_context(const vkao_context_info *info)
+/* Every edge; all have the same effect. Frees the pictures. */
+static void check_edges(struct picture pictures[COUNT(edges)], const char *what)
 {
-    check_vkao(vkao_context_create(info, &fixture.context));
-    scratch_open();
+    char name[128];
+    for (uint32_t e = 0; e < COUNT(edges); ++e) {
+        snprintf(name, sizeof name, "%s, %s", what, edges[e].name);
+        check_case(&pictures[e], name);
+        picture_free(&pictures[e]);
+    }
 }
 
-static vkao_context *fixtures_own;
-
-static void open_layout(vkao_scratch_layout layout)
+static void check_none_failed(void)
 {
-    vkao_context_info info = fixture_context_info();
-    info.scratch_layout = layout;
-    fixtures_own = fixture.context;
-    use_context(&info);
-}
-
-static void close_layout(void)
-{
-    vkao_context_destroy(fixture.context);
-    fixture.context = fixtures_own;
-    scratch_close();
     const uint32_t wrong = failed;
     print_message("    %u cases, each with %d fills: %u wrong\n", cases, FILLS, wrong);
     cases = failed = 0;
     assert_int_equal(wrong, 0);
 }
 
-/* Every method, edge and kind of frame, with whatever else chance brings. */
-static void check_methods(void)
+/* Every method, kind of frame and edge, with whatever else chance brings. */
+static void methods_forget_what_memory_held(void **state)
 {
-    for (uint32_t i = 0; i < METHODS * COUNT(edges) * KINDS; ++i) {
-        const uint32_t method = i % METHODS, e = i / METHODS % COUNT(edges),
-                       kind = i / METHODS / COUNT(edges);
-        struct chance chance = chance_of(1000 + i);
-        struct picture p;
+    (void)state;
+    scratch_open();
+    for (uint32_t i = 0; i < METHODS * KINDS; ++i) {
+        const uint32_t method = i % METHODS, kind = i / METHODS;
+        struct picture pictures[COUNT(edges)];
         char what[96];
         if ((kind == BENT || kind == HALF_BENT) && !has_bent_normals(method))
             continue;
-        make(&p, &chance, &edges[e], (enum kind)kind);
-        choose_method(&p, method);
-        snprintf(what, sizeof what, "%u: %s, %s, %s", i, method_names[method], edges[e].name,
-                 kind_names[kind]);
-        check_case(&p, what);
-        picture_free(&p);
+        for (uint32_t e = 0; e < COUNT(edges); ++e) {
+            struct chance settings = chance_of(1000 + i),
+                          chance = chance_of(2000 + COUNT(edges) * i + e);
+            make(&pictures[e], &settings, &chance, &edges[e], (enum kind)kind);
+            choose_method(&pictures[e], method);
+        }
+        snprintf(what, sizeof what, "%u: %s, %s", i, method_names[method], kind_names[kind]);
+        check_edges(pictures, what);
     }
+    scratch_close();
+    check_none_failed();
 }
 
-static void check_preset(vkao_quality quality)
+static void presets_forget_what_memory_held(void **state)
 {
-    for (uint32_t i = 0; i < COUNT(edges) * 4; ++i) {
-        struct chance chance = chance_of(7000 + 100 * (uint64_t)quality + i);
-        struct picture p;
-        vkao_frame_info frame = {.half_resolution = VK_FALSE};
+    (void)state;
+    scratch_open();
+    for (uint32_t i = 0; i < 4 * 2; ++i) {
+        struct picture pictures[COUNT(edges)];
         char what[96];
-        make(&p, &chance, &edges[i / 4], FULL);
-        const float sharpness = p.blur.sharpness;
-        check_vkao(vkao_preset(quality, &frame, &p.ssao, &p.blur));
-        p.half_resolution = frame.half_resolution;
-        p.blur.sharpness = i % 2 ? sharpness : p.blur.sharpness;
-        snprintf(what, sizeof what, "preset %d, %s", (int)quality, edges[i / 4].name);
-        check_case(&p, what);
-        picture_free(&p);
+        for (uint32_t e = 0; e < COUNT(edges); ++e) {
+            struct picture *p = &pictures[e];
+            struct chance settings = chance_of(7000 + i),
+                          chance = chance_of(8000 + COUNT(edges) * i + e);
+            make(p, &settings, &chance, &edges[e], FULL);
+            const float sharpness = p->blur.sharpness;
+            picture_preset(p, (vkao_quality)(i % 4));
+            p->blur.sharpness = e % 2 ? sharpness : p->blur.sharpness;
+        }
+        snprintf(what, sizeof what, "%u: preset %u", i, i % 4);
+        check_edges(pictures, what);
     }
+    scratch_close();
+    check_none_failed();
 }
 
-static void check_layout(vkao_scratch_layout layout)
-{
-    open_layout(layout);
-    check_methods();
-    for (int q = VKAO_QUALITY_FAST; q <= VKAO_QUALITY_BEST; ++q)
-        check_preset((vkao_quality)q);
-    close_layout();
-}
-
-static void images_forget_what_memory_held(void **state)
-{
-    (void)state;
-    check_layout(VKAO_SCRATCH_IMAGES);
-}
-
-static void buffers_forget_what_memory_held(void **state)
-{
-    (void)state;
-    check_layout(VKAO_SCRATCH_BUFFERS);
-}
-
-/* Blurs that are unrolled for their settings. */
+/* Blurs that a CPU is offered in strips and tiles of their own. */
 static const struct special {
     uint32_t radius;
     float normal_power;
     bool half, staged;
-} specials[] = {{3, 0.0f, true, true}, {3, 0.0f, false, true}, {1, 8.0f, false, false}, {6, 0.0f, true, false}};
+} specials[] = {
+    {3, 0.0f, true, true}, {3, 0.0f, false, true}, {1, 8.0f, false, false}, {6, 0.0f, true, false}};
 
 static void make_special(struct picture *p, struct chance *chance, const struct special *special,
                          const struct edge *edge)
@@ -388,51 +382,30 @@ static void make_special(struct picture *p, struct chance *chance, const struct 
     p->blur.sharpness = sharpness[chance_below(chance, COUNT(sharpness))];
 }
 
-static void variants_in_buffers_forget_what_memory_held(void **state)
+static void blurs_forget_what_memory_held(void **state)
 {
     (void)state;
-    struct picture models[COUNT(specials)];
-    vkao_variant variants[COUNT(specials)];
-    vkao_context_info info = fixture_context_info();
-    for (uint32_t i = 0; i < COUNT(specials); ++i) {
-        struct chance chance = chance_of(i);
-        make_special(&models[i], &chance, &specials[i], &edges[0]);
-        variants[i] = (vkao_variant){
-            .struct_size = sizeof variants[i],
-            .half_resolution = specials[i].half,
-            .staged_ao = specials[i].staged ? VK_FORMAT_R32_SFLOAT : VK_FORMAT_UNDEFINED,
-            .view = &models[i].view,
-            .ssao = &models[i].ssao,
-            .blur = &models[i].blur,
-        };
-    }
-    info.scratch_layout = VKAO_SCRATCH_BUFFERS;
-    info.variants = variants;
-    info.variant_count = COUNT(specials);
-    info.variants_only = VK_TRUE;
-    fixtures_own = fixture.context;
-    use_context(&info);
-    for (uint32_t i = 0; i < COUNT(specials) * COUNT(edges) * 6; ++i) {
-        struct chance chance = chance_of(9000 + i);
-        struct picture p;
+    scratch_open();
+    for (uint32_t i = 0; i < COUNT(specials) * 3; ++i) {
+        struct picture pictures[COUNT(edges)];
         char what[96];
-        const struct edge *edge = &edges[i / COUNT(specials) % COUNT(edges)];
-        make_special(&p, &chance, &specials[i % COUNT(specials)], edge);
-        snprintf(what, sizeof what, "%u: blur radius %u, %s", i, p.blur.radius, edge->name);
-        check_case(&p, what);
-        picture_free(&p);
+        for (uint32_t e = 0; e < COUNT(edges); ++e) {
+            struct chance chance = chance_of(9000 + COUNT(edges) * i + e);
+            make_special(&pictures[e], &chance, &specials[i % COUNT(specials)], &edges[e]);
+        }
+        snprintf(what, sizeof what, "%u: blur radius %u", i, pictures[0].blur.radius);
+        check_edges(pictures, what);
     }
-    close_layout();
-    for (uint32_t i = 0; i < COUNT(specials); ++i)
-        picture_free(&models[i]);
+    scratch_close();
+    check_none_failed();
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        gpu_test(images_forget_what_memory_held),
-        gpu_test(buffers_forget_what_memory_held),
-        gpu_test(variants_in_buffers_forget_what_memory_held),
+        gpu_test(methods_forget_what_memory_held),
+        gpu_test(presets_forget_what_memory_held),
+        gpu_test(blurs_forget_what_memory_held),
     };
     return fixture_run(tests);
 }

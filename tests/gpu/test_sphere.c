@@ -6,9 +6,9 @@
 
 #include <stdio.h>
 
-static vkao_ssao_params sphere(vkao_sphere_form form)
+static struct ao_ssao sphere(vkao_sphere_form form)
 {
-    vkao_ssao_params params = vkao_ssao_params_default();
+    struct ao_ssao params = ao_ssao_default();
     params.method = VKAO_SSAO_SPHERE;
     params.sphere_form = form;
     params.blocking_scale = 10.0f;
@@ -54,14 +54,14 @@ static void agrees_with_reference_for_every_form_count_falloff_and_noise(void **
 static void agrees_with_reference_for_every_normal_encoding(void **state)
 {
     (void)state;
-    vkao_ssao_params params = sphere(VKAO_SPHERE_RESCALED);
+    struct ao_ssao params = sphere(VKAO_SPHERE_RESCALED);
     check_every_normal_encoding(&params, ref_sphere);
 }
 
 static void agrees_with_reference_for_world_space_normals(void **state)
 {
     (void)state;
-    vkao_ssao_params params = sphere(VKAO_SPHERE_RESCALED);
+    struct ao_ssao params = sphere(VKAO_SPHERE_RESCALED);
     check_world_space_normals(&params, ref_sphere);
 }
 
@@ -69,7 +69,7 @@ static void agrees_with_reference_for_every_projection(void **state)
 {
     (void)state;
     for (int form = 0; form < 2; ++form) {
-        vkao_ssao_params params = sphere((vkao_sphere_form)form);
+        struct ao_ssao params = sphere((vkao_sphere_form)form);
         check_every_projection(&params, ref_sphere);
     }
 }
@@ -77,7 +77,7 @@ static void agrees_with_reference_for_every_projection(void **state)
 static void bad_normals_are_replaced_or_turned(void **state)
 {
     (void)state;
-    vkao_ssao_params params = sphere(VKAO_SPHERE_RESCALED);
+    struct ao_ssao params = sphere(VKAO_SPHERE_RESCALED);
     check_bad_normals_are_replaced(&params, ref_sphere);
 }
 
@@ -85,13 +85,13 @@ static void limits_give_numbers(void **state)
 {
     (void)state;
     for (int form = 0; form < 2; ++form) {
-        vkao_ssao_params params = sphere((vkao_sphere_form)form);
+        struct ao_ssao params = sphere((vkao_sphere_form)form);
         check_no_nan_at_the_limits(&params);
     }
 }
 
 /* Runs both and compares bit for bit. */
-static void check_same(const vkao_ssao_params *a, const vkao_ssao_params *b,
+static void check_same(const struct ao_ssao *a, const struct ao_ssao *b,
                        vkao_normal_encoding b_normals)
 {
     struct picture p, q;
@@ -111,7 +111,7 @@ static void check_same(const vkao_ssao_params *a, const vkao_ssao_params *b,
 static void rescaled_form_rounds_odd_counts_up(void **state)
 {
     (void)state;
-    vkao_ssao_params odd = sphere(VKAO_SPHERE_RESCALED), even = odd;
+    struct ao_ssao odd = sphere(VKAO_SPHERE_RESCALED), even = odd;
     odd.sample_count = 15;
     even.sample_count = 16;
     check_same(&odd, &even, VKAO_NORMALS_XYZ_SNORM);
@@ -120,7 +120,7 @@ static void rescaled_form_rounds_odd_counts_up(void **state)
 static void literal_form_ignores_falloff_bias_and_normals(void **state)
 {
     (void)state;
-    vkao_ssao_params plain = sphere(VKAO_SPHERE_LITERAL), other = plain;
+    struct ao_ssao plain = sphere(VKAO_SPHERE_LITERAL), other = plain;
     other.falloff = VKAO_FALLOFF_THRESHOLD;
     other.bias = 0.5f;
     check_same(&plain, &other, VKAO_NORMALS_FROM_DEPTH);

@@ -5,20 +5,15 @@
 
 int main()
 {
+    const vkao_context_info context = vkao_context_info_default();
+    const vkao_effect_info effect = vkao_effect_info_default();
+    const vkao_frame_info frame = vkao_frame_info_default();
     const vkao_images images = vkao_images_default();
     const vkao_view view = vkao_view_default();
-    const vkao_ssao_params ssao = vkao_ssao_params_default();
-    const vkao_blur_params blur = vkao_blur_params_default();
-    const vkao_composite_params composite = vkao_composite_params_default();
-    vkao_frame_info frame = vkao_frame_info();
-    vkao_context_info context = vkao_context_info();
-    frame.images = &images;
-    frame.struct_size = sizeof frame;
-    context.struct_size = sizeof context;
-    return frame.images->struct_size == sizeof images && view.struct_size == sizeof view &&
-                   ssao.struct_size == sizeof ssao && blur.struct_size == sizeof blur &&
-                   composite.struct_size == sizeof composite &&
-                   context.struct_size == sizeof context
+    const vkao_params params = vkao_params_default();
+    return context.struct_size == sizeof context && effect.struct_size == sizeof effect &&
+                   frame.struct_size == sizeof frame && images.struct_size == sizeof images &&
+                   view.struct_size == sizeof view && params.struct_size == sizeof params
                ? 0
                : 1;
 }

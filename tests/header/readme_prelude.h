@@ -10,7 +10,10 @@
 #include <string.h>
 
 extern vkao_context *context;
+extern vkao_effect *effect;
 extern vkao_frame *frame;
+extern VkImage ao_image;
+extern VkExtent2D extent;
 extern VkInstance instance;
 extern VkPhysicalDevice physical_device;
 extern VkDevice device;

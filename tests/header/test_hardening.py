@@ -2,7 +2,9 @@
 # SPDX-License-Identifier: MIT
 """What is installed is built so that an overwritten buffer ends the program.
 
-`test_hardening.py FORTIFY PROGRAM...`; FORTIFY is 0 where the build has sanitizers or no optimiser. Static libraries and other formats than ELF are skipped."""
+`test_hardening.py FORTIFY PROGRAM...`; FORTIFY is 0 where the build has sanitizers or no optimiser.
+Static libraries and other formats than ELF are skipped.
+"""
 import functools
 import os
 import re

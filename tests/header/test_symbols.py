@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """The shared library exports the header's functions and nothing else, and links no Vulkan.
+The static one has no name that could meet a name of its user's.
 
-usage: test_symbols.py LIBRARY HEADER
+usage: test_symbols.py LIBRARY ARCHIVE HEADER
 """
 
 import re
@@ -12,7 +13,7 @@ import sys
 
 from cases import Skip, run, without_comments
 
-LIBRARY, HEADER = sys.argv[1:3]
+LIBRARY, ARCHIVE, HEADER = sys.argv[1:4]
 
 
 def symbols(which):
@@ -47,6 +48,19 @@ def every_export_begins_with_vkao():
     assert not wrong, wrong
 
 
+def every_external_symbol_of_the_static_library_begins_with_vkao():
+    """Hidden symbols too: in an archive they are as visible as others."""
+    if not shutil.which("nm"):
+        raise Skip("no nm")
+    done = subprocess.run(["nm", "-g", "--defined-only", ARCHIVE], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    rows = [line.split() for line in done.stdout.splitlines() if len(line.split()) == 3]
+    names = {name for _, _, name in rows}
+    assert names > declared(), f"missing: {sorted(declared() - names)}"
+    wrong = sorted(name for name in names if not name.startswith(("vkao_", "__")))
+    assert not wrong, wrong
+
+
 def no_vulkan_function_is_linked():
     wrong = [name for name in symbols("--undefined-only") if re.match(r"vk(?!ao_)", name)]
     assert not wrong, wrong
@@ -69,5 +83,6 @@ def the_library_keeps_no_global_state():
 if __name__ == "__main__":
     run([(f.__name__, f) for f in (every_declared_function_is_exported_and_nothing_else,
                                    every_export_begins_with_vkao,
+                                   every_external_symbol_of_the_static_library_begins_with_vkao,
                                    no_vulkan_function_is_linked,
                                    the_library_keeps_no_global_state)])

@@ -8,7 +8,7 @@
 
 struct blur {
     const struct ref_scene *scene;
-    const vkao_blur_params *params;
+    const struct ao_blur *params;
     vkao_normal_encoding encoding;
     const double *stored;
     double ndc_width; /* scene units across the viewport, what sharpness is relative to without
@@ -84,13 +84,13 @@ static double blurred(const struct blur *blur, const double *ao, int x, int y, i
     return sum / weights;
 }
 
-double ref_blur_finish(const vkao_blur_params *params, double visibility)
+double ref_blur_finish(const struct ao_blur *params, double visibility)
 {
     double v = fmin(1.0, fmax(0.0, 1.0 - (double)params->intensity * (1.0 - visibility)));
     return pow(v, (double)params->power);
 }
 
-static void blur_channel(const struct ref_scene *scene, const vkao_blur_params *params,
+static void blur_channel(const struct ref_scene *scene, const struct ao_blur *params,
                          vkao_normal_encoding encoding, const double *stored, const double *noisy,
                          bool half_resolution, double *out)
 {
@@ -98,8 +98,7 @@ static void blur_channel(const struct ref_scene *scene, const vkao_blur_params *
     const double *viewport = scene->view.viewport;
     ref_view_position(&scene->view, viewport[0] - 0.5, 0.0, 1.0, left);
     ref_view_position(&scene->view, viewport[0] + viewport[2] - 0.5, 0.0, 1.0, right);
-    struct blur blur = {scene, params, encoding, stored, fabs(right[0] - left[0]),
-                        half_resolution};
+    struct blur blur = {scene, params, encoding, stored, fabs(right[0] - left[0]), half_resolution};
     const VkRect2D *rect = &scene->view.rect, *valid = &scene->view.valid;
     double *halfway = malloc((size_t)scene->width * scene->height * sizeof *halfway);
     if (!halfway)
@@ -116,14 +115,14 @@ static void blur_channel(const struct ref_scene *scene, const vkao_blur_params *
     free(halfway);
 }
 
-void ref_blur_channel_half(const struct ref_scene *scene, const vkao_blur_params *params,
-                           vkao_normal_encoding encoding, const double *stored,
-                           const double *noisy, double *out)
+void ref_blur_channel_half(const struct ref_scene *scene, const struct ao_blur *params,
+                           vkao_normal_encoding encoding, const double *stored, const double *noisy,
+                           double *out)
 {
     blur_channel(scene, params, encoding, stored, noisy, true, out);
 }
 
-void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params,
+void ref_blur(const struct ref_scene *scene, const struct ao_blur *params,
               vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao)
 {
     const VkRect2D *rect = &scene->view.rect;

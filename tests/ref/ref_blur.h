@@ -8,13 +8,13 @@
 
 /* stored: components of the normals image, 4 a texel, or NULL; encoding says how. Writes the view's
  * rect of ao. */
-void ref_blur(const struct ref_scene *scene, const vkao_blur_params *params,
+void ref_blur(const struct ref_scene *scene, const struct ao_blur *params,
               vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao);
 /* One channel of a half-resolution scene, as it is passed on: before intensity and power. */
-void ref_blur_channel_half(const struct ref_scene *scene, const vkao_blur_params *params,
-                           vkao_normal_encoding encoding, const double *stored,
-                           const double *noisy, double *out);
+void ref_blur_channel_half(const struct ref_scene *scene, const struct ao_blur *params,
+                           vkao_normal_encoding encoding, const double *stored, const double *noisy,
+                           double *out);
 /* Intensity, then power. */
-double ref_blur_finish(const vkao_blur_params *params, double visibility);
+double ref_blur_finish(const struct ao_blur *params, double visibility);
 
 #endif

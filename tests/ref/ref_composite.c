@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-void ref_composite(const vkao_composite_params *params, double ao, const double color[4],
+void ref_composite(const struct ao_composite *params, double ao, const double color[4],
                    const double direct[4], double out[4])
 {
     double strength = (double)params->strength, a = (1.0 - strength) + ao * strength;

@@ -4,10 +4,10 @@
 #ifndef VKAO_TESTS_REF_COMPOSITE_H_
 #define VKAO_TESTS_REF_COMPOSITE_H_
 
-#include "vkao.h"
+#include "stage_setting.h"
 
 /* One texel: RGBA in, RGBA out. color and direct are read as the mode needs them. */
-void ref_composite(const vkao_composite_params *params, double ao, const double color[4],
+void ref_composite(const struct ao_composite *params, double ao, const double color[4],
                    const double direct[4], double out[4]);
 
 /* Visibility with the light that bounces on, for one channel (Jimenez et al. 2016). */

@@ -26,7 +26,7 @@ static double horizon(const struct ref_slice *s, double side)
 
 /* Visible in a slice is what lies between the two horizons, integrated as it stands. What is lost
  * is counted, so that the mean over few slices is right where nothing is. */
-static void visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
+static void visibility(const struct ref_scene *scene, const struct ao_ssao *params, int x, int y,
                        const double p[3], const double n[3], double out[4])
 {
     out[0] = out[1] = out[2] = 0.0;
@@ -46,12 +46,12 @@ static void visibility(const struct ref_scene *scene, const vkao_ssao_params *pa
     }
 }
 
-void ref_gtao(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao)
+void ref_gtao(const struct ref_scene *scene, const struct ao_ssao *params, double *ao)
 {
     ref_ssao_directed(scene, params, visibility, ao, NULL);
 }
 
-void ref_gtao_bent(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao,
+void ref_gtao_bent(const struct ref_scene *scene, const struct ao_ssao *params, double *ao,
                    double *bent)
 {
     ref_ssao_directed(scene, params, visibility, ao, bent);

@@ -9,8 +9,8 @@
 /* sum over the samples that rise over the horizon of W(d) (sin h - sin of the horizon so far),
  * Bavoil et al. 2008; the horizon begins at the bias over the tangent plane. Mean over both sides
  * of every slice. */
-static double visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x,
-                         int y, const double p[3], const double n[3])
+static double visibility(const struct ref_scene *scene, const struct ao_ssao *params, int x, int y,
+                         const double p[3], const double n[3])
 {
     double occluded = 0.0;
     for (uint32_t i = 0; i < 2 * params->slice_count; ++i) {
@@ -36,7 +36,7 @@ static double visibility(const struct ref_scene *scene, const vkao_ssao_params *
     return 1.0 - occluded / (2.0 * params->slice_count);
 }
 
-void ref_hbao(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao)
+void ref_hbao(const struct ref_scene *scene, const struct ao_ssao *params, double *ao)
 {
     ref_ssao(scene, params, visibility, ao);
 }

@@ -9,8 +9,8 @@
 #include <stdbool.h>
 
 /* What the scene hides of one point, height being that over the tangent plane. */
-static double hidden(const struct ref_scene *scene, const vkao_ssao_params *params,
-                     const double p[3], const double n[3], const double offset[3], double height)
+static double hidden(const struct ref_scene *scene, const struct ao_ssao *params, const double p[3],
+                     const double n[3], const double offset[3], double height)
 {
     const double point[3] = {p[0] + offset[0], p[1] + offset[1], p[2] + offset[2]};
     double q[3];
@@ -22,7 +22,7 @@ static double hidden(const struct ref_scene *scene, const vkao_ssao_params *para
 }
 
 /* Within the stratum that begins at u and is width wide, from one end to the other. */
-static double stratum_length(const vkao_ssao_params *params, double u, double width, double jitter)
+static double stratum_length(const struct ao_ssao *params, double u, double width, double jitter)
 {
     double low = ref_point_length(params, u), high = ref_point_length(params, u + width);
     return low + (high - low) * jitter;
@@ -30,8 +30,8 @@ static double stratum_length(const vkao_ssao_params *params, double u, double wi
 
 /* Pair k is the point k of the Fibonacci disk and the one across it, lifted onto the hemisphere:
  * directions follow the cosine. */
-static double visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x,
-                         int y, const double p[3], const double n[3])
+static double visibility(const struct ref_scene *scene, const struct ao_ssao *params, int x, int y,
+                         const double p[3], const double n[3])
 {
     const double golden_angle = 2.39996322972865332, two_pi = 6.28318530717958647692;
     const struct ref_noise noise = ref_noise(x, y, 1, params->noise_index);
@@ -53,7 +53,7 @@ static double visibility(const struct ref_scene *scene, const vkao_ssao_params *
     return 1.0 - blocked / (2.0 * pairs);
 }
 
-void ref_hemisphere(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao)
+void ref_hemisphere(const struct ref_scene *scene, const struct ao_ssao *params, double *ao)
 {
     ref_ssao(scene, params, visibility, ao);
 }

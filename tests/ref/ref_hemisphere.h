@@ -7,6 +7,6 @@
 #include "ref_view.h"
 
 /* Visibility of every texel of the view's rect; the others are left alone. */
-void ref_hemisphere(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao);
+void ref_hemisphere(const struct ref_scene *scene, const struct ao_ssao *params, double *ao);
 
 #endif

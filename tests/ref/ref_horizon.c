@@ -39,7 +39,7 @@ void ref_slice_turn(struct ref_slice *slice, double angle)
 }
 
 void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
-                    const vkao_ssao_params *params, int x, int y, const double p[3],
+                    const struct ao_ssao *params, int x, int y, const double p[3],
                     const double n[3], uint32_t k)
 {
     *slice = (struct ref_slice){.scene = scene, .params = params, .x = x, .y = y};
@@ -90,14 +90,14 @@ bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, dou
     return known;
 }
 
-double ref_thickness(const vkao_ssao_params *params, double lateral)
+double ref_thickness(const struct ao_ssao *params, double lateral)
 {
     double scale = params->falloff == VKAO_FALLOFF_THRESHOLD ? VKAO_THICKNESS_THRESHOLD : 1.0;
     return scale * (double)params->thickness *
            (VKAO_THICKNESS_BASE * (double)params->radius + VKAO_THICKNESS_SLOPE * lateral);
 }
 
-double ref_falloff(const vkao_ssao_params *params, double distance)
+double ref_falloff(const struct ao_ssao *params, double distance)
 {
     double x = distance / (double)params->radius;
     if (x > 1.0)

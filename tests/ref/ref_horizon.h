@@ -11,7 +11,7 @@
 
 struct ref_slice {
     const struct ref_scene *scene;
-    const vkao_ssao_params *params;
+    const struct ao_ssao *params;
     int x, y;
     struct ref_noise noise;
     double p[3], n[3], to_eye[3];
@@ -23,7 +23,7 @@ struct ref_slice {
 
 /* Slice k of params->slice_count through texel (x, y), turned by the noise. */
 void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
-                    const vkao_ssao_params *params, int x, int y, const double p[3],
+                    const struct ao_ssao *params, int x, int y, const double p[3],
                     const double n[3], uint32_t k);
 /* The slice of a given angle on screen, with nothing but its geometry. */
 void ref_slice_turn(struct ref_slice *slice, double angle);
@@ -40,10 +40,10 @@ bool ref_slice_sample(const struct ref_slice *slice, double side, uint32_t step,
                       struct ref_sample *sample);
 
 /* 1 - (d/R)^2 within R, or 1 within R. */
-double ref_falloff(const vkao_ssao_params *params, double distance);
+double ref_falloff(const struct ao_ssao *params, double distance);
 
 /* Of what is seen at that distance to the side, in scene units. */
-double ref_thickness(const vkao_ssao_params *params, double lateral);
+double ref_thickness(const struct ao_ssao *params, double lateral);
 
 /* Integrals from a to b over theta, by Simpson's rule: of the measure without L, and of the measure
  * times (sin theta, cos theta). */

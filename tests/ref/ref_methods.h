@@ -7,16 +7,16 @@
 
 #include "ref_view.h"
 
-void ref_hbao(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao);
-void ref_gtao(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao);
-void ref_vbao(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao);
-void ref_raymarch(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao);
+void ref_hbao(const struct ref_scene *scene, const struct ao_ssao *params, double *ao);
+void ref_gtao(const struct ref_scene *scene, const struct ao_ssao *params, double *ao);
+void ref_vbao(const struct ref_scene *scene, const struct ao_ssao *params, double *ao);
+void ref_raymarch(const struct ref_scene *scene, const struct ao_ssao *params, double *ao);
 
-void ref_gtao_bent(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao,
+void ref_gtao_bent(const struct ref_scene *scene, const struct ao_ssao *params, double *ao,
                    double *bent);
-void ref_vbao_bent(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao,
+void ref_vbao_bent(const struct ref_scene *scene, const struct ao_ssao *params, double *ao,
                    double *bent);
-void ref_raymarch_bent(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao,
+void ref_raymarch_bent(const struct ref_scene *scene, const struct ao_ssao *params, double *ao,
                        double *bent);
 
 /* Of VBAO: in how many of the 31 sectors of one side a bound at angle theta from V, on that side,

@@ -115,7 +115,7 @@ static void from_depth(const struct ref_scene *scene, int x, int y, measure *mis
         out[i] = n[i] / length;
 }
 
-void ref_scene_normal(const struct ref_scene *scene, const vkao_view *view, int x, int y,
+void ref_scene_normal(const struct ref_scene *scene, const struct ao_view *view, int x, int y,
                       const double *stored, double out[3])
 {
     double n[3], p[3], eye[3], facet[3], z = ref_scene_z(scene, x, y);

@@ -14,7 +14,7 @@ bool ref_normal_decode(vkao_normal_encoding encoding, const double stored[4], do
 /* The unit normal that components stand for, the other way round. */
 void ref_normal_encode(vkao_normal_encoding encoding, const double normal[3], double stored[4]);
 /* Unit view-space normal of a texel that faces the eye; stored may be NULL. */
-void ref_scene_normal(const struct ref_scene *scene, const vkao_view *view, int x, int y,
+void ref_scene_normal(const struct ref_scene *scene, const struct ao_view *view, int x, int y,
                       const double *stored, double out[3]);
 
 #endif

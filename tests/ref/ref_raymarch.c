@@ -17,8 +17,8 @@ struct ray {
 
 /* The ray is hit where it is under the scene's surface, which stands over the tangent plane, by
  * less than the scene is thick there. */
-static bool hit(const struct ref_scene *scene, const vkao_ssao_params *params,
-                const struct ray *ray, const double point[3])
+static bool hit(const struct ref_scene *scene, const struct ao_ssao *params, const struct ray *ray,
+                const double point[3])
 {
     double surface[3], v[3], eye[3], under[3], radius = (double)params->radius;
     if (!ref_scene_lookup(scene, point, surface))
@@ -37,7 +37,7 @@ static bool hit(const struct ref_scene *scene, const vkao_ssao_params *params,
            behind < thickness;
 }
 
-static double first_hit(const struct ref_scene *scene, const vkao_ssao_params *params,
+static double first_hit(const struct ref_scene *scene, const struct ao_ssao *params,
                         const struct ray *ray)
 {
     for (uint32_t t = 0; t < params->step_count; ++t) {
@@ -52,7 +52,7 @@ static double first_hit(const struct ref_scene *scene, const vkao_ssao_params *p
     return 0.0;
 }
 
-static void visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
+static void visibility(const struct ref_scene *scene, const struct ao_ssao *params, int x, int y,
                        const double p[3], const double n[3], double out[4])
 {
     const struct ref_noise noise = ref_noise(x, y, 1, params->noise_index);
@@ -76,12 +76,12 @@ static void visibility(const struct ref_scene *scene, const vkao_ssao_params *pa
     }
 }
 
-void ref_raymarch(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao)
+void ref_raymarch(const struct ref_scene *scene, const struct ao_ssao *params, double *ao)
 {
     ref_ssao_directed(scene, params, visibility, ao, NULL);
 }
 
-void ref_raymarch_bent(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao,
+void ref_raymarch_bent(const struct ref_scene *scene, const struct ao_ssao *params, double *ao,
                        double *bent)
 {
     ref_ssao_directed(scene, params, visibility, ao, bent);

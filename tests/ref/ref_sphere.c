@@ -20,7 +20,7 @@ static void ball_point(double u, double v, double w, double out[3])
 }
 
 /* mean(1 / (1 + dz^2)), dz = scale * max(0, scene z - point z); the unknown blocks nothing. */
-static double literal(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
+static double literal(const struct ref_scene *scene, const struct ao_ssao *params, int x, int y,
                       const double p[3], const double n[3])
 {
     const double g = 1.22074408460575947536; /* g^4 = g + 1 (Roberts 2018, three dimensions) */
@@ -47,8 +47,8 @@ static double literal(const struct ref_scene *scene, const vkao_ssao_params *par
 
 /* 1 if the scene hides the point; where it is out of reach or unknown, what an endless wall would
  * do. */
-static double hidden(const struct ref_scene *scene, const vkao_ssao_params *params,
-                     const double p[3], const double n[3], const double offset[3])
+static double hidden(const struct ref_scene *scene, const struct ao_ssao *params, const double p[3],
+                     const double n[3], const double offset[3])
 {
     double height = ref_dot(n, offset), bias = ref_guard(scene, params, p[2]);
     double point[3] = {p[0] + offset[0], p[1] + offset[1], p[2] + offset[2]}, q[3];
@@ -62,7 +62,7 @@ static double hidden(const struct ref_scene *scene, const vkao_ssao_params *para
 }
 
 /* Antipodal pairs on a Fibonacci sphere: heights (k + noise) / pairs, a golden angle apart. */
-static double rescaled(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
+static double rescaled(const struct ref_scene *scene, const struct ao_ssao *params, int x, int y,
                        const double p[3], const double n[3])
 {
     const struct ref_noise noise = ref_noise(x, y, 1, params->noise_index);
@@ -80,7 +80,7 @@ static double rescaled(const struct ref_scene *scene, const vkao_ssao_params *pa
     return fmin(1.0, 2.0 * (1.0 - blocked / (2.0 * pairs)));
 }
 
-void ref_sphere(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao)
+void ref_sphere(const struct ref_scene *scene, const struct ao_ssao *params, double *ao)
 {
     ref_ssao(scene, params, params->sphere_form == VKAO_SPHERE_LITERAL ? literal : rescaled, ao);
 }

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-void ref_ssao(const struct ref_scene *scene, const vkao_ssao_params *params,
+void ref_ssao(const struct ref_scene *scene, const struct ao_ssao *params,
               ref_visibility *visibility, double *ao)
 {
     const VkRect2D *rect = &scene->view.rect;
@@ -20,7 +20,7 @@ void ref_ssao(const struct ref_scene *scene, const vkao_ssao_params *params,
     }
 }
 
-void ref_ssao_directed(const struct ref_scene *scene, const vkao_ssao_params *params,
+void ref_ssao_directed(const struct ref_scene *scene, const struct ao_ssao *params,
                        ref_directed_visibility *visibility, double *ao, double *bent)
 {
     const VkRect2D *rect = &scene->view.rect;
@@ -54,19 +54,19 @@ void ref_basis(const double n[3], double t[3], double b[3])
     }
 }
 
-double ref_point_length(const vkao_ssao_params *params, double u)
+double ref_point_length(const struct ao_ssao *params, double u)
 {
     return (double)params->radius *
            pow(u, params->falloff == VKAO_FALLOFF_SMOOTH ? 1.0 / 2.0 : 1.0 / 4.0);
 }
 
-double ref_range_weight(const vkao_ssao_params *params, double dz)
+double ref_range_weight(const struct ao_ssao *params, double dz)
 {
     double x = (double)params->radius / fabs(dz);
     return x >= 1.0 ? 1.0 : x * x * (3.0 - 2.0 * x);
 }
 
-double ref_guard(const struct ref_scene *scene, const vkao_ssao_params *params, double z)
+double ref_guard(const struct ref_scene *scene, const struct ao_ssao *params, double z)
 {
     return (double)params->bias * (double)params->radius + ref_view_depth_error(&scene->view, z);
 }

@@ -13,7 +13,7 @@ static VkRect2D halved(VkRect2D r)
     return (VkRect2D){{x0, y0}, {(uint32_t)((x1 + 1) / 2 - x0), (uint32_t)((y1 + 1) / 2 - y0)}};
 }
 
-void ref_scene_half(const struct ref_scene *full, const vkao_view *view, const double *stored,
+void ref_scene_half(const struct ref_scene *full, const struct ao_view *view, const double *stored,
                     struct ref_scene *half, double **half_stored)
 {
     *half = (struct ref_scene){
@@ -49,7 +49,7 @@ void ref_scene_half(const struct ref_scene *full, const vkao_view *view, const d
 
 struct upsample {
     const struct ref_scene *full, *half;
-    const vkao_blur_params *params;
+    const struct ao_blur *params;
     vkao_normal_encoding encoding;
     const double *stored;
     double nothing;
@@ -78,9 +78,10 @@ static double normal_weight(const struct upsample *u, int x, int y, int other_x,
     return pow(fmax(0.0, ref_dot(a, b)), (double)u->params->normal_power);
 }
 
-/* Of the one, two or four neighbours that bilinear weights leave, all alike, the mean by max(0, 1 - off) * max(0, n.n')^power over the neighbours, off being how far a
- * neighbour's depth is from the plane that the slopes continue, in units of depth / sharpness. A
- * ghost of a weight, which falls with off, decides where those are all 0. */
+/* Of the one, two or four neighbours that bilinear weights leave, all alike, the mean by max(0, 1 -
+ * off) * max(0, n.n')^power over the neighbours, off being how far a neighbour's depth is from the
+ * plane that the slopes continue, in units of depth / sharpness. A ghost of a weight, which falls
+ * with off, decides where those are all 0. */
 static double upsampled(const struct upsample *u, const double *value, int x, int y)
 {
     double z = ref_scene_z(u->full, x, y), sum = 0.0, weights = 0.0;
@@ -104,8 +105,8 @@ static double upsampled(const struct upsample *u, const double *value, int x, in
 }
 
 void ref_upsample(const struct ref_scene *full, const struct ref_scene *half,
-                  const vkao_blur_params *params, vkao_normal_encoding encoding,
-                  const double *stored, double nothing, const double *value, double *out)
+                  const struct ao_blur *params, vkao_normal_encoding encoding, const double *stored,
+                  double nothing, const double *value, double *out)
 {
     double left[3], right[3];
     const double *viewport = full->view.viewport;

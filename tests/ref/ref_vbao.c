@@ -66,7 +66,7 @@ static double lowered(double theta, double bias)
 
 static void march(struct side *s)
 {
-    const vkao_ssao_params *params = s->slice->params;
+    const struct ao_ssao *params = s->slice->params;
     const double radius = (double)params->radius;
     double reach =
         params->falloff == VKAO_FALLOFF_SMOOTH ? VKAO_VBAO_REACH_SMOOTH : VKAO_VBAO_REACH_THRESHOLD;
@@ -98,7 +98,7 @@ static void march(struct side *s)
     }
 }
 
-static void visibility(const struct ref_scene *scene, const vkao_ssao_params *params, int x, int y,
+static void visibility(const struct ref_scene *scene, const struct ao_ssao *params, int x, int y,
                        const double p[3], const double n[3], double out[4])
 {
     for (int i = 0; i < 3; ++i)
@@ -118,12 +118,12 @@ static void visibility(const struct ref_scene *scene, const vkao_ssao_params *pa
     }
 }
 
-void ref_vbao(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao)
+void ref_vbao(const struct ref_scene *scene, const struct ao_ssao *params, double *ao)
 {
     ref_ssao_directed(scene, params, visibility, ao, NULL);
 }
 
-void ref_vbao_bent(const struct ref_scene *scene, const vkao_ssao_params *params, double *ao,
+void ref_vbao_bent(const struct ref_scene *scene, const struct ao_ssao *params, double *ao,
                    double *bent)
 {
     ref_ssao_directed(scene, params, visibility, ao, bent);

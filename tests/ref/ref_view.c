@@ -81,8 +81,8 @@ static VkRect2D or_else(VkRect2D given, VkRect2D otherwise)
     return given.extent.width ? given : otherwise;
 }
 
-void ref_view_init(struct ref_view *view, const vkao_view *from, uint32_t width, uint32_t height,
-                   VkFormat depth_format)
+void ref_view_init(struct ref_view *view, const struct ao_view *from, uint32_t width,
+                   uint32_t height, VkFormat depth_format)
 {
     memset(view, 0, sizeof *view);
     for (int i = 0; i < 16; ++i)
@@ -206,8 +206,9 @@ bool ref_scene_lookup(const struct ref_scene *scene, const double p[3], double o
     return true;
 }
 
-void ref_scene_init(struct ref_scene *scene, const vkao_view *view, uint32_t width, uint32_t height,
-                    VkFormat depth_format, const double *depth, const double *normals)
+void ref_scene_init(struct ref_scene *scene, const struct ao_view *view, uint32_t width,
+                    uint32_t height, VkFormat depth_format, const double *depth,
+                    const double *normals)
 {
     size_t texels = (size_t)width * height;
     *scene = (struct ref_scene){.width = width, .height = height};

@@ -5,7 +5,7 @@
 #ifndef VKAO_TESTS_REF_VIEW_H_
 #define VKAO_TESTS_REF_VIEW_H_
 
-#include "vkao.h"
+#include "stage_setting.h"
 
 #include <stdbool.h>
 
@@ -29,8 +29,8 @@ struct ref_scene {
 };
 
 bool ref_invert(const double m[16], double out[16]);
-void ref_view_init(struct ref_view *view, const vkao_view *from, uint32_t width, uint32_t height,
-                   VkFormat depth_format);
+void ref_view_init(struct ref_view *view, const struct ao_view *from, uint32_t width,
+                   uint32_t height, VkFormat depth_format);
 /* View z of a stored depth; NAN = background. Texel centres are integers. */
 double ref_view_z(const struct ref_view *view, double x, double y, double stored);
 void ref_view_position(const struct ref_view *view, double x, double y, double z, double out[3]);
@@ -42,8 +42,9 @@ void ref_view_eye(const struct ref_view *view, const double p[3], double out[3])
 double ref_view_depth_error(const struct ref_view *view, double z);
 
 /* normals: components of the stored image, 4 a texel, or NULL. ref_scene_free frees. */
-void ref_scene_init(struct ref_scene *scene, const vkao_view *view, uint32_t width, uint32_t height,
-                    VkFormat depth_format, const double *depth, const double *normals);
+void ref_scene_init(struct ref_scene *scene, const struct ao_view *view, uint32_t width,
+                    uint32_t height, VkFormat depth_format, const double *depth,
+                    const double *normals);
 void ref_scene_free(struct ref_scene *scene);
 /* View z of a texel, NAN if there is none. */
 double ref_scene_z(const struct ref_scene *scene, int x, int y);

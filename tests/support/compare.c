@@ -28,13 +28,13 @@ struct difference difference_of(const double *a, const double *b, size_t count)
 }
 
 void check_close(const char *what, const double *a, const double *b, size_t count, double mean,
-                 double p99)
+                 double p99, double max)
 {
     struct difference d = difference_of(a, b, count);
     print_message("    %-44s max %.2e  mean %.2e  p99 %.2e\n", what, d.max, d.mean, d.p99);
-    if (!(d.mean <= mean) || !(d.p99 <= p99))
-        fail_msg("%s: mean %g, want at most %g; p99 %g, want at most %g", what, d.mean, mean, d.p99,
-                 p99);
+    if (!(d.mean <= mean) || !(d.p99 <= p99) || !(d.max <= max))
+        fail_msg("%s: mean %g, p99 %g, max %g, want at most %g, %g, %g", what, d.mean, d.p99, d.max,
+                 mean, p99, max);
 }
 
 void check_equal(const char *what, const double *a, const double *b, size_t count)

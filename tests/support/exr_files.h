@@ -16,7 +16,8 @@ struct bytes {
     size_t size;
 };
 
-/* Group setup and teardown, and the teardown of each test: the directory is made, emptied, removed. */
+/* Group setup and teardown, and the teardown of each test: the directory is made, emptied,
+ * removed. */
 int make_directory(void **state);
 int empty_directory(void **state);
 int remove_directory(void **state);

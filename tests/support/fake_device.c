@@ -128,11 +128,45 @@ FAKE_CREATE(ShaderModule, SHADER_MODULE, {
     object->code = info->pCode;
 })
 FAKE_DESTROY(ShaderModule, SHADER_MODULE)
-FAKE_CREATE(DescriptorSetLayout, DESCRIPTOR_SET_LAYOUT, {})
+/* What every Vulkan 1.1 device has per stage, and not one more. */
+static void check_layout(struct fake_vulkan *fake, const VkDescriptorSetLayoutCreateInfo *info)
+{
+    unsigned sampled = 0, images = 0, buffers = 0, uniforms = 0;
+    for (uint32_t i = 0; i < info->bindingCount; ++i) {
+        switch (info->pBindings[i].descriptorType) {
+        case VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE:
+            ++sampled;
+            break;
+        case VK_DESCRIPTOR_TYPE_STORAGE_IMAGE:
+        case VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER:
+            ++images;
+            break;
+        case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
+            ++buffers;
+            break;
+        default:
+            ++uniforms;
+        }
+        for (uint32_t k = 0; k < i; ++k) {
+            if (info->pBindings[k].binding == info->pBindings[i].binding)
+                fake_misuse(fake, "binding %u twice", info->pBindings[i].binding);
+        }
+    }
+    if (sampled > 16 || images > 4 || buffers > 4 || uniforms > 12)
+        fake_misuse(fake,
+                    "vkCreateDescriptorSetLayout: %u sampled images, %u storage images and texel "
+                    "buffers, %u storage buffers; devices need have 16, 4 and 4",
+                    sampled, images, buffers);
+}
+
+FAKE_CREATE(DescriptorSetLayout, DESCRIPTOR_SET_LAYOUT, { check_layout(fake, info); })
 FAKE_DESTROY(DescriptorSetLayout, DESCRIPTOR_SET_LAYOUT)
 FAKE_CREATE(PipelineLayout, PIPELINE_LAYOUT, {
     fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT,
              fake_number(info->pSetLayouts[0]));
+    if (info->setLayoutCount > 4 || info->pPushConstantRanges[0].size > 128)
+        fake_misuse(fake,
+                    "vkCreatePipelineLayout: more sets or push constants than devices need have");
 })
 FAKE_DESTROY(PipelineLayout, PIPELINE_LAYOUT)
 FAKE_CREATE(DescriptorPool, DESCRIPTOR_POOL, {})
@@ -220,12 +254,14 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_AllocateDescriptorSets(
     if (fails(fake, call->name))
         return fake->fail_result;
     fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_POOL, fake_number(info->descriptorPool));
-    fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT,
-             fake_number(info->pSetLayouts[0]));
-    struct fake_object *object = fake_add(fake, VK_OBJECT_TYPE_DESCRIPTOR_SET);
-    object->parent = fake_number(info->descriptorPool);
-    call->handle = object->handle;
-    *out = (VkDescriptorSet)(uintptr_t)object->handle;
+    for (uint32_t i = 0; i < info->descriptorSetCount; ++i) {
+        fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET_LAYOUT,
+                 fake_number(info->pSetLayouts[i]));
+        struct fake_object *object = fake_add(fake, VK_OBJECT_TYPE_DESCRIPTOR_SET);
+        object->parent = fake_number(info->descriptorPool);
+        call->handle = object->handle;
+        out[i] = (VkDescriptorSet)(uintptr_t)object->handle;
+    }
     return VK_SUCCESS;
 }
 
@@ -242,7 +278,8 @@ static VKAPI_ATTR void VKAPI_CALL fake_UpdateDescriptorSets(VkDevice device, uin
     for (uint32_t i = 0; i < count && i < FAKE_WRITES; ++i) {
         struct fake_object *set = fake_use(fake, call->name, VK_OBJECT_TYPE_DESCRIPTOR_SET,
                                            fake_number(writes[i].dstSet));
-        if (writes[i].descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER) {
+        if (writes[i].descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_BUFFER ||
+            writes[i].descriptorType == VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER) {
             const VkDescriptorBufferInfo *info = writes[i].pBufferInfo;
             const struct fake_object *buffer =
                 fake_use(fake, call->name, VK_OBJECT_TYPE_BUFFER, fake_number(info->buffer));
@@ -391,6 +428,15 @@ static VKAPI_ATTR void VKAPI_CALL fake_CmdEndDebugUtilsLabelEXT(VkCommandBuffer 
     fake_note(fake_of(cmd), "vkCmdEndDebugUtilsLabelEXT");
 }
 
+/* Known devices for Vulkan 1.1 by; the library has no command pool. */
+static VKAPI_ATTR void VKAPI_CALL fake_TrimCommandPool(VkDevice device, VkCommandPool pool,
+                                                       VkCommandPoolTrimFlags flags)
+{
+    (void)pool;
+    (void)flags;
+    fake_misuse(fake_of(device), "vkTrimCommandPool is called");
+}
+
 #define ENTRY(name)                                                                                \
     {                                                                                              \
         "vk" #name, (PFN_vkVoidFunction)fake_##name                                                \
@@ -427,4 +473,5 @@ const struct fake_entry fake_device_functions[FAKE_DEVICE_FUNCTIONS] = {
     ENTRY(BindBufferMemory),
     ENTRY(CreateBufferView),
     ENTRY(DestroyBufferView),
+    ENTRY(TrimCommandPool),
 };

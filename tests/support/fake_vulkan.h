@@ -13,13 +13,13 @@
 #include <vulkan/vulkan_core.h>
 
 enum {
-    FAKE_OBJECTS = 4096,
+    FAKE_OBJECTS = 8192,
     FAKE_CALLS = 2048,
     FAKE_BARRIERS = 8,
     FAKE_WRITES = 29,
     FAKE_PUSH_BYTES = 128,
-    FAKE_UPDATE_BYTES = 64,
-    FAKE_CONSTANTS = 8,
+    FAKE_UPDATE_BYTES = 512,
+    FAKE_CONSTANTS = 24,
     FAKE_FORMATS = 8,
     FAKE_NAMES = 64
 };

@@ -85,29 +85,29 @@ enum kind {
       (VkDevice a, const VkCommandBufferAllocateInfo *b, VkCommandBuffer *c), (a, b, c))           \
     X(DEVICE, PLAIN, AllocateDescriptorSets,                                                       \
       (VkDevice a, const VkDescriptorSetAllocateInfo *b, VkDescriptorSet *c), (a, b, c))           \
-    X(DEVICE, PLAIN, BindBufferMemory,                                                             \
-      (VkDevice a, VkBuffer b, VkDeviceMemory c, VkDeviceSize d), (a, b, c, d))                    \
-    X(DEVICE, PLAIN, BindImageMemory,                                                              \
-      (VkDevice a, VkImage b, VkDeviceMemory c, VkDeviceSize d), (a, b, c, d))                     \
+    X(DEVICE, PLAIN, BindBufferMemory, (VkDevice a, VkBuffer b, VkDeviceMemory c, VkDeviceSize d), \
+      (a, b, c, d))                                                                                \
+    X(DEVICE, PLAIN, BindImageMemory, (VkDevice a, VkImage b, VkDeviceMemory c, VkDeviceSize d),   \
+      (a, b, c, d))                                                                                \
     X(DEVICE, PLAIN, MapMemory,                                                                    \
       (VkDevice a, VkDeviceMemory b, VkDeviceSize c, VkDeviceSize d, VkMemoryMapFlags e,           \
        void **f),                                                                                  \
       (a, b, c, d, e, f))                                                                          \
     X(DEVICE, PLAIN, FlushMappedMemoryRanges,                                                      \
       (VkDevice a, uint32_t b, const VkMappedMemoryRange *c), (a, b, c))                           \
-    X(DEVICE, PLAIN, BeginCommandBuffer,                                                           \
-      (VkCommandBuffer a, const VkCommandBufferBeginInfo *b), (a, b))                              \
+    X(DEVICE, PLAIN, BeginCommandBuffer, (VkCommandBuffer a, const VkCommandBufferBeginInfo *b),   \
+      (a, b))                                                                                      \
     X(DEVICE, PLAIN, EndCommandBuffer, (VkCommandBuffer a), (a))                                   \
-    X(DEVICE, PLAIN, ResetCommandPool,                                                             \
-      (VkDevice a, VkCommandPool b, VkCommandPoolResetFlags c), (a, b, c))                         \
+    X(DEVICE, PLAIN, ResetCommandPool, (VkDevice a, VkCommandPool b, VkCommandPoolResetFlags c),   \
+      (a, b, c))                                                                                   \
     X(DEVICE, PLAIN, ResetFences, (VkDevice a, uint32_t b, const VkFence *c), (a, b, c))           \
     X(DEVICE, PLAIN, GetSwapchainImagesKHR,                                                        \
       (VkDevice a, VkSwapchainKHR b, uint32_t * c, VkImage * d), (a, b, c, d))                     \
-    X(DEVICE, WORKS, QueueSubmit,                                                                  \
-      (VkQueue a, uint32_t b, const VkSubmitInfo *c, VkFence d), (a, b, c, d))                     \
+    X(DEVICE, WORKS, QueueSubmit, (VkQueue a, uint32_t b, const VkSubmitInfo *c, VkFence d),       \
+      (a, b, c, d))                                                                                \
     X(DEVICE, WORKS, QueuePresentKHR, (VkQueue a, const VkPresentInfoKHR *b), (a, b))              \
     X(DEVICE, WORKS, AcquireNextImageKHR,                                                          \
-      (VkDevice a, VkSwapchainKHR b, uint64_t c, VkSemaphore d, VkFence e, uint32_t *f),           \
+      (VkDevice a, VkSwapchainKHR b, uint64_t c, VkSemaphore d, VkFence e, uint32_t * f),          \
       (a, b, c, d, e, f))                                                                          \
     X(DEVICE, WAITS, QueueWaitIdle, (VkQueue a), (a))                                              \
     X(DEVICE, WAITS, DeviceWaitIdle, (VkDevice a), (a))                                            \
@@ -179,8 +179,7 @@ FUNCTIONS(DEFINE)
 
 /* The answers are asked for as instance and device are made: later, the loader answers with the
  * first layer of the chain. */
-#define LOAD_INSTANCE(name)                                                                        \
-    next_##name = (PFN_vk##name)next_instance_proc(instance, "vk" #name);
+#define LOAD_INSTANCE(name) next_##name = (PFN_vk##name)next_instance_proc(instance, "vk" #name);
 #define LOAD_DEVICE(name) next_##name = (PFN_vk##name)next_device_proc(device, "vk" #name);
 #define SKIP(name)
 #define LOAD_FOR_INSTANCE_INSTANCE LOAD_INSTANCE
@@ -273,13 +272,11 @@ static PFN_vkVoidFunction own_proc(const char *name)
     static const struct {
         const char *name;
         PFN_vkVoidFunction function;
-    } rows[] = {
-        {"vkGetInstanceProcAddr", (PFN_vkVoidFunction)get_instance_proc},
-        {"vkGetDeviceProcAddr", (PFN_vkVoidFunction)get_device_proc},
-        {"vkCreateInstance", (PFN_vkVoidFunction)fault_CreateInstance},
-        {"vkCreateDevice", (PFN_vkVoidFunction)fault_CreateDevice},
-        FUNCTIONS(ROW)
-    };
+    } rows[] = {{"vkGetInstanceProcAddr", (PFN_vkVoidFunction)get_instance_proc},
+                {"vkGetDeviceProcAddr", (PFN_vkVoidFunction)get_device_proc},
+                {"vkCreateInstance", (PFN_vkVoidFunction)fault_CreateInstance},
+                {"vkCreateDevice", (PFN_vkVoidFunction)fault_CreateDevice},
+                FUNCTIONS(ROW)};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (strcmp(rows[i].name, name) == 0)
             return rows[i].function;

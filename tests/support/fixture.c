@@ -40,7 +40,7 @@ bool fixture_open(void)
         fprintf(stderr, "skipped: %s\n", fixture.error.message);
         return false;
     }
-    fixture.context = gpu_context(&fixture.gpu, 0, &fixture.error);
+    fixture.context = gpu_context(&fixture.gpu, &fixture.error);
     if (!fixture.context) {
         fprintf(stderr, "%s\n", fixture.error.message);
         exit(EXIT_FAILURE);
@@ -48,23 +48,47 @@ bool fixture_open(void)
     return true;
 }
 
+/* A ring: [next] is the oldest. */
+static struct {
+    vkao_effect_info info;
+    vkao_effect *effect;
+} kept[32];
+static size_t next;
+
+vkao_effect *fixture_effect(const vkao_effect_info *info)
+{
+    const size_t count = sizeof kept / sizeof kept[0];
+    for (size_t i = 0; i < count; ++i) {
+        if (kept[i].effect && memcmp(&kept[i].info, info, sizeof *info) == 0)
+            return kept[i].effect;
+    }
+    vkao_effect_destroy(kept[next].effect);
+    kept[next].effect = NULL;
+    check_vkao(vkao_effect_create(fixture.context, info, &kept[next].effect));
+    kept[next].info = *info;
+    vkao_effect *effect = kept[next].effect;
+    next = (next + 1) % count;
+    return effect;
+}
+
+void fixture_forget_effects(void)
+{
+    for (size_t i = 0; i < sizeof kept / sizeof kept[0]; ++i)
+        vkao_effect_destroy(kept[i].effect);
+    memset(kept, 0, sizeof kept);
+}
+
 vkao_context_info fixture_context_info(void)
 {
-    return (vkao_context_info){
-        .struct_size = sizeof(vkao_context_info),
-        .instance = fixture.gpu.instance,
-        .physical_device = fixture.gpu.physical_device,
-        .device = fixture.gpu.device,
-        .get_instance_proc_addr = vkGetInstanceProcAddr,
-        .get_device_proc_addr = vkGetDeviceProcAddr,
-        .enabled_features = &fixture.gpu.features,
-        .storage_16bit = fixture.gpu.storage_16bit,
-    };
+    vkao_context_info info = gpu_context_info(&fixture.gpu);
+    info.log = NULL;
+    return info;
 }
 
 int fixture_close(void **state)
 {
     (void)state;
+    fixture_forget_effects();
     vkao_context_destroy(fixture.context);
     gpu_destroy(&fixture.gpu);
     /* Objects that outlive their device are reported as it goes. */

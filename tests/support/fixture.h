@@ -7,6 +7,7 @@
 #define VKAO_TESTS_FIXTURE_H_
 
 #include "gpu.h"
+#include "stage_setting.h"
 #include "lens.h"
 #include "ref_view.h"
 #include "scenes.h"
@@ -40,8 +41,14 @@ int fixture_after_test(void **state);
 #define fixture_run(tests)                                                                         \
     (fixture_open() ? cmocka_run_group_tests(tests, NULL, fixture_close) : FIXTURE_UNAVAILABLE)
 
-/* What a further context on the fixture's device starts from: silent, all methods. */
+/* What a further context on the fixture's device starts from: silent. */
 vkao_context_info fixture_context_info(void);
+
+/* Of the fixture's context, which keeps the last ones: a software driver takes longer to compile an
+ * effect than to run it. Not the caller's to destroy; valid until 31 others have been asked for. */
+vkao_effect *fixture_effect(const vkao_effect_info *info);
+/* Before fixture.context is another. */
+void fixture_forget_effects(void);
 
 /* Fails the test with the tool's error if ok is false. */
 void check(bool ok);
@@ -69,33 +76,37 @@ enum picture_slot {
 struct picture {
     uint32_t width, height;
     vkao_stage_flags stages;
-    VkFormat formats[SLOT_COUNT];  /* UNDEFINED = slot not used */
-    double *values[SLOT_COUNT];    /* as the image holds them: depth, ao_noisy, ao 1 a texel, the
+    VkFormat formats[SLOT_COUNT]; /* UNDEFINED = slot not used */
+    double *values[SLOT_COUNT];   /* as the image holds them: depth, ao_noisy, ao 1 a texel, the
                                       others 4 */
-    bool output_is_color;          /* composite in place */
+    bool output_is_color;         /* composite in place */
     bool half_resolution;
-    bool staged; /* ao_image is given */
+    bool staged;                   /* ao.image is given */
     VkDeviceMemory scratch_memory; /* null = the library's own */
     VkDeviceSize scratch_offset;
-    vkao_view view;
-    vkao_ssao_params ssao;
-    vkao_blur_params blur;
-    vkao_composite_params composite;
+    struct ao_view view;
+    struct ao_ssao ssao;
+    struct ao_blur blur;
+    struct ao_composite composite;
 };
 
 /* What a picture is on the device. */
 struct picture_gpu {
     struct gpu_image images[SLOT_COUNT];
     vkao_images slots;
+    vkao_effect *effect; /* the fixture's */
     vkao_frame *frame;
 };
 
 /* Default parameters, no slots. */
 void picture_init(struct picture *p, uint32_t width, uint32_t height, vkao_stage_flags stages);
+/* What vkao_preset decides. */
+void picture_preset(struct picture *p, vkao_quality quality);
 void picture_free(struct picture *p);
 uint32_t picture_channels(enum picture_slot slot);
 size_t picture_texels(const struct picture *p);
-/* AO inside the part's rect is the whole's, bit for bit, and untouched outside. what: for the message. */
+/* AO inside the part's rect is the whole's, bit for bit, and untouched outside. what: for the
+ * message. */
 void picture_check_part(const struct picture *part, const struct picture *whole, double untouched,
                         const char *what);
 vkao_image *picture_slot_image(vkao_images *images, enum picture_slot slot);
@@ -112,7 +123,14 @@ void picture_render_scene(struct picture *p, const struct scene *scene, const st
  * view z in R32F, given normals in RGBA32F, AO in R32F. */
 void picture_make(struct picture *p, vkao_stage_flags stages, const struct scene *scene);
 
+/* What the picture's frame is an effect of. */
+vkao_effect_info picture_effect_info(const struct picture *p);
+/* Compiled for the context, the caller's to destroy. */
+vkao_effect *picture_effect(const struct picture *p, const vkao_context *context);
 void picture_open(const struct picture *p, struct picture_gpu *g);
+/* These stages alone. */
+void picture_record_stages(const struct picture *p, const struct picture_gpu *g,
+                           VkCommandBuffer cmd, vkao_stage_flags stages);
 void picture_frame_info(const struct picture *p, const struct picture_gpu *g,
                         vkao_frame_info *info);
 void picture_record(const struct picture *p, const struct picture_gpu *g, VkCommandBuffer cmd);
@@ -128,10 +146,9 @@ struct difference {
     double max, mean, p99;
 };
 struct difference difference_of(const double *a, const double *b, size_t count);
-/* Prints the three figures and fails if one of the two exceeds its limit; NaN is never equal to
- * anything. */
+/* Prints the three figures and fails if one exceeds its limit; NaN is never equal to anything. */
 void check_close(const char *what, const double *a, const double *b, size_t count, double mean,
-                 double p99);
+                 double p99, double max);
 /* Bit for bit, NaN never. */
 void check_equal(const char *what, const double *a, const double *b, size_t count);
 double mean_of(const double *v, size_t count);

@@ -9,7 +9,7 @@
 #include <vulkan/vulkan_core.h>
 
 struct host_memory {
-    unsigned total; /* allocations ever tried */
+    unsigned total;   /* allocations ever tried */
     unsigned fail_at; /* 1 = the first fails; 0 = none */
     size_t live;
 };

@@ -39,9 +39,25 @@ double chance_magnitude(struct chance *chance, double low, double high)
 double hostile_value(uint32_t i)
 {
     static const double values[HOSTILE_VALUES] = {
-        0.0,   (double)INFINITY, (double)-INFINITY, (double)NAN, -1.0,  0x1p-149, /* the least denormal */
-        1e-38, (double)FLT_MAX,  (double)-FLT_MAX,  -0.0,        1e-30, 1e-20,
-        1e-12, 1e12,             1e15,              1e20,        1e29,  1e30,
+        /* the least denormal */
+        0.0,
+        (double)INFINITY,
+        (double)-INFINITY,
+        (double)NAN,
+        -1.0,
+        0x1p-149,
+        1e-38,
+        (double)FLT_MAX,
+        (double)-FLT_MAX,
+        -0.0,
+        1e-30,
+        1e-20,
+        1e-12,
+        1e12,
+        1e15,
+        1e20,
+        1e29,
+        1e30,
     };
     return values[i % HOSTILE_VALUES];
 }

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Numbers that no renderer should write and some do, and settings nobody would choose. The same on every run. */
+ * Numbers that no renderer should write and some do, and settings nobody would choose. The same on
+ * every run. */
 #ifndef VKAO_TESTS_HOSTILE_H_
 #define VKAO_TESTS_HOSTILE_H_
 
@@ -19,8 +20,8 @@ bool chance_yes(struct chance *chance, double share);
 double chance_between(struct chance *chance, double low, double high);
 double chance_magnitude(struct chance *chance, double low, double high);
 
-/* Zero, infinities, NaN, a negative number, the smallest and the largest floats, and some that squares or cubes push
- * out of the range of floats. */
+/* Zero, infinities, NaN, a negative number, the smallest and the largest floats, and some that
+ * squares or cubes push out of the range of floats. */
 enum { HOSTILE_VALUES = 18 };
 double hostile_value(uint32_t i);
 
@@ -34,7 +35,7 @@ enum hostile_pattern {
     HOSTILE_PATTERNS
 };
 /* Into an image of as many channels; each of them gets its own. */
-void hostile_spread(struct chance *chance, enum hostile_pattern pattern, double *values, uint32_t width,
-                    uint32_t height, uint32_t channels);
+void hostile_spread(struct chance *chance, enum hostile_pattern pattern, double *values,
+                    uint32_t width, uint32_t height, uint32_t channels);
 
 #endif

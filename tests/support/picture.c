@@ -12,10 +12,26 @@ static const double canary = 0.6235;
 void picture_init(struct picture *p, uint32_t width, uint32_t height, vkao_stage_flags stages)
 {
     *p = (struct picture){.width = width, .height = height, .stages = stages};
-    p->view = vkao_view_default();
-    p->ssao = vkao_ssao_params_default();
-    p->blur = vkao_blur_params_default();
-    p->composite = vkao_composite_params_default();
+    p->view = ao_view_default();
+    p->ssao = ao_ssao_default();
+    p->blur = ao_blur_default();
+    p->composite = ao_composite_default();
+}
+
+void picture_preset(struct picture *p, vkao_quality quality)
+{
+    vkao_effect_info effect = vkao_effect_info_default();
+    vkao_params params = vkao_params_default();
+    check_vkao(vkao_preset(quality, &effect, &params));
+    p->half_resolution = effect.half_resolution;
+    p->ssao.method = effect.method;
+    p->ssao.slice_count = effect.slice_count;
+    p->ssao.step_count = effect.step_count;
+    p->ssao.bias = params.bias;
+    p->ssao.thickness = params.thickness;
+    p->blur.radius = effect.blur_radius;
+    p->blur.normal_power = effect.blur_normal_power;
+    p->blur.sharpness = params.sharpness;
 }
 
 void picture_free(struct picture *p)
@@ -160,17 +176,33 @@ static void open_slot(const struct picture *p, enum picture_slot slot, struct gp
     free(data);
 }
 
+vkao_effect_info picture_effect_info(const struct picture *p)
+{
+    const vkao_stage_flags both = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
+    const bool has_both = (p->stages & both) == both;
+    vkao_effect_info info = ao_effect(p->stages, &p->view, &p->ssao, &p->blur, &p->composite);
+    info.half_resolution = p->half_resolution;
+    info.bent_normals = has_both && p->formats[SLOT_BENT] != VK_FORMAT_UNDEFINED;
+    info.noisy_ao = has_both && p->formats[SLOT_NOISY] != VK_FORMAT_UNDEFINED;
+    info.ao_format = p->formats[SLOT_AO];
+    return info;
+}
+
+vkao_effect *picture_effect(const struct picture *p, const vkao_context *context)
+{
+    const vkao_effect_info info = picture_effect_info(p);
+    vkao_effect *effect = NULL;
+    check_vkao(vkao_effect_create(context, &info, &effect));
+    return effect;
+}
+
 void picture_frame_info(const struct picture *p, const struct picture_gpu *g, vkao_frame_info *info)
 {
-    *info = (vkao_frame_info){
-        .struct_size = sizeof *info,
-        .stages = p->stages,
-        .extent = {p->width, p->height},
-        .images = &g->slots,
-        .scratch_memory = p->scratch_memory,
-        .scratch_offset = p->scratch_offset,
-        .half_resolution = p->half_resolution,
-    };
+    *info = vkao_frame_info_default();
+    info->extent = (VkExtent2D){p->width, p->height};
+    info->images = &g->slots;
+    info->scratch_memory = p->scratch_memory;
+    info->scratch_offset = p->scratch_offset;
 }
 
 void picture_open(const struct picture *p, struct picture_gpu *g)
@@ -186,16 +218,26 @@ void picture_open(const struct picture *p, struct picture_gpu *g)
     if (p->output_is_color)
         g->slots.output = g->slots.color;
     if (p->staged)
-        g->slots.ao_image = g->images[SLOT_AO].image;
+        g->slots.ao.image = g->images[SLOT_AO].image;
     picture_frame_info(p, g, &info);
-    check_vkao(vkao_frame_create(fixture.context, &info, &g->frame));
+    const vkao_effect_info effect = picture_effect_info(p);
+    g->effect = fixture_effect(&effect);
+    check_vkao(vkao_frame_create(g->effect, &info, &g->frame));
 }
 
 void picture_record(const struct picture *p, const struct picture_gpu *g, VkCommandBuffer cmd)
 {
-    check_vkao(vkao_cmd_all(g->frame, cmd, &p->view, p->stages & VKAO_STAGE_SSAO ? &p->ssao : NULL,
-                            p->stages & VKAO_STAGE_BLUR ? &p->blur : NULL,
-                            p->stages & VKAO_STAGE_COMPOSITE ? &p->composite : NULL));
+    const vkao_view view = ao_library_view(&p->view);
+    const vkao_params params = ao_params(&p->ssao, &p->blur, &p->composite);
+    check_vkao(vkao_cmd_record(g->frame, cmd, &view, &params));
+}
+
+void picture_record_stages(const struct picture *p, const struct picture_gpu *g,
+                           VkCommandBuffer cmd, vkao_stage_flags stages)
+{
+    const vkao_view view = ao_library_view(&p->view);
+    const vkao_params params = ao_params(&p->ssao, &p->blur, &p->composite);
+    check_vkao(vkao_cmd_stage(g->frame, cmd, stages, &view, &params));
 }
 
 void picture_download(struct picture *p, struct picture_gpu *g)

@@ -12,11 +12,11 @@
  * point or ray that flips is worth 2/n, a horizon as much as the step to the next sample, a sector
  * bound of VBAO, which the shader has from a cubic that is off by up to .0053, 1/31 of a slice. */
 static const struct {
-    double mean, p99;
+    double mean, p99, max;
 } tolerances[] = {
-    [VKAO_SSAO_SPHERE] = {1e-4, 1e-3}, [VKAO_SSAO_HEMISPHERE] = {1e-4, 1e-3},
-    [VKAO_SSAO_HBAO] = {1e-4, 1e-3},   [VKAO_SSAO_GTAO] = {1e-4, 1e-3},
-    [VKAO_SSAO_VBAO] = {1e-3, 2.2e-2}, [VKAO_SSAO_RAYMARCH] = {1e-4, 1e-3},
+    [VKAO_SSAO_SPHERE] = {1e-4, 1e-3, 0.07}, [VKAO_SSAO_HEMISPHERE] = {1e-4, 1e-3, 0.07},
+    [VKAO_SSAO_HBAO] = {1e-4, 1e-3, 0.07},   [VKAO_SSAO_GTAO] = {1e-4, 1e-3, 0.07},
+    [VKAO_SSAO_VBAO] = {1e-3, 2.2e-2, 0.15}, [VKAO_SSAO_RAYMARCH] = {1e-4, 1e-3, 0.07},
 };
 
 void check_ssao(struct picture *p, ssao_reference *reference, const char *what)
@@ -28,14 +28,14 @@ void check_ssao(struct picture *p, ssao_reference *reference, const char *what)
     picture_reference_scene(p, &scene);
     reference(&scene, &p->ssao, expected);
     check_close(what, p->values[SLOT_AO], expected, texels, tolerances[p->ssao.method].mean,
-                tolerances[p->ssao.method].p99);
+                tolerances[p->ssao.method].p99, tolerances[p->ssao.method].max);
     /* An image without occlusion would agree with a shader that does nothing. */
     assert_true(mean_of(expected, texels) < 0.995);
     ref_scene_free(&scene);
     free(expected);
 }
 
-void check_every_normal_encoding(const vkao_ssao_params *params, ssao_reference *reference)
+void check_every_normal_encoding(const struct ao_ssao *params, ssao_reference *reference)
 {
     static const struct {
         const char *name;
@@ -70,7 +70,7 @@ void check_every_normal_encoding(const vkao_ssao_params *params, ssao_reference 
     }
 }
 
-void check_world_space_normals(const vkao_ssao_params *params, ssao_reference *reference)
+void check_world_space_normals(const struct ao_ssao *params, ssao_reference *reference)
 {
     /* Columns of an orthonormal matrix that is neither symmetric nor close to the identity. */
     static const double columns[3][3] = {{2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0},
@@ -91,12 +91,12 @@ void check_world_space_normals(const vkao_ssao_params *params, ssao_reference *r
     picture_run(&p);
     check_ssao(&turned, reference, "world-space normals against the reference");
     check_close("world-space against view-space normals", turned.values[SLOT_AO], p.values[SLOT_AO],
-                picture_texels(&p), 1e-3, 0.02);
+                picture_texels(&p), 1e-3, 0.02, 0.1);
     picture_free(&p);
     picture_free(&turned);
 }
 
-void check_every_projection(const vkao_ssao_params *params, ssao_reference *reference)
+void check_every_projection(const struct ao_ssao *params, ssao_reference *reference)
 {
     static const struct {
         const char *name;
@@ -104,14 +104,16 @@ void check_every_projection(const vkao_ssao_params *params, ssao_reference *refe
         double forward, shift, lift;
         bool depth_only, sky;
     } rows[] = {
-        {"perspective, left-handed, y up", false, false, true, 1.0, 0.0, 0.0},
-        {"perspective, right-handed, off-centre", false, false, false, -1.0, 0.3, 0.0},
-        {"orthographic, right-handed", true, false, false, -1.0, 0.0, 0.0},
-        {"orthographic, left-handed, reversed, off-centre", true, true, true, 1.0, 0.5, 0.0},
+        {"perspective, left-handed, y up", false, false, true, 1.0, 0.0, 0.0, false, false},
+        {"perspective, right-handed, off-centre", false, false, false, -1.0, 0.3, 0.0, false,
+         false},
+        {"orthographic, right-handed", true, false, false, -1.0, 0.0, 0.0, false, false},
+        {"orthographic, left-handed, reversed, off-centre", true, true, true, 1.0, 0.5, 0.0, false,
+         false},
         /* The floor turns its back on the origin, but not on the camera. */
-        {"orthographic, lifted", true, false, false, 1.0, 0.0, -2.5},
-        {"perspective, y up, depth only", false, false, true, 1.0, 0.0, 0.0, true},
-        {"orthographic, y up, depth only", true, false, true, -1.0, 0.0, 0.0, true},
+        {"orthographic, lifted", true, false, false, 1.0, 0.0, -2.5, false, false},
+        {"perspective, y up, depth only", false, false, true, 1.0, 0.0, 0.0, true, false},
+        {"orthographic, y up, depth only", true, false, true, -1.0, 0.0, 0.0, true, false},
         {"perspective, sky", false, false, false, -1.0, 0.0, 0.0, false, true},
         {"orthographic, sky", true, false, false, -1.0, 0.0, 0.0, false, true},
     };
@@ -147,7 +149,7 @@ void check_every_projection(const vkao_ssao_params *params, ssao_reference *refe
     }
 }
 
-void check_bad_normals_are_replaced(const vkao_ssao_params *params, ssao_reference *reference)
+void check_bad_normals_are_replaced(const struct ao_ssao *params, ssao_reference *reference)
 {
     static const double bad[][3] = {
         {0.0, 0.0, 0.0},
@@ -178,7 +180,7 @@ void check_bad_normals_are_replaced(const vkao_ssao_params *params, ssao_referen
     }
 }
 
-void check_no_nan_at_the_limits(const vkao_ssao_params *params)
+void check_no_nan_at_the_limits(const struct ao_ssao *params)
 {
     static const uint32_t extents[][2] = {{1, 1}, {33, 1}, {1, 33}, {2, 2}, {17, 9}};
     static const float radii[] = {1e-30f, 1e-3f, 100.0f, 1e30f};

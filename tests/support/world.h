@@ -31,32 +31,44 @@ struct world {
     struct host_memory host;
     struct kept_log log;
     VkAllocationCallbacks callbacks;
-    VkPhysicalDeviceFeatures features;
+    VkPhysicalDeviceFeatures2 features;
+    VkPhysicalDevice16BitStorageFeatures storage_features; /* in no chain yet */
     vkao_context_info info;
     vkao_context *ctx;
 
-    /* Every slot used but bent_normals, which shuns ao_noisy, each with its own format; the extent
-     * is 100x60. */
+    /* All stages; every slot used but bent_normals, which shuns noisy_ao. */
+    vkao_effect_info effect_info;
+    vkao_effect *effect;
+
+    /* Each slot with its own format; the extent is 100x60. */
     vkao_images images;
     vkao_image bent_normals; /* for world_use_bent_normals */
     vkao_frame_info frame_info;
     vkao_frame *frame;
 
     vkao_view view; /* perspective, right-handed, standard depth */
-    vkao_ssao_params ssao;
-    vkao_blur_params blur;
-    vkao_composite_params composite;
+    vkao_params params;
 };
 
 /* Without a context yet. with_callbacks: through VkAllocationCallbacks. */
 void world_init(struct world *w, bool with_callbacks);
 /* world_init and a context. */
 void world_open(struct world *w);
+/* An effect and a frame of it, for infos that are right. What was there is destroyed. */
+void world_create_effect(struct world *w);
+void world_create_frame(struct world *w);
+vkao_result world_try_effect(struct world *w);
+vkao_result world_try_frame(struct world *w);
 /* And a frame for the stages. */
 void world_open_frame(struct world *w, vkao_stage_flags stages);
 /* Bent normals instead of ao_noisy, before the frame is created. */
 void world_use_bent_normals(struct world *w);
-/* Destroys frame and context, and checks that nothing was left and the API was not misused. */
+/* Neither ao_noisy nor bent normals. */
+void world_use_scratch_noise(struct world *w);
+/* A CPU, before the context is created. */
+void world_be_cpu(struct world *w);
+/* Destroys frame, effect and context, and checks that nothing was left and the API was not
+ * misused. */
 void world_close(struct world *w);
 /* Nothing that the library made is alive, on the device or on the host. */
 void world_check_empty(const struct world *w);
@@ -74,7 +86,7 @@ enum { SLOT_COUNT = 10, SLOT_BENT_NORMALS = 7 };
 extern const char *const world_slot_names[SLOT_COUNT];
 vkao_image *world_slot(vkao_images *images, size_t index);
 
-/* vkao_cmd_all with the params that the frame's stages want. */
+/* vkao_cmd_record. */
 vkao_result world_record_all(struct world *w);
 
 #endif

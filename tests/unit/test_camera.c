@@ -315,7 +315,7 @@ static void json_mistakes_are_named(void **state)
 }
 
 /* Clip coordinates of a view-space point, to texels of the data window. */
-static void project(const vkao_view *view, double x, double y, double z, double *column,
+static void project(const struct ao_view *view, double x, double y, double z, double *column,
                     double *row, double *depth)
 {
     double p[4] = {x, y, z, 1}, clip[4];
@@ -335,7 +335,7 @@ static void check_round_trip(const struct camera *camera)
 {
     const struct exr_box display = {0, 0, 199, 99}, data = {30, -10, 149, 79};
     const double z = 7;
-    vkao_view view = vkao_view_default();
+    struct ao_view view = ao_view_default();
     bool ortho = camera->type == CAMERA_ORTHOGRAPHIC;
     camera_project(camera, &(struct camera_planes){0.5, ortho ? 100 : INFINITY}, &display, &data,
                    &view);
@@ -397,7 +397,7 @@ static void viewport_is_the_display_seen_from_the_data_window(void **state)
     const struct exr_box display = {-5, 10, 194, 109}, data = {30, 20, 149, 79};
     const struct camera camera = {
         .type = CAMERA_PERSPECTIVE, .half_width = 0.6, .half_height = 0.3};
-    vkao_view view = vkao_view_default();
+    struct ao_view view = ao_view_default();
     (void)state;
     camera_project(&camera, &(struct camera_planes){0.5, INFINITY}, &display, &data, &view);
     assert_int_equal(view.viewport.offset.x, -35);
@@ -415,7 +415,7 @@ static void planes_map_to_zero_and_one_or_reversed(void **state)
         .type = CAMERA_PERSPECTIVE, .half_width = 0.6, .half_height = 0.3};
     (void)state;
     for (size_t i = 0; i < 4; i++) {
-        vkao_view view = vkao_view_default();
+        struct ao_view view = ao_view_default();
         double column, row, depth;
         camera_project(&camera, &planes[i], &box, &box, &view);
         project(&view, 0, 0, isinf(planes[i].near_plane) ? -1e9 : -planes[i].near_plane, &column,

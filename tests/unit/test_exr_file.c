@@ -254,8 +254,7 @@ static void two_parts_of_one_name_are_an_error(void **state)
     struct exr_new_part part = make_part("ao", "zip");
     struct tool_error err = {0};
     write_ok(in_directory("in.exr"), NULL, &part, 1);
-    assert_false(
-        write_copy(in_directory("out.exr"), in_directory("in.exr"), &part, 1, &err));
+    assert_false(write_copy(in_directory("out.exr"), in_directory("in.exr"), &part, 1, &err));
     assert_int_equal(err.code, EXIT_OUTPUT);
     assert_non_null(strstr(err.message, "'ao'"));
     assert_int_equal(files_in_directory(), 1);
@@ -291,8 +290,7 @@ static void truncated_file_is_not_appended_to(void **state)
     struct bytes file = load_file(in_directory("whole.exr"));
     store_file(in_directory("cut.exr"), file.data, file.size * 6 / 10);
     free(file.data);
-    assert_false(
-        write_copy(in_directory("out.exr"), in_directory("cut.exr"), &ao, 1, &err));
+    assert_false(write_copy(in_directory("out.exr"), in_directory("cut.exr"), &ao, 1, &err));
     assert_int_equal(err.code, EXIT_INPUT);
     assert_non_null(strstr(err.message, "cut.exr"));
     assert_int_equal(files_in_directory(), 2);
@@ -375,7 +373,8 @@ static void other_formats_and_empty_files_are_named(void **state)
     expect_refused(in_directory("."), EXIT_INPUT, "Is a directory");
 }
 
-/* Puts an attribute in front of all others of a single-part file; the chunk table follows the shift. */
+/* Puts an attribute in front of all others of a single-part file; the chunk table follows the
+ * shift. */
 static struct bytes with_attribute(const struct bytes *file, const char *type, const void *value,
                                    size_t size, size_t claimed)
 {
@@ -403,23 +402,23 @@ static void attributes_of_another_size_than_their_types_are_refused(void **state
 {
     (void)state;
     /* Of types that zeros are no value of. */
-    static const unsigned char string[6] = {2, 0, 0, 0, 'a', 'b'},
-                               picture[12] = {1, 0, 0, 0, 1}, film[28] = {[20] = 4, [24] = 64},
+    static const unsigned char string[6] = {2, 0, 0, 0, 'a', 'b'}, picture[12] = {1, 0, 0, 0, 1},
+                               film[28] = {[20] = 4, [24] = 64},
                                channel[19] = {'Z', 0, 2, [10] = 1, [14] = 1};
     static const struct {
         const char *type;
         size_t bytes;
         const unsigned char *value; /* NULL: zeros */
     } types[] = {
-        {"box2i", 16, NULL},          {"box2f", 16, NULL},       {"chromaticities", 32, NULL},
-        {"compression", 1, NULL},     {"double", 8, NULL},       {"envmap", 1, NULL},
-        {"float", 4, NULL},           {"int", 4, NULL},          {"keycode", 28, film},
-        {"lineOrder", 1, NULL},       {"m33f", 36, NULL},        {"m33d", 72, NULL},
-        {"m44f", 64, NULL},           {"m44d", 128, NULL},       {"rational", 8, NULL},
-        {"timecode", 8, NULL},        {"v2i", 8, NULL},          {"v2f", 8, NULL},
-        {"v2d", 16, NULL},            {"v3i", 12, NULL},         {"v3f", 12, NULL},
-        {"v3d", 24, NULL},            {"tiledesc", 9, NULL},     {"floatvector", 8, NULL},
-        {"stringvector", 6, string},  {"preview", 12, picture},  {"chlist", 19, channel},
+        {"box2i", 16, NULL},         {"box2f", 16, NULL},      {"chromaticities", 32, NULL},
+        {"compression", 1, NULL},    {"double", 8, NULL},      {"envmap", 1, NULL},
+        {"float", 4, NULL},          {"int", 4, NULL},         {"keycode", 28, film},
+        {"lineOrder", 1, NULL},      {"m33f", 36, NULL},       {"m33d", 72, NULL},
+        {"m44f", 64, NULL},          {"m44d", 128, NULL},      {"rational", 8, NULL},
+        {"timecode", 8, NULL},       {"v2i", 8, NULL},         {"v2f", 8, NULL},
+        {"v2d", 16, NULL},           {"v3i", 12, NULL},        {"v3f", 12, NULL},
+        {"v3d", 24, NULL},           {"tiledesc", 9, NULL},    {"floatvector", 8, NULL},
+        {"stringvector", 6, string}, {"preview", 12, picture}, {"chlist", 19, channel},
     };
     struct exr_new_part part = make_part("g", "none");
     write_ok(in_directory("in.exr"), NULL, &part, 1);
@@ -436,7 +435,8 @@ static void attributes_of_another_size_than_their_types_are_refused(void **state
             free(made.data);
             const bool read = reads_whole(in_directory("x.exr"), &err);
             if (read != (difference == 0))
-                fail_msg("%s of %zu bytes: %s", types[i].type, size, read ? "accepted" : err.message);
+                fail_msg("%s of %zu bytes: %s", types[i].type, size,
+                         read ? "accepted" : err.message);
             if (!read) {
                 assert_int_equal(err.code, EXIT_INPUT);
                 assert_non_null(strstr(err.message, "is not a valid"));
@@ -458,7 +458,8 @@ static void a_header_hidden_in_an_attribute_does_not_move_the_window(void **stat
     struct bytes file = load_file(in_directory("in.exr"));
     struct bytes made = with_attribute(&file, "v3f", value, sizeof value, 8);
     store_file(in_directory("x.exr"), made.data, made.size);
-    expect_refused(in_directory("x.exr"), EXIT_INPUT, "attribute 'x' of 8 bytes is not a valid v3f");
+    expect_refused(in_directory("x.exr"), EXIT_INPUT,
+                   "attribute 'x' of 8 bytes is not a valid v3f");
     free(made.data);
     free(file.data);
 }
@@ -498,8 +499,8 @@ static void a_file_written_to_while_open_is_an_error(void **state)
     struct bytes file = load_file(in_directory("in.exr"));
     const struct {
         size_t size, from; /* bytes kept, and where other ones are written */
-    } changes[] = {{file.size / 2, SIZE_MAX}, {file.size, 40}, {file.size, file.size - 100},
-                   {0, SIZE_MAX}};
+    } changes[] = {
+        {file.size / 2, SIZE_MAX}, {file.size, 40}, {file.size, file.size - 100}, {0, SIZE_MAX}};
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
         struct exr_info info;
         struct tool_error read_err = {0}, write_err = {0};
@@ -514,7 +515,8 @@ static void a_file_written_to_while_open_is_an_error(void **state)
         }
         fclose(f);
         /* Clocks of file systems tick slower than this test runs. */
-        const struct timespec later[2] = {{.tv_nsec = UTIME_OMIT}, {.tv_sec = 2000000000 + (time_t)i}};
+        const struct timespec later[2] = {{.tv_nsec = UTIME_OMIT},
+                                          {.tv_sec = 2000000000 + (time_t)i}};
         assert_int_equal(utimensat(AT_FDCWD, in_directory("in.exr"), later, 0), 0);
         assert_false(exr_read_channels(&info, 0, &read, 1, &read_err));
         assert_int_equal(read_err.code, EXIT_INPUT);

@@ -2,8 +2,8 @@
  *
  * The image slots of a frame: which stages need which, formats, layouts, what the device can do
  * with them, and pointing a frame at other images. The table is vkao.h's in other words; it does
- * not look into lib/frame.c. */
-#include "internal.h"
+ * not look into lib/slots.c. */
+#include "frame.h"
 #include "world.h"
 
 #include <stdio.h>
@@ -33,9 +33,17 @@ static bool set_case(struct world *w, unsigned i)
     const vkao_stage_flags stages = i / 2;
     if (stages == 0 || (i % 2 && combinations[stages].access[BENT_NORMALS] == '!'))
         return false;
-    w->frame_info.stages = stages;
+    w->effect_info.stages = stages;
+    w->effect_info.noisy_ao = (stages & 3u) == 3u;
+    /* All that a composite can read. */
+    w->effect_info.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
+    w->effect_info.composite_mode = VKAO_COMPOSITE_INDIRECT;
+    w->effect_info.multi_bounce = VK_TRUE;
+    w->effect_info.specular =
+        i % 2 && stages >= VKAO_STAGE_COMPOSITE ? VKAO_SPECULAR_FROM_BENT : VKAO_SPECULAR_FROM_AO;
     if (i % 2)
         world_use_bent_normals(w);
+    w->effect_info.bent_normals = i % 2 && (stages & 3u) == 3u;
     return true;
 }
 
@@ -52,10 +60,12 @@ static bool reads(char access)
 /* Creates the frame and, on success, destroys it. */
 static vkao_result attempt(struct world *w)
 {
-    vkao_result result = vkao_frame_create(w->ctx, &w->frame_info, &w->frame);
+    vkao_result result = world_try_frame(w);
     assert_true((result == VKAO_SUCCESS) == (w->frame != NULL));
     vkao_frame_destroy(w->frame);
+    vkao_effect_destroy(w->effect);
     w->frame = NULL;
+    w->effect = NULL;
     return result;
 }
 
@@ -67,7 +77,7 @@ static void expect_result(struct world *w, vkao_result want, const char *name, c
     if (want != VKAO_SUCCESS)
         expect_refused(w, want, result, name, value);
     else if (result != VKAO_SUCCESS)
-        fail_msg("stages 0x%x: %s refused: %s", w->frame_info.stages, name, w->log.last_error);
+        fail_msg("stages 0x%x: %s refused: %s", w->effect_info.stages, name, w->log.last_error);
     assert_int_equal(fake_live(&w->fake), before);
 }
 
@@ -82,7 +92,12 @@ static void slots_are_required_as_the_stages_say(void **state)
             if (was.format == VK_FORMAT_UNDEFINED)
                 continue;
             *world_slot(&w.images, slot) = (vkao_image){0};
+            /* Settings that read a slot require it; noisy AO and AO may lie in scratch. */
             bool required = combinations[i / 2].required[slot] == 'x';
+            if (slot != AO && slot != AO_NOISY)
+                required = combinations[i / 2].access[slot] != '-';
+            if (slot == AO_NOISY && w.effect_info.noisy_ao)
+                required = true;
             expect_result(&w, required ? VKAO_ERROR_INVALID_ARGUMENT : VKAO_SUCCESS,
                           world_slot_names[slot], required ? "required" : "");
             *world_slot(&w.images, slot) = was;
@@ -183,20 +198,30 @@ static void device_abilities_decide_about_formats(void **state)
 }
 
 static const VkFormat integer_formats[] = {
-    VK_FORMAT_R8_UINT,           VK_FORMAT_R8G8B8A8_UINT,      VK_FORMAT_R8G8B8A8_SINT,
-    VK_FORMAT_B8G8R8A8_UINT,     VK_FORMAT_R16_UINT,           VK_FORMAT_R16G16_SINT,
-    VK_FORMAT_R16G16B16A16_UINT, VK_FORMAT_R32_UINT,           VK_FORMAT_R32_SINT,
-    VK_FORMAT_R32G32B32A32_UINT, VK_FORMAT_R32G32B32A32_SINT,  VK_FORMAT_A2B10G10R10_UINT_PACK32,
-    VK_FORMAT_R64_UINT,          VK_FORMAT_R64G64B64A64_SINT,  VK_FORMAT_S8_UINT,
-    VK_FORMAT_R64_SFLOAT,        VK_FORMAT_G8_B8_R8_3PLANE_420_UNORM,
+    VK_FORMAT_R8_UINT,
+    VK_FORMAT_R8G8B8A8_UINT,
+    VK_FORMAT_R8G8B8A8_SINT,
+    VK_FORMAT_B8G8R8A8_UINT,
+    VK_FORMAT_R16_UINT,
+    VK_FORMAT_R16G16_SINT,
+    VK_FORMAT_R16G16B16A16_UINT,
+    VK_FORMAT_R32_UINT,
+    VK_FORMAT_R32_SINT,
+    VK_FORMAT_R32G32B32A32_UINT,
+    VK_FORMAT_R32G32B32A32_SINT,
+    VK_FORMAT_A2B10G10R10_UINT_PACK32,
+    VK_FORMAT_R64_UINT,
+    VK_FORMAT_R64G64B64A64_SINT,
+    VK_FORMAT_S8_UINT,
+    VK_FORMAT_R64_SFLOAT,
+    VK_FORMAT_G8_B8_R8_3PLANE_420_UNORM,
 };
 
 static void expect_formats(const VkFormat *formats, size_t count, size_t slot, bool fits)
 {
     struct world w;
     world_open(&w);
-    if (slot == BENT_NORMALS)
-        world_use_bent_normals(&w);
+    set_case(&w, 2 * VKAO_STAGE_ALL + (slot == BENT_NORMALS));
     const VkFormat was = world_slot(&w.images, slot)->format;
     for (size_t i = 0; i < count; ++i) {
         char name[64], value[32];
@@ -220,18 +245,23 @@ static void formats_fit_their_slots(void **state)
 {
     (void)state;
     static const VkFormat depth[] = {
-        VK_FORMAT_D16_UNORM,         VK_FORMAT_X8_D24_UNORM_PACK32,  VK_FORMAT_D32_SFLOAT,
-        VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT,   VK_FORMAT_D16_UNORM_S8_UINT,
-        VK_FORMAT_R16_UNORM,         VK_FORMAT_R16_SFLOAT,           VK_FORMAT_R32_SFLOAT,
+        VK_FORMAT_D16_UNORM,         VK_FORMAT_X8_D24_UNORM_PACK32, VK_FORMAT_D32_SFLOAT,
+        VK_FORMAT_D24_UNORM_S8_UINT, VK_FORMAT_D32_SFLOAT_S8_UINT,  VK_FORMAT_D16_UNORM_S8_UINT,
+        VK_FORMAT_R16_UNORM,         VK_FORMAT_R16_SFLOAT,          VK_FORMAT_R32_SFLOAT,
     };
     static const VkFormat not_depth[] = {
-        VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_R32G32_SFLOAT, VK_FORMAT_R32G32B32A32_SFLOAT,
+        VK_FORMAT_R8G8B8A8_UNORM,
+        VK_FORMAT_R32G32_SFLOAT,
+        VK_FORMAT_R32G32B32A32_SFLOAT,
     };
     static const VkFormat ao[] = {
-        VK_FORMAT_R8_UNORM, VK_FORMAT_R16_UNORM, VK_FORMAT_R16_SFLOAT, VK_FORMAT_R32_SFLOAT,
+        VK_FORMAT_R8_UNORM,
+        VK_FORMAT_R16_UNORM,
+        VK_FORMAT_R16_SFLOAT,
+        VK_FORMAT_R32_SFLOAT,
     };
     static const VkFormat not_ao[] = {
-        VK_FORMAT_R8_SNORM,       VK_FORMAT_R8_SRGB,   VK_FORMAT_R16_SNORM, VK_FORMAT_R8G8_UNORM,
+        VK_FORMAT_R8_SNORM,       VK_FORMAT_R8_SRGB,   VK_FORMAT_R16_SNORM,  VK_FORMAT_R8G8_UNORM,
         VK_FORMAT_R8G8B8A8_UNORM, VK_FORMAT_D16_UNORM, VK_FORMAT_D32_SFLOAT,
     };
     static const VkFormat colors[] = {
@@ -247,7 +277,6 @@ static void formats_fit_their_slots(void **state)
     };
     expect_formats(depth, COUNT(depth), DEPTH, true);
     expect_formats(not_depth, COUNT(not_depth), DEPTH, false);
-    expect_formats(ao, COUNT(ao), AO, true);
     expect_formats(ao, COUNT(ao), AO_NOISY, true);
     expect_formats(not_ao, COUNT(not_ao), AO, false);
     expect_formats(not_ao, COUNT(not_ao), AO_NOISY, false);
@@ -260,11 +289,44 @@ static void formats_fit_their_slots(void **state)
     expect_formats(colors, COUNT(colors), SPECULAR, true);
 }
 
+static void messages_name_formats_and_layouts(void **state)
+{
+    (void)state;
+    const vkao_image integers = {.format = VK_FORMAT_R8G8B8A8_UINT,
+                                 .layout = VK_IMAGE_LAYOUT_GENERAL},
+                     attachment = {.format = VK_FORMAT_R8G8B8A8_UNORM,
+                                   .layout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL},
+                     unknown = {.format = (VkFormat)1000156000, .layout = VK_IMAGE_LAYOUT_GENERAL},
+                     srgb = {.format = VK_FORMAT_R8G8B8A8_SRGB, .layout = VK_IMAGE_LAYOUT_GENERAL};
+    const struct {
+        const vkao_image *image;
+        vkao_result result;
+        const char *words;
+    } cases[] = {
+        {&integers, VKAO_ERROR_INVALID_ARGUMENT, "R8G8B8A8_UINT (41)"},
+        {&attachment, VKAO_ERROR_INVALID_ARGUMENT, "COLOR_ATTACHMENT_OPTIMAL (2)"},
+        {&unknown, VKAO_ERROR_INVALID_ARGUMENT, "VkFormat (1000156000)"},
+        {&srgb, VKAO_ERROR_UNSUPPORTED, "MUTABLE_FORMAT"},
+    };
+    for (size_t i = 0; i < COUNT(cases); ++i) {
+        struct world w;
+        world_open(&w);
+        set_case(&w, 2 * VKAO_STAGE_ALL);
+        fake_limit_format(&w.fake, VK_FORMAT_R8G8B8A8_SRGB, VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT, 0);
+        const VkImageView view = w.images.output.view;
+        w.images.output = *cases[i].image;
+        w.images.output.view = view;
+        expect_result(&w, cases[i].result, "images.output", cases[i].words);
+        world_close(&w);
+    }
+}
+
 static void view_without_format_is_refused(void **state)
 {
     (void)state;
     struct world w;
     world_open(&w);
+    set_case(&w, 2 * VKAO_STAGE_ALL);
     for (size_t slot = 0; slot < SLOT_COUNT; ++slot) {
         const vkao_image was = *world_slot(&w.images, slot);
         world_slot(&w.images, slot)->format = VK_FORMAT_UNDEFINED;
@@ -275,69 +337,53 @@ static void view_without_format_is_refused(void **state)
     world_close(&w);
 }
 
-static void reserved_is_refused(void **state)
+static void padding_is_refused(void **state)
 {
     (void)state;
     struct world w;
     world_open_frame(&w, VKAO_STAGE_ALL);
-    w.images.reserved = 9;
+    w.images.padding = 9;
     expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, vkao_frame_update(w.frame, &w.images),
-                   "images.reserved", "9");
+                   "images.padding", "9");
     assert_int_equal(w.fake.call_count, 0);
-    vkao_frame_destroy(w.frame);
-    w.frame = NULL;
-    expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, "images.reserved", "9");
+    expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, world_try_frame(&w), "images.padding", "9");
     world_close(&w);
 }
 
-/* The view behind a binding after creation or update. */
-static uint64_t bound_view(const struct world *w, uint32_t binding)
+/* The view behind a binding of a pass. */
+static uint64_t bound_view(const struct world *w, uint32_t pass, uint32_t binding)
 {
-    const struct fake_object *set = NULL;
-    for (size_t i = 0; i < w->fake.object_count; ++i) {
-        if (w->fake.objects[i].type == VK_OBJECT_TYPE_DESCRIPTOR_SET && w->fake.objects[i].alive)
-            set = &w->fake.objects[i];
-    }
-    assert_non_null(set);
-    return set->views[binding];
+    return fake_find(&w->fake, (uint64_t)w->frame->sets[pass])->views[binding];
 }
-
-static const struct {
-    size_t slot;
-    uint32_t binding;
-} bindings[] = {
-    {DEPTH, VKAO_BINDING_DEPTH},          {NORMALS, VKAO_BINDING_NORMALS},
-    {AO_NOISY, VKAO_BINDING_NOISY_WRITE}, {AO_NOISY, VKAO_BINDING_NOISY_READ},
-    {AO, VKAO_BINDING_AO_WRITE},          {AO, VKAO_BINDING_AO_READ},
-    {COLOR, VKAO_BINDING_COLOR},          {DIRECT, VKAO_BINDING_DIRECT},
-    {OUTPUT, VKAO_BINDING_OUTPUT},        {BENT_NORMALS, VKAO_BINDING_BENT_WRITE},
-    {ALBEDO, VKAO_BINDING_ALBEDO},        {BENT_NORMALS, VKAO_BINDING_BENT_READ},
-    {SPECULAR, VKAO_BINDING_SPECULAR},
-};
 
 /* Opens a frame with every stage, i = 1 with bent normals instead of ao_noisy. */
 static void open_case(struct world *w, int i)
 {
     world_open(w);
-    if (i == 1)
-        world_use_bent_normals(w);
+    set_case(w, 2 * VKAO_STAGE_ALL + (unsigned)i);
     w->images.depth.layout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-    fake_forget_calls(&w->fake);
-    assert_int_equal(vkao_frame_create(w->ctx, &w->frame_info, &w->frame), VKAO_SUCCESS);
+    world_create_frame(w);
 }
 
-/* Bindings of slots that the images leave unused hold what they like. */
+/* Every use of every pass that is a slot of the images holds it. */
 static void check_bindings(const struct world *w, vkao_images images)
 {
-    size_t checked = 0;
-    for (size_t i = 0; i < COUNT(bindings); ++i) {
-        const vkao_image *image = world_slot(&images, bindings[i].slot);
-        if (image->format == VK_FORMAT_UNDEFINED)
-            continue;
-        assert_int_equal(bound_view(w, bindings[i].binding), (uint64_t)image->view);
-        ++checked;
+    const struct vkao_program *program = w->frame->program;
+    uint32_t checked = 0;
+    for (uint32_t i = 0; i < program->count; ++i) {
+        for (uint32_t k = 0; k < program->steps[i].use_count; ++k) {
+            const struct vkao_use *use = &program->steps[i].uses[k];
+            if (use->resource >= VKAO_SLOT_COUNT || !(program->needs & VKAO_BIT(use->resource)) ||
+                !world_slot(&images, use->resource)->format)
+                continue;
+            assert_int_equal(bound_view(w, i, use->binding),
+                             (uint64_t)world_slot(&images, use->resource)->view);
+            checked |= VKAO_BIT(use->resource);
+        }
     }
-    assert_int_equal(checked, COUNT(bindings) - 2);
+    const uint32_t absent = program->settings.bent_normals ? VKAO_BIT(VKAO_RESOURCE_AO_NOISY)
+                                                           : VKAO_BIT(VKAO_RESOURCE_BENT_NORMALS);
+    assert_int_equal(checked | absent, (1u << VKAO_SLOT_COUNT) - 1u);
 }
 
 static void each_binding_holds_its_slot(void **state)
@@ -347,13 +393,16 @@ static void each_binding_holds_its_slot(void **state)
         struct world w;
         open_case(&w, bent);
         check_bindings(&w, w.images);
+        assert_int_equal(vkao_frame_update(w.frame, &w.images), VKAO_SUCCESS);
         const struct fake_call *call = fake_nth(&w.fake, "vkUpdateDescriptorSets", 0);
-        for (size_t i = 0; i < COUNT(bindings) * call->write_count; ++i) {
-            const size_t b = i / call->write_count, k = i % call->write_count;
-            const vkao_image *image = world_slot(&w.images, bindings[b].slot);
-            if (image->format && call->writes[k].binding == bindings[b].binding)
-                assert_int_equal(call->writes[k].layout, image->layout);
+        bool found = false;
+        for (uint32_t k = 0; k < call->write_count; ++k) {
+            if (call->writes[k].binding != VKAO_BINDING_DEPTH)
+                continue;
+            assert_int_equal(call->writes[k].layout, w.images.depth.layout);
+            found = true;
         }
+        assert_true(found);
         world_close(&w);
     }
 }
@@ -363,7 +412,7 @@ static void without_blur_ssao_writes_ao_itself(void **state)
     (void)state;
     struct world w;
     world_open_frame(&w, VKAO_STAGE_SSAO);
-    assert_int_equal(bound_view(&w, VKAO_BINDING_NOISY_WRITE), (uint64_t)w.images.ao.view);
+    assert_int_equal(bound_view(&w, 1, VKAO_BINDING_TARGET), (uint64_t)w.images.ao.view);
     world_close(&w);
 }
 
@@ -436,8 +485,9 @@ int main(void)
         cmocka_unit_test(device_abilities_decide_about_formats),
         cmocka_unit_test(integer_formats_fit_no_slot),
         cmocka_unit_test(formats_fit_their_slots),
+        cmocka_unit_test(messages_name_formats_and_layouts),
         cmocka_unit_test(view_without_format_is_refused),
-        cmocka_unit_test(reserved_is_refused),
+        cmocka_unit_test(padding_is_refused),
         cmocka_unit_test(each_binding_holds_its_slot),
         cmocka_unit_test(without_blur_ssao_writes_ao_itself),
         cmocka_unit_test(update_points_at_other_images_without_allocation),

@@ -26,8 +26,8 @@ static void expect_frames(const char *spec, const int64_t *numbers, size_t count
     frame_list_free(&list);
 }
 
-#define EXPECT_FRAMES(spec, ...)                        \
-    expect_frames(spec, (const int64_t[]){__VA_ARGS__}, \
+#define EXPECT_FRAMES(spec, ...)                                                                   \
+    expect_frames(spec, (const int64_t[]){__VA_ARGS__},                                            \
                   sizeof(const int64_t[]){__VA_ARGS__} / sizeof(int64_t))
 
 static void expect_refusal(const char *spec, const char *words)

@@ -2,85 +2,24 @@
  *
  * Half resolution and bent normals as frames know them: which combinations exist, how much scratch
  * they take, and which texels each dispatch covers. */
-#include "internal.h"
+#include "recording.h"
 #include "world.h"
 
 #include <stdio.h>
 #include <string.h>
 
-/* Every combination of stages, half resolution, bent normals and ao_noisy. */
-static void combinations_follow_the_header(void **state)
-{
-    (void)state;
-    const vkao_stage_flags both = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
-    for (unsigned i = 8; i < (VKAO_STAGE_ALL + 1) * 8; ++i) {
-        const vkao_stage_flags stages = i / 8;
-        const bool half = i & 1, bent = i & 2, noisy = i & 4, has_both = (stages & both) == both;
-        const bool needs_noisy = (stages & both) == VKAO_STAGE_BLUR;
-        struct world w;
-        world_open(&w);
-        w.frame_info.stages = stages;
-        w.frame_info.half_resolution = half;
-        if (bent)
-            w.images.bent_normals = w.bent_normals;
-        if (!noisy)
-            w.images.ao_noisy = (vkao_image){0};
-        bool fits = !(half && (!has_both || noisy)) && !(needs_noisy && !noisy);
-        /* A frame that only composites reads bent normals and ignores ao_noisy. */
-        fits = fits && !(bent && (stages & both) && (!has_both || noisy));
-        VkMemoryRequirements query;
-        size_t before = fake_live(&w.fake);
-        vkao_result created = vkao_frame_create(w.ctx, &w.frame_info, &w.frame);
-        assert_int_equal(created, fits ? VKAO_SUCCESS : VKAO_ERROR_INVALID_ARGUMENT);
-        if (!fits) {
-            assert_int_equal(fake_live(&w.fake), before);
-            const char *name = needs_noisy && !noisy ? "images.ao_noisy"
-                               : half                ? "frame.half_resolution"
-                                                     : "images.bent_normals";
-            expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, created, name, "");
-            expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT,
-                           vkao_frame_scratch(w.ctx, &w.frame_info, &query), name, "");
-        }
-        world_close(&w);
-    }
-}
-
-static void fields_out_of_range_are_refused_and_named(void **state)
-{
-    (void)state;
-    static const struct {
-        const char *name, *value;
-        size_t offset;
-        uint32_t v;
-    } rows[] = {
-        {"frame.half_resolution", "2", offsetof(vkao_frame_info, half_resolution), 2},
-        {"frame.half_resolution", "4294967295", offsetof(vkao_frame_info, half_resolution),
-         UINT32_MAX},
-        {"reserved", "9", offsetof(vkao_frame_info, reserved), 9},
-    };
-    for (size_t i = 0; i < COUNT(rows); ++i) {
-        struct world w;
-        world_open(&w);
-        w.images.ao_noisy = (vkao_image){0};
-        memcpy((char *)&w.frame_info + rows[i].offset, &rows[i].v, sizeof rows[i].v);
-        expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT,
-                       vkao_frame_create(w.ctx, &w.frame_info, &w.frame), rows[i].name,
-                       rows[i].value);
-        assert_null(w.frame);
-        world_close(&w);
-    }
-}
-
 static void open_frame(struct world *w, bool half, bool bent, VkExtent2D extent)
 {
     world_open(w);
-    w->images.ao_noisy = w->images.ao = (vkao_image){0};
+    world_use_scratch_noise(w);
+    w->images.ao = (vkao_image){0};
     if (bent)
         world_use_bent_normals(w);
-    w->frame_info.half_resolution = half;
+    w->effect_info.half_resolution = half;
     w->frame_info.extent = extent;
+    world_create_effect(w);
     fake_forget_calls(&w->fake);
-    assert_int_equal(vkao_frame_create(w->ctx, &w->frame_info, &w->frame), VKAO_SUCCESS);
+    assert_int_equal(vkao_frame_create(w->effect, &w->frame_info, &w->frame), VKAO_SUCCESS);
 }
 
 /* All that the stages hand to each other has half the resolution, rounded up; what COMPOSITE reads
@@ -97,12 +36,14 @@ static void scratch_has_half_the_resolution(void **state)
         const uint32_t width = half ? (e.width + 1) / 2 : e.width;
         const uint32_t height = half ? (e.height + 1) / 2 : e.height;
         size_t full = 0, vectors = 0;
-        assert_int_equal(fake_count(&w.fake, "vkCreateImage"), 4 + 4); /* and as many views */
-        for (size_t k = 0; k < 4; ++k) {
+        /* View z, noisy AO, halfway, AO, and what upsampling reads. */
+        const size_t images = half ? 5 : 4;
+        assert_int_equal(fake_live_of(&w.fake, VK_OBJECT_TYPE_IMAGE), images);
+        for (size_t k = 0; k < images; ++k) {
             const VkImageCreateInfo *image = &fake_nth(&w.fake, "vkCreateImage", k)->image;
-            const uint32_t border = k == 0 ? 2 : 0; /* of view z */
-            bool small = image->extent.width == width + border &&
-                         image->extent.height == height + border;
+            const uint32_t border = image->format == VK_FORMAT_R32_SFLOAT ? 2 : 0; /* of view z */
+            bool small =
+                image->extent.width == width + border && image->extent.height == height + border;
             vectors += image->format == VK_FORMAT_R16G16B16A16_SFLOAT;
             full += !small;
             if (!small) {
@@ -112,10 +53,10 @@ static void scratch_has_half_the_resolution(void **state)
             }
         }
         assert_int_equal(full, half && e.width * e.height > 1 ? 1 : 0);
-        assert_int_equal(vectors, bent ? 2 : 0); /* noisy and halfway */
+        assert_int_equal(vectors, bent ? images - 2 : 0);
         VkMemoryRequirements query;
         const struct fake_call *allocation = fake_nth(&w.fake, "vkAllocateMemory", 0);
-        assert_int_equal(vkao_frame_scratch(w.ctx, &w.frame_info, &query), VKAO_SUCCESS);
+        assert_int_equal(vkao_frame_scratch(w.effect, &w.frame_info, &query), VKAO_SUCCESS);
         assert_int_equal(query.size, allocation->size);
         world_close(&w);
     }
@@ -132,13 +73,13 @@ static void odd_valid_origins_are_refused(void **state)
         snprintf(value, sizeof value, "(%d,%d)", at.x, at.y);
         w.view.valid = (VkRect2D){at, {51, 31}};
         fake_forget_calls(&w.fake);
-        vkao_result results[5] = {
-            vkao_cmd_prepare(w.frame, world_cmd(&w), &w.view),
-            vkao_cmd_ssao(w.frame, world_cmd(&w), &w.view, &w.ssao),
-            vkao_cmd_blur(w.frame, world_cmd(&w), &w.view, &w.blur),
-            vkao_cmd_composite(w.frame, world_cmd(&w), &w.view, &w.composite),
-            world_record_all(&w),
-        };
+        vkao_result results[5];
+        for (int k = 0; k < 4; ++k) {
+            const vkao_stage_flags stages[] = {VKAO_STAGE_PREPARE, VKAO_STAGE_SSAO, VKAO_STAGE_BLUR,
+                                               VKAO_STAGE_COMPOSITE};
+            results[k] = vkao_cmd_stage(w.frame, world_cmd(&w), stages[k], &w.view, &w.params);
+        }
+        results[4] = world_record_all(&w);
         bool even = at.x % 2 == 0 && at.y % 2 == 0;
         for (int k = 0; k < 5; ++k)
             assert_int_equal(results[k], even ? VKAO_SUCCESS : VKAO_ERROR_INVALID_ARGUMENT);
@@ -153,19 +94,20 @@ static void odd_valid_origins_are_refused(void **state)
     world_close(&w);
 }
 
-/* Groups cover want and not one more; the block holds want at the offset. */
-static void check_cover(const struct world *w, size_t index, struct vkao_rect want, size_t offset)
+/* Groups cover want and not one more; the push constants hold want. */
+static void check_cover(const struct world *w, size_t index, struct vkao_rect want)
 {
     const struct fake_call *dispatch = fake_nth(&w->fake, "vkCmdDispatch", index);
+    const uint32_t border = index == 0 ? 2 * VKAO_VIEW_Z_BORDER : 0; /* of prepare */
     const struct fake_call *push = fake_nth(&w->fake, "vkCmdPushConstants", index);
     uint32_t packed[2];
     assert_non_null(dispatch);
     assert_int_equal(dispatch->groups[0],
-                     (want.x1 - want.x0 + VKAO_GROUP_WIDTH - 1) / VKAO_GROUP_WIDTH);
+                     (want.x1 - want.x0 + border + VKAO_GROUP_WIDTH - 1) / VKAO_GROUP_WIDTH);
     assert_int_equal(dispatch->groups[1],
-                     (want.y1 - want.y0 + VKAO_GROUP_HEIGHT - 1) / VKAO_GROUP_HEIGHT);
-    rect_pack(want, packed);
-    if (memcmp(push->push + offset, packed, sizeof packed) != 0)
+                     (want.y1 - want.y0 + border + VKAO_GROUP_HEIGHT - 1) / VKAO_GROUP_HEIGHT);
+    vkao_rect_pack(want, packed);
+    if (memcmp(push->push, packed, sizeof packed) != 0)
         fail_msg("dispatch %zu does not cover (%u,%u)..(%u,%u)", index, want.x0, want.y0, want.x1,
                  want.y1);
 }
@@ -222,15 +164,14 @@ static void dispatch_covers_what_the_upsampling_reads(void **state)
         open_frame(&w, true, false, (VkExtent2D){101, 59});
         w.view.valid = cases[i].valid;
         w.view.rect = cases[i].rect;
-        w.blur.radius = 3;
         fake_forget_calls(&w.fake);
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
-        check_cover(&w, 0, cases[i].prepare, offsetof(struct vkao_prepare_block, valid));
-        check_cover(&w, 1, cases[i].ssao, offsetof(struct vkao_ssao_block, rect));
-        check_cover(&w, 2, cases[i].blur_x, offsetof(struct vkao_blur_block, rect));
-        check_cover(&w, 3, cases[i].blur_y, offsetof(struct vkao_blur_block, rect));
-        check_cover(&w, 4, cases[i].upsample, offsetof(struct vkao_upsample_block, rect));
-        check_cover(&w, 5, cases[i].upsample, offsetof(struct vkao_composite_block, rect));
+        check_cover(&w, 0, cases[i].prepare);
+        check_cover(&w, 1, cases[i].ssao);
+        check_cover(&w, 2, cases[i].blur_x);
+        check_cover(&w, 3, cases[i].blur_y);
+        check_cover(&w, 4, cases[i].upsample);
+        check_cover(&w, 5, cases[i].upsample);
         assert_int_equal(fake_count(&w.fake, "vkCmdDispatch"), 6);
         world_close(&w);
     }
@@ -239,8 +180,6 @@ static void dispatch_covers_what_the_upsampling_reads(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(combinations_follow_the_header),
-        cmocka_unit_test(fields_out_of_range_are_refused_and_named),
         cmocka_unit_test(scratch_has_half_the_resolution),
         cmocka_unit_test(odd_valid_origins_are_refused),
         cmocka_unit_test(dispatch_covers_what_the_upsampling_reads),

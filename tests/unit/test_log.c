@@ -44,7 +44,7 @@ static void context_log_level_decides_about_info_lines(void **state)
         world_init(&w, true);
         w.info.log_level = info ? VKAO_LOG_INFO : VKAO_LOG_DEFAULT;
         assert_int_equal(vkao_context_create(&w.info, &w.ctx), VKAO_SUCCESS);
-        assert_int_equal(vkao_frame_create(w.ctx, &w.frame_info, &w.frame), VKAO_SUCCESS);
+        world_create_frame(&w);
         assert_true(info ? w.log.lines > 0 : w.log.lines == 0);
         unsigned at_creation = w.log.lines;
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
@@ -70,13 +70,12 @@ static void no_log_is_silent(void **state)
     struct world w;
     world_init(&w, true);
     w.info.log = NULL;
-    w.info.method_mask = 0x80u;
+    w.info.padding = 1;
     assert_int_equal(vkao_context_create(&w.info, &w.ctx), VKAO_ERROR_INVALID_ARGUMENT);
-    w.info.method_mask = 0;
+    w.info.padding = 0;
     assert_int_equal(vkao_context_create(&w.info, &w.ctx), VKAO_SUCCESS);
-    w.frame_info.stages = 0;
-    assert_int_equal(vkao_frame_create(w.ctx, &w.frame_info, &w.frame),
-                     VKAO_ERROR_INVALID_ARGUMENT);
+    w.effect_info.stages = 0;
+    assert_int_equal(world_try_frame(&w), VKAO_ERROR_INVALID_ARGUMENT);
     world_close(&w);
 }
 
@@ -131,12 +130,12 @@ static void vulkan_results_map_to_the_few(void **state)
         {VK_ERROR_OUT_OF_DEVICE_MEMORY, VKAO_ERROR_OUT_OF_DEVICE_MEMORY},
         {VK_ERROR_OUT_OF_POOL_MEMORY, VKAO_ERROR_OUT_OF_DEVICE_MEMORY},
         {VK_ERROR_FRAGMENTED_POOL, VKAO_ERROR_OUT_OF_DEVICE_MEMORY},
-        {VK_ERROR_DEVICE_LOST, VKAO_ERROR_VULKAN},
-        {VK_ERROR_UNKNOWN, VKAO_ERROR_VULKAN},
-        {VK_INCOMPLETE, VKAO_ERROR_VULKAN},
+        {VK_ERROR_DEVICE_LOST, (vkao_result)(VKAO_ERROR_VULKAN + VK_ERROR_DEVICE_LOST)},
+        {VK_ERROR_UNKNOWN, (vkao_result)(VKAO_ERROR_VULKAN + VK_ERROR_UNKNOWN)},
+        {VK_INCOMPLETE, (vkao_result)(VKAO_ERROR_VULKAN + VK_ERROR_UNKNOWN)},
     };
     for (size_t i = 0; i < COUNT(cases); ++i)
-        assert_int_equal(vk_result(cases[i].vulkan), cases[i].want);
+        assert_int_equal(vkao_from_vk(cases[i].vulkan), cases[i].want);
 }
 
 static void version_is_the_headers(void **state)
@@ -146,6 +145,18 @@ static void version_is_the_headers(void **state)
     assert_int_equal(VK_API_VERSION_MINOR(vkao_version()), VKAO_VERSION_MINOR);
     assert_int_equal(VK_API_VERSION_PATCH(vkao_version()), VKAO_VERSION_PATCH);
     assert_int_equal(VK_API_VERSION_VARIANT(vkao_version()), 0);
+}
+
+static void errors_carry_their_vkresult(void **state)
+{
+    (void)state;
+    static const VkResult results[] = {VK_ERROR_DEVICE_LOST, VK_ERROR_UNKNOWN,
+                                       VK_ERROR_OUT_OF_HOST_MEMORY, VK_ERROR_OUT_OF_DEVICE_MEMORY,
+                                       VK_ERROR_INVALID_SHADER_NV};
+    for (size_t i = 0; i < COUNT(results); ++i)
+        assert_int_equal(vkao_vk_result(vkao_from_vk(results[i])), results[i]);
+    assert_int_equal(vkao_vk_result(VKAO_SUCCESS), VK_SUCCESS);
+    assert_int_equal(vkao_vk_result(VKAO_ERROR_INVALID_ARGUMENT), VK_SUCCESS);
 }
 
 int main(void)
@@ -158,6 +169,7 @@ int main(void)
         cmocka_unit_test(long_lines_are_cut_not_overrun),
         cmocka_unit_test(every_result_has_its_own_text),
         cmocka_unit_test(vulkan_results_map_to_the_few),
+        cmocka_unit_test(errors_carry_their_vkresult),
         cmocka_unit_test(version_is_the_headers),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "gbuffer_internal.h"
+#include "median.h"
 
 #include <setjmp.h>
 #include <stdarg.h>
@@ -40,8 +40,8 @@ static double value(int kind, size_t i, size_t n)
     }
 }
 
-/* An adversary (McIlroy, 'A Killer Adversary for Quicksort', 1999): decides what values are while they are compared,
- * so that every round gets rid of little. */
+/* An adversary (McIlroy, 'A Killer Adversary for Quicksort', 1999): decides what values are while
+ * they are compared, so that every round gets rid of little. */
 struct adversary {
     double values[MOST];
     double solid; /* smaller ones are decided */
@@ -102,8 +102,7 @@ static void killers_are_sorted(void **state)
     assert_true(rounds > MEDIAN_MOST_ROUNDS);
     memcpy(sorted, a.values, sizeof sorted);
     qsort(sorted, MOST, sizeof *sorted, compare);
-    assert_memory_equal(&(double){gbuffer_median(a.values, MOST)}, &sorted[MOST / 2],
-                        sizeof *sorted);
+    assert_memory_equal(&(double){median_of(a.values, MOST)}, &sorted[MOST / 2], sizeof *sorted);
 }
 
 static void median_is_what_sorting_says(void **state)
@@ -116,8 +115,7 @@ static void median_is_what_sorting_says(void **state)
                 values[i] = value(kind, i, n);
             memcpy(sorted, values, sizeof sorted);
             qsort(sorted, n, sizeof *sorted, compare);
-            assert_memory_equal(&(double){gbuffer_median(values, n)}, &sorted[n / 2],
-                                sizeof *sorted);
+            assert_memory_equal(&(double){median_of(values, n)}, &sorted[n / 2], sizeof *sorted);
             /* and none got lost */
             qsort(values, n, sizeof *values, compare);
             assert_memory_equal(values, sorted, n * sizeof *values);
@@ -128,7 +126,7 @@ static void median_is_what_sorting_says(void **state)
 static void nothing_has_no_median(void **state)
 {
     (void)state;
-    assert_true(gbuffer_median(NULL, 0) <= 0.0 && gbuffer_median(NULL, 0) >= 0.0);
+    assert_true(median_of(NULL, 0) <= 0.0 && median_of(NULL, 0) >= 0.0);
 }
 
 int main(void)

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * The measures of error, against numbers worked out by hand and against SSIM as it is defined. */
+ * The measures of error, against numbers worked out by hand and against SSIM as it is defined; and
+ * what is made of the times of many runs. */
 #include "metrics.h"
+#include "runs.h"
 
 #include <math.h>
 #include <setjmp.h>
@@ -172,6 +174,42 @@ static void quantiles_lie_between_ranks(void **state)
     expect_near(metrics_quantile(values, 0, 0.5), 0);
 }
 
+static void medians_leave_out_what_is_no_number(void **state)
+{
+    static const float some[] = {NAN, 3, 1, NAN, 2}, none[] = {NAN, NAN};
+    (void)state;
+    expect_near(runs_median(some, 5), 2);
+    expect_near(runs_median(some, 3), 2);
+    assert_true(isnan(runs_median(none, 2)));
+    assert_true(isnan(runs_median(some, 0)));
+}
+
+static void ratios_are_of_the_same_run(void **state)
+{
+    static const float ours[] = {2, 9, 12, 5}, theirs[] = {1, 3, 3, 0},
+                       missing[] = {NAN, 0, NAN, 1};
+    (void)state;
+    expect_near(runs_ratio(ours, theirs, 4),
+                3); /* of 2, 3 and 4; the ratio of the medians is 3.5 */
+    expect_near(runs_ratio(ours, missing, 4), 5);
+    assert_true(isnan(runs_ratio(ours, missing, 3)));
+}
+
+static void times_are_printed_with_four_digits(void **state)
+{
+    static const struct {
+        double ms;
+        const char *text;
+    } rows[] = {{0.01234, "0.0123"}, {0.5, "0.500"}, {12.345, "12.35"}, {123.45, "123.5"},
+                {1234.5, "1234"},    {0, "-"},       {NAN, "-"}};
+    char text[32];
+    (void)state;
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        runs_format_ms(rows[i].ms, text, sizeof text);
+        assert_string_equal(text, rows[i].text);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -182,6 +220,9 @@ int main(void)
         cmocka_unit_test(masked_texels_do_not_count),
         cmocka_unit_test(not_a_number_is_an_error_of_its_own_size),
         cmocka_unit_test(quantiles_lie_between_ranks),
+        cmocka_unit_test(medians_leave_out_what_is_no_number),
+        cmocka_unit_test(ratios_are_of_the_same_run),
+        cmocka_unit_test(times_are_printed_with_four_digits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -51,15 +51,9 @@ static void refuse(const char *line, const char *message)
 static void defaults_are_those_of_the_library(void **state)
 {
     const struct options o = accept("in.exr -o out.exr");
-    const vkao_ssao_params ssao = vkao_ssao_params_default();
-    const vkao_blur_params blur = vkao_blur_params_default();
+    const struct setting standard = setting_default();
     (void)state;
-    assert_int_equal(o.ssao.method, ssao.method);
-    assert_int_equal(o.ssao.falloff, ssao.falloff);
-    assert_int_equal(o.ssao.sample_count, ssao.sample_count);
-    assert_true(fabsf(o.ssao.bias - ssao.bias) < 1e-7f);
-    assert_true(fabsf(o.ssao.blocking_scale - ssao.blocking_scale) < 1e-7f);
-    assert_memory_equal(&o.blur, &blur, sizeof blur);
+    assert_memory_equal(&o.setting, &standard, sizeof standard);
     assert_true(o.radius_is_auto);
     assert_false(o.bias_is_given);
     assert_int_equal(o.mode, OUTPUT_AO);
@@ -77,16 +71,108 @@ static void every_option_reaches_its_member(void **state)
     (void)state;
     assert_string_equal(o.input, "in.exr");
     assert_string_equal(o.output, "out.exr");
-    assert_int_equal(o.ssao.method, VKAO_SSAO_SPHERE);
-    assert_int_equal(o.ssao.sphere_form, VKAO_SPHERE_LITERAL);
-    assert_true(o.ssao.radius == 2.5f && !o.radius_is_auto);
-    assert_int_equal(o.ssao.falloff, VKAO_FALLOFF_THRESHOLD);
-    assert_int_equal(o.ssao.sample_count, 33);
-    assert_true(o.blur.intensity == 2.0f && o.blur.power == 0.5f && o.blur.sharpness == 7.0f);
+    const vkao_effect_info *e = &o.setting.effect;
+    const vkao_params *p = &o.setting.params;
+    assert_int_equal(e->method, VKAO_SSAO_SPHERE);
+    assert_int_equal(e->sphere_form, VKAO_SPHERE_LITERAL);
+    assert_true(p->radius == 2.5f && !o.radius_is_auto);
+    assert_int_equal(e->falloff, VKAO_FALLOFF_THRESHOLD);
+    assert_int_equal(e->sample_count, 33);
+    assert_true(p->intensity == 2.0f && p->power == 0.5f && p->sharpness == 7.0f);
     assert_true(o.bias_is_given);
-    assert_int_equal(o.blur.radius, 0);
+    assert_int_equal(e->blur_radius, 0);
     assert_int_equal(o.mode, OUTPUT_APPEND);
     assert_int_equal(o.pixel_type, EXR_FLOAT);
+}
+
+/* What has no option of its own: images decide it, --quality, --mode, or the tools have no such
+ * image. */
+static void every_parameter_has_an_option_but_these(void **state)
+{
+    static const char *const others[] = {"half_resolution", "depth_bits",   "noisy_ao",
+                                         "composite_mode",  "multi_bounce", "specular",
+                                         "debug_distance"};
+    uint32_t count;
+    const vkao_parameter *all = vkao_parameters(&count);
+    (void)state;
+    for (uint32_t i = 0; i < count; i++) {
+        bool is_known = parameter_is_of_images(&all[i]);
+        for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+            is_known = is_known || strcmp(all[i].name, others[k]) == 0;
+        if (is_known == (option_of_parameter(&all[i]) != NULL))
+            fail_msg("%s %s an option", all[i].name, is_known ? "has" : "lacks");
+    }
+}
+
+/* Both ends of what the table allows are taken, and reach the member to the bit. */
+static void ranges_are_those_of_the_table(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < option_table_count; i++) {
+        const vkao_parameter *p = option_parameter(&option_table[i]);
+        if (!p || (p->type != VKAO_PARAMETER_UINT && p->type != VKAO_PARAMETER_FLOAT))
+            continue;
+        char line[128];
+        struct options o;
+        struct tool_error err;
+        snprintf(line, sizeof line, "i.exr -o o.exr --%s %.10g", option_table[i].name, p->most);
+        o = accept(line);
+        const void *at = parameter_of_const(&o.setting, p);
+        const double most = p->type == VKAO_PARAMETER_UINT ? (double)*(const uint32_t *)at
+                                                           : (double)*(const float *)at;
+        assert_true(most == p->most);
+        snprintf(line, sizeof line, "i.exr -o o.exr --%s %.9g", option_table[i].name,
+                 p->most * 1.001 + 1);
+        assert_false(parse(line, &o, &err));
+        snprintf(line, sizeof line, "i.exr -o o.exr --%s 0", option_table[i].name);
+        assert_int_equal(parse(line, &o, &err), !p->above_least && !p->zero_is_standard);
+    }
+}
+
+static void presets_fill_what_is_left(void **state)
+{
+    struct setting best = setting_default();
+    (void)state;
+    setting_apply_preset(&best, VKAO_QUALITY_BEST);
+    struct options o = accept("i.exr -o o.exr --quality best");
+    assert_memory_equal(&o.setting, &best, sizeof best);
+    o = accept("i.exr -o o.exr --steps 5 --quality best --blur 2 --blur auto -m gtao");
+    best.effect.step_count = 5;
+    best.effect.method = VKAO_SSAO_GTAO;
+    assert_memory_equal(&o.setting, &best, sizeof best);
+}
+
+static void bent_normals_need_a_method_that_has_them(void **state)
+{
+    (void)state;
+    accept("i.exr -o o.exr --bent-normals -m gtao");
+    refuse("i.exr -o o.exr --bent-normals -m hbao",
+           "--bent-normals needs --method gtao, vbao or raymarch");
+}
+
+/* What another file brings stands behind what was said, before and after --like. */
+static void options_come_before_what_is_taken(void **state)
+{
+    struct setting like = setting_default();
+    struct tool_error err = {0};
+    (void)state;
+    like.params.radius = 3.0f;
+    like.params.power = 2.0f;
+    like.effect.step_count = 21;
+    struct options o = accept("i.exr -o o.exr --power 1.5 --like f.exr --falloff threshold");
+    assert_true(options_settle(&o, &like, &err));
+    like.params.power = 1.5f;
+    like.effect.falloff = VKAO_FALLOFF_THRESHOLD;
+    assert_memory_equal(&o.setting, &like, sizeof like);
+    assert_true(!o.radius_is_auto && o.bias_is_given);
+    o = accept("i.exr -o o.exr --like f.exr --radius auto --steps auto");
+    assert_true(options_settle(&o, &like, &err));
+    assert_true(o.radius_is_auto);
+    assert_int_equal(o.setting.effect.step_count, setting_default().effect.step_count);
+    o = accept("i.exr -o o.exr --like f.exr --bent-normals");
+    like.effect.method = VKAO_SSAO_HBAO;
+    assert_false(options_settle(&o, &like, &err));
+    assert_int_equal(err.code, EXIT_USAGE);
 }
 
 static void camera_and_channel_options_reach_the_gbuffer(void **state)
@@ -117,8 +203,10 @@ static void numbers_out_of_range_are_named_with_the_range(void **state)
     refuse("i.exr -o o.exr --radius 1m", "--radius is 1m, want a finite number > 0");
     refuse("i.exr -o o.exr --radius 1e-60", "--radius is 1e-60, want a finite number > 0");
     refuse("i.exr -o o.exr --radius 1e60", "--radius is 1e60, want a finite number > 0");
-    refuse("i.exr -o o.exr --samples 1025", "--samples is 1025, want a whole number >= 1 and <= 1024");
-    refuse("i.exr -o o.exr --samples 1.5", "--samples is 1.5, want a whole number >= 1 and <= 1024");
+    refuse("i.exr -o o.exr --samples 1025",
+           "--samples is 1025, want a whole number >= 1 and <= 1024");
+    refuse("i.exr -o o.exr --samples 1.5",
+           "--samples is 1.5, want a whole number >= 1 and <= 1024");
     refuse("i.exr -o o.exr --power 0", "--power is 0, want a finite number > 0 and <= 8");
     refuse("i.exr -o o.exr --blur 17", "--blur is 17, want a whole number >= 0 and <= 16");
     refuse("i.exr -o o.exr --fov 180",
@@ -201,6 +289,26 @@ static void help_names_every_option_within_80_columns(void **state)
     text_free(&text);
 }
 
+static void man_page_has_every_option_and_method(void **state)
+{
+    struct text text = {0};
+    uint32_t count;
+    const vkao_method *methods = vkao_methods(&count);
+    (void)state;
+    options_man(&text);
+    for (size_t i = 0; i < option_table_count; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "*--%s*", option_table[i].name);
+        assert_non_null(strstr(text.data, name));
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "*%s*: %s", methods[i].name, methods[i].help);
+        assert_non_null(strstr(text.data, name));
+    }
+    text_free(&text);
+}
+
 static void names_and_letters_of_options_are_unique(void **state)
 {
     (void)state;
@@ -228,6 +336,11 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(defaults_are_those_of_the_library),
         TEST(every_option_reaches_its_member),
+        TEST(every_parameter_has_an_option_but_these),
+        TEST(ranges_are_those_of_the_table),
+        TEST(presets_fill_what_is_left),
+        TEST(bent_normals_need_a_method_that_has_them),
+        TEST(options_come_before_what_is_taken),
         TEST(camera_and_channel_options_reach_the_gbuffer),
         TEST(numbers_out_of_range_are_named_with_the_range),
         TEST(unknown_words_list_the_known_ones),
@@ -236,6 +349,7 @@ int main(void)
         TEST(commands_are_words_in_front_only),
         TEST(negative_numbers_and_order_of_words_do_not_matter),
         TEST(help_names_every_option_within_80_columns),
+        TEST(man_page_has_every_option_and_method),
         TEST(names_and_letters_of_options_are_unique),
         TEST(distance_counts_edits_and_swaps),
     };

@@ -2,47 +2,10 @@
  *
  * What recording leaves in the command buffer: barriers, dispatches, push constants, and nothing
  * else. */
-#include "pipelines.h"
+#include "recording.h"
 #include "world.h"
 
 #include <string.h>
-
-#define BIT(name) (1u << VKAO_BINDING_##name)
-
-/* What each pipeline does with each binding, as its shader declares it; SSAO stands for every
- * method. */
-static const struct use {
-    uint32_t reads, writes;
-} uses[PIPELINE_SSAO + 1] = {
-    [PIPELINE_PREPARE] = {BIT(DEPTH), BIT(VIEW_Z)},
-    [PIPELINE_BLUR_X] = {BIT(VIEW_Z) | BIT(NORMALS) | BIT(NOISY_READ), BIT(HALFWAY_WRITE)},
-    [PIPELINE_BLUR_Y] = {BIT(VIEW_Z) | BIT(NORMALS) | BIT(HALFWAY_READ), BIT(AO_WRITE)},
-    [PIPELINE_UPSAMPLE] = {BIT(DEPTH) | BIT(VIEW_Z) | BIT(NORMALS) | BIT(NOISY_READ),
-                           BIT(AO_WRITE)},
-    [PIPELINE_COMPOSITE] = {BIT(AO_READ) | BIT(COLOR) | BIT(DIRECT) | BIT(ALBEDO) | BIT(SPECULAR) |
-                                BIT(NORMALS) | BIT(BENT_READ),
-                            BIT(OUTPUT)},
-    [PIPELINE_DEBUG] = {BIT(VIEW_Z) | BIT(NORMALS) | BIT(NOISY_READ) | BIT(BENT_READ), BIT(OUTPUT)},
-    [PIPELINE_SSAO] = {BIT(VIEW_Z) | BIT(NORMALS), BIT(NOISY_WRITE)},
-};
-
-/* With bent normals the stage that writes AO writes them too; at half resolution the blur ends
- * where it began. */
-static struct use use_of(const struct world *w, uint64_t pipeline)
-{
-    const bool bent = w->frame_info.images->bent_normals.format;
-    const struct pipeline_entry *entry = entry_of(w->ctx, pipeline);
-    if (!entry || !entry_is_general(entry))
-        fail_msg("dispatch without a general pipeline of the context");
-    struct use use = uses[entry->which < PIPELINE_SSAO ? entry->which : PIPELINE_SSAO];
-    if (entry->which == PIPELINE_BLUR_Y && w->frame_info.half_resolution)
-        use.writes = BIT(NOISY_WRITE);
-    if (entry->bent && (use.writes & BIT(AO_WRITE)))
-        use.writes |= BIT(BENT_WRITE);
-    const bool has_both = general_entry(w->ctx, entry->which, true);
-    assert_int_equal(entry->bent, has_both && bent && (w->frame_info.stages & VKAO_STAGE_BLUR));
-    return use;
-}
 
 struct views {
     uint64_t list[64];
@@ -58,37 +21,66 @@ static bool holds(const struct views *v, uint64_t view)
     return false;
 }
 
+/* The pass whose pipeline was bound. */
+static const struct vkao_step *step_of(const struct world *w, uint64_t pipeline)
+{
+    const struct vkao_program *program = w->frame->program;
+    for (uint32_t i = 0; i < program->count; ++i) {
+        for (uint32_t form = 0; form < VKAO_MOST_FORMS; ++form) {
+            if (pipeline && (uint64_t)program->steps[i].forms[form] == pipeline)
+                return &program->steps[i];
+        }
+    }
+    fail_msg("dispatch without a pipeline of the effect");
+    return NULL;
+}
+
 /* Accesses that no barrier has followed yet, as synchronization validation keeps them. */
 static void check_dispatch(const struct world *w, const struct fake_call *dispatch, uint64_t set,
                            struct views *read, struct views *written)
 {
-    const struct use use = use_of(w, dispatch->handle);
+    const struct vkao_step *step = step_of(w, dispatch->handle);
     const struct fake_object *object = fake_find(&w->fake, set);
     assert_non_null(object);
-    for (uint32_t binding = 0; binding < VKAO_BINDING_COUNT; ++binding) {
-        const uint64_t view = object->views[binding];
-        if (((use.reads | use.writes) >> binding & 1u) && !view)
-            fail_msg("a pipeline uses binding %u, which holds nothing", binding);
-        if ((use.reads >> binding & 1u) && holds(written, view))
-            fail_msg("a pipeline reads binding %u: no barrier after its producer", binding);
-        if ((use.writes >> binding & 1u) && (holds(written, view) || holds(read, view)))
-            fail_msg("a pipeline writes binding %u: no barrier after its last use", binding);
+    for (uint32_t i = 0; i < step->use_count; ++i) {
+        const struct vkao_use *use = &step->uses[i];
+        const uint64_t view = object->views[use->binding];
+        if (!view)
+            fail_msg("%s names binding %u, which holds nothing", step->row->name, use->binding);
+        if (!(w->frame->program->needs & VKAO_BIT(use->resource)))
+            continue; /* a stand-in */
+        if (!use->writes && holds(written, view))
+            fail_msg("%s reads binding %u: no barrier after its producer", step->row->name,
+                     use->binding);
+        if (use->writes && (holds(written, view) || holds(read, view)))
+            fail_msg("%s writes binding %u: no barrier after its last use", step->row->name,
+                     use->binding);
     }
-    for (uint32_t binding = 0; binding < VKAO_BINDING_COUNT; ++binding) {
-        if (use.reads >> binding & 1u)
-            read->list[read->count++] = object->views[binding];
-        if (use.writes >> binding & 1u)
-            written->list[written->count++] = object->views[binding];
+    for (uint32_t i = 0; i < step->use_count; ++i) {
+        const struct vkao_use *use = &step->uses[i];
+        struct views *v = use->writes ? written : read;
+        if (w->frame->program->needs & VKAO_BIT(use->resource))
+            v->list[v->count++] = object->views[use->binding];
     }
 }
 
+/* Barriers between shaders, and around the update of the constants. */
 static void check_barrier(const struct fake_call *call)
 {
-    assert_int_equal(call->src_stages, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
-    assert_int_equal(call->dst_stages, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
+    const VkPipelineStageFlags known =
+        VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
+    assert_int_equal(call->src_stages & ~known, 0);
+    assert_int_equal(call->dst_stages & ~known, 0);
+    assert_true(call->dst_stages & VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT);
     assert_int_equal(call->memory_barrier_count, 1);
+    if (call->src_stages == VK_PIPELINE_STAGE_TRANSFER_BIT) {
+        assert_int_equal(call->memory_barrier.srcAccessMask, VK_ACCESS_TRANSFER_WRITE_BIT);
+        assert_int_equal(call->memory_barrier.dstAccessMask, VK_ACCESS_UNIFORM_READ_BIT);
+        return;
+    }
     assert_true(call->memory_barrier.srcAccessMask & VK_ACCESS_SHADER_WRITE_BIT);
-    assert_int_equal(call->memory_barrier.dstAccessMask,
+    assert_int_equal(call->memory_barrier.dstAccessMask &
+                         (VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT),
                      VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
 }
 
@@ -102,7 +94,8 @@ static unsigned check_recording(const struct world *w)
         const struct fake_call *call = &w->fake.calls[i];
         if (strcmp(call->name, "vkCmdPipelineBarrier") == 0) {
             check_barrier(call);
-            read.count = written.count = 0;
+            if (call->src_stages == VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT)
+                read.count = written.count = 0;
         }
         if (strcmp(call->name, "vkCmdBindDescriptorSets") == 0)
             set = call->handle;
@@ -118,13 +111,13 @@ static unsigned check_recording(const struct world *w)
 static void open_with_scratch(struct world *w, vkao_stage_flags stages)
 {
     world_open(w);
-    w->frame_info.stages = stages;
+    w->effect_info.stages = stages;
+    w->effect_info.noisy_ao = VK_FALSE;
     if ((stages & VKAO_STAGE_SSAO) && (stages & VKAO_STAGE_BLUR))
-        w->images.ao_noisy = (vkao_image){0};
+        world_use_scratch_noise(w);
     if ((stages & VKAO_STAGE_COMPOSITE) && stages != VKAO_STAGE_COMPOSITE)
         w->images.ao = (vkao_image){0};
-    assert_int_equal(vkao_frame_create(w->ctx, &w->frame_info, &w->frame), VKAO_SUCCESS);
-    fake_forget_calls(&w->fake);
+    world_create_frame(w);
 }
 
 static void barrier_stands_between_producer_and_consumer(void **state)
@@ -148,7 +141,6 @@ static void barrier_stands_between_producer_and_consumer(void **state)
     }
 }
 
-/* What ran before in another submit is unknown: the first command of every call waits for it. */
 /* Half resolution with and without bent normals, and the composites that read more. */
 static void barriers_stand_in_every_kind_of_frame(void **state)
 {
@@ -157,21 +149,22 @@ static void barriers_stand_in_every_kind_of_frame(void **state)
         const bool half = i & 1, bent = i & 2, scratch = i & 4;
         struct world w;
         world_open(&w);
-        w.images.ao_noisy = (vkao_image){0};
+        world_use_scratch_noise(&w);
+        w.effect_info.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
         if (scratch)
             w.images.ao = (vkao_image){0};
         if (bent)
             world_use_bent_normals(&w);
-        w.frame_info.half_resolution = half;
-        w.composite.mode = (vkao_composite_mode)(i / 8);
-        if (w.composite.mode < VKAO_COMPOSITE_AO_ONLY) {
-            w.composite.multi_bounce = VK_TRUE;
-            w.composite.specular = bent ? VKAO_SPECULAR_FROM_BENT : VKAO_SPECULAR_FROM_AO;
+        w.effect_info.half_resolution = half;
+        w.effect_info.composite_mode = (vkao_composite_mode)(i / 8);
+        if (w.effect_info.composite_mode < VKAO_COMPOSITE_AO_ONLY) {
+            w.effect_info.multi_bounce = VK_TRUE;
+            w.effect_info.specular = bent ? VKAO_SPECULAR_FROM_BENT : VKAO_SPECULAR_FROM_AO;
         }
-        if ((w.composite.mode == VKAO_COMPOSITE_NOISY_AO && (bent || half)) ||
-            (w.composite.mode == VKAO_COMPOSITE_BENT_NORMALS && !bent))
-            w.composite.mode = VKAO_COMPOSITE_NORMALS;
-        assert_int_equal(vkao_frame_create(w.ctx, &w.frame_info, &w.frame), VKAO_SUCCESS);
+        if ((w.effect_info.composite_mode == VKAO_COMPOSITE_NOISY_AO && (bent || half)) ||
+            (w.effect_info.composite_mode == VKAO_COMPOSITE_BENT_NORMALS && !bent))
+            w.effect_info.composite_mode = VKAO_COMPOSITE_NORMALS;
+        world_create_frame(&w);
         fake_forget_calls(&w.fake);
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
@@ -187,11 +180,12 @@ static void unread_depth_does_not_reach_the_descriptors(void **state)
     (void)state;
     struct world w;
     world_open(&w);
-    w.frame_info.stages = VKAO_STAGE_COMPOSITE;
+    w.effect_info.stages = VKAO_STAGE_COMPOSITE;
+    w.effect_info.noisy_ao = VK_FALSE;
     w.images.normals = w.images.specular = (vkao_image){0};
     w.images.depth.view = VK_NULL_HANDLE;
     w.images.depth.layout = VK_IMAGE_LAYOUT_UNDEFINED;
-    assert_int_equal(vkao_frame_create(w.ctx, &w.frame_info, &w.frame), VKAO_SUCCESS);
+    world_create_frame(&w);
     assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
     world_close(&w);
 }
@@ -202,13 +196,12 @@ static void every_call_begins_with_a_barrier(void **state)
     struct world w;
     world_open_frame(&w, VKAO_STAGE_ALL);
     for (int call = 0; call < 5; ++call) {
+        static const vkao_stage_flags stages[] = {VKAO_STAGE_PREPARE, VKAO_STAGE_SSAO,
+                                                  VKAO_STAGE_BLUR, VKAO_STAGE_COMPOSITE};
         fake_forget_calls(&w.fake);
-        vkao_result result = call == 0   ? vkao_cmd_prepare(w.frame, world_cmd(&w), &w.view)
-                             : call == 1 ? vkao_cmd_ssao(w.frame, world_cmd(&w), &w.view, &w.ssao)
-                             : call == 2 ? vkao_cmd_blur(w.frame, world_cmd(&w), &w.view, &w.blur)
-                             : call == 3
-                                 ? vkao_cmd_composite(w.frame, world_cmd(&w), &w.view, &w.composite)
-                                 : world_record_all(&w);
+        vkao_result result =
+            call < 4 ? vkao_cmd_stage(w.frame, world_cmd(&w), stages[call], &w.view, &w.params)
+                     : world_record_all(&w);
         assert_int_equal(result, VKAO_SUCCESS);
         assert_string_equal(w.fake.calls[0].name, "vkCmdPipelineBarrier");
         check_recording(&w);
@@ -216,47 +209,38 @@ static void every_call_begins_with_a_barrier(void **state)
     world_close(&w);
 }
 
-static void prepare_begins_each_scratch_image_anew(void **state)
+/* Memory that was another image's begins anew where the image is first written. */
+static void each_scratch_image_begins_anew_once(void **state)
 {
     (void)state;
     for (vkao_stage_flags stages = 1; stages <= VKAO_STAGE_ALL; ++stages) {
-        if (stages == VKAO_STAGE_COMPOSITE)
-            continue; /* no scratch, no prepare */
         struct world w;
         open_with_scratch(&w, stages);
-        assert_int_equal(vkao_cmd_prepare(w.frame, world_cmd(&w), &w.view), VKAO_SUCCESS);
-        const struct fake_call *call = fake_nth(&w.fake, "vkCmdPipelineBarrier", 0);
-        assert_int_equal(call->image_barrier_count, fake_live_of(&w.fake, VK_OBJECT_TYPE_IMAGE));
-        for (uint32_t i = 0; i < call->image_barrier_count; ++i) {
-            const VkImageMemoryBarrier *b = &call->image_barriers[i];
-            assert_int_equal(b->oldLayout, VK_IMAGE_LAYOUT_UNDEFINED);
-            assert_int_equal(b->newLayout, VK_IMAGE_LAYOUT_GENERAL);
-            assert_int_equal(b->dstAccessMask,
-                             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
-            assert_int_equal(b->srcQueueFamilyIndex, b->dstQueueFamilyIndex);
-            for (uint32_t k = 0; k < i; ++k)
-                assert_true(call->image_barriers[k].image != b->image);
+        assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+        uint64_t begun[8];
+        size_t count = 0;
+        const struct fake_call *call;
+        for (size_t n = 0; (call = fake_nth(&w.fake, "vkCmdPipelineBarrier", n)); ++n) {
+            for (uint32_t i = 0; i < call->image_barrier_count; ++i) {
+                const VkImageMemoryBarrier *b = &call->image_barriers[i];
+                assert_int_equal(b->oldLayout, VK_IMAGE_LAYOUT_UNDEFINED);
+                assert_int_equal(b->newLayout, VK_IMAGE_LAYOUT_GENERAL);
+                assert_int_equal(b->dstAccessMask,
+                                 VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
+                assert_int_equal(b->srcQueueFamilyIndex, b->dstQueueFamilyIndex);
+                for (size_t k = 0; k < count; ++k)
+                    assert_true(begun[k] != (uint64_t)b->image);
+                begun[count++] = (uint64_t)b->image;
+            }
         }
-        assert_null(fake_nth(&w.fake, "vkCmdPipelineBarrier", 1));
+        assert_int_equal(count, fake_live_of(&w.fake, VK_OBJECT_TYPE_IMAGE));
         world_close(&w);
     }
 }
 
-static void only_prepare_changes_layouts(void **state)
-{
-    (void)state;
-    struct world w;
-    world_open_frame(&w, VKAO_STAGE_ALL);
-    assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
-    for (size_t i = 1; fake_nth(&w.fake, "vkCmdPipelineBarrier", i); ++i)
-        assert_int_equal(fake_nth(&w.fake, "vkCmdPipelineBarrier", i)->image_barrier_count, 0);
-    world_close(&w);
-}
-
 /* Groups cover the rect and a border, and not one more; the rect that shaders test is the rect
  * itself. */
-static void check_cover(const struct world *w, size_t index, struct vkao_rect want, uint32_t border,
-                        size_t rect_offset)
+static void check_cover(const struct world *w, size_t index, struct vkao_rect want, uint32_t border)
 {
     const struct fake_call *dispatch = fake_nth(&w->fake, "vkCmdDispatch", index);
     const struct fake_call *push = fake_nth(&w->fake, "vkCmdPushConstants", index);
@@ -268,9 +252,9 @@ static void check_cover(const struct world *w, size_t index, struct vkao_rect wa
     assert_true((dispatch->groups[1] - 1) * VKAO_GROUP_HEIGHT < height);
     assert_int_equal(dispatch->groups[2], 1);
     uint32_t packed[2];
-    rect_pack(want, packed);
-    assert_true(rect_offset + sizeof packed <= push->push_bytes);
-    assert_memory_equal(push->push + rect_offset, packed, sizeof packed);
+    vkao_rect_pack(want, packed);
+    assert_int_equal(push->push_bytes, sizeof packed);
+    assert_memory_equal(push->push, packed, sizeof packed);
 }
 
 static void dispatch_covers_the_rect_exactly(void **state)
@@ -320,43 +304,92 @@ static void dispatch_covers_the_rect_exactly(void **state)
     };
     for (size_t i = 0; i < COUNT(cases); ++i) {
         struct world w;
-        world_open_frame(&w, VKAO_STAGE_ALL);
+        world_open(&w);
+        w.effect_info.blur_radius = 4;
+        world_create_frame(&w);
         w.view.valid = cases[i].valid;
         w.view.rect = cases[i].rect;
-        w.blur.radius = 4;
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
-        check_cover(&w, 0, cases[i].prepare, VKAO_VIEW_Z_BORDER,
-                    offsetof(struct vkao_prepare_block, valid));
-        check_cover(&w, 1, cases[i].ssao, 0, offsetof(struct vkao_ssao_block, rect));
-        check_cover(&w, 2, cases[i].blur_x, 0, offsetof(struct vkao_blur_block, rect));
-        check_cover(&w, 3, cases[i].rest, 0, offsetof(struct vkao_blur_block, rect));
-        check_cover(&w, 4, cases[i].rest, 0, offsetof(struct vkao_composite_block, rect));
+        check_cover(&w, 0, cases[i].prepare, VKAO_VIEW_Z_BORDER);
+        check_cover(&w, 1, cases[i].ssao, 0);
+        check_cover(&w, 2, cases[i].blur_x, 0);
+        check_cover(&w, 3, cases[i].rest, 0);
+        check_cover(&w, 4, cases[i].rest, 0);
         world_close(&w);
     }
 }
 
+/* But for the constants, which every call writes. */
 static void all_records_what_the_stages_record(void **state)
 {
     (void)state;
     struct world w;
     world_open_frame(&w, VKAO_STAGE_ALL);
     assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
-    const size_t count = w.fake.call_count;
-    assert_int_equal(vkao_cmd_prepare(w.frame, world_cmd(&w), &w.view), VKAO_SUCCESS);
-    assert_int_equal(vkao_cmd_ssao(w.frame, world_cmd(&w), &w.view, &w.ssao), VKAO_SUCCESS);
-    assert_int_equal(vkao_cmd_blur(w.frame, world_cmd(&w), &w.view, &w.blur), VKAO_SUCCESS);
-    assert_int_equal(vkao_cmd_composite(w.frame, world_cmd(&w), &w.view, &w.composite),
-                     VKAO_SUCCESS);
-    assert_int_equal(w.fake.call_count, 2 * count);
+    const size_t count = fake_count(&w.fake, "vkCmdDispatch");
+    const vkao_stage_flags stages[] = {VKAO_STAGE_PREPARE, VKAO_STAGE_SSAO, VKAO_STAGE_BLUR,
+                                       VKAO_STAGE_COMPOSITE};
+    for (size_t i = 0; i < COUNT(stages); ++i)
+        assert_int_equal(vkao_cmd_stage(w.frame, world_cmd(&w), stages[i], &w.view, &w.params),
+                         VKAO_SUCCESS);
+    assert_int_equal(fake_count(&w.fake, "vkCmdDispatch"), 2 * count);
     for (size_t i = 0; i < count; ++i) {
-        const struct fake_call *a = &w.fake.calls[i], *b = &w.fake.calls[count + i];
-        assert_string_equal(a->name, b->name);
-        assert_int_equal(a->handle, b->handle);
-        assert_int_equal(a->push_bytes, b->push_bytes);
-        assert_memory_equal(a->push, b->push, sizeof a->push);
-        assert_memory_equal(a->groups, b->groups, sizeof a->groups);
+        static const char *const calls[] = {"vkCmdDispatch", "vkCmdPushConstants",
+                                            "vkCmdBindDescriptorSets", "vkCmdBindPipeline"};
+        for (size_t c = 0; c < COUNT(calls); ++c) {
+            const struct fake_call *a = fake_nth(&w.fake, calls[c], i),
+                                   *b = fake_nth(&w.fake, calls[c], count + i);
+            assert_int_equal(a->handle, b->handle);
+            assert_int_equal(a->push_bytes, b->push_bytes);
+            assert_memory_equal(a->push, b->push, sizeof a->push);
+            assert_memory_equal(a->groups, b->groups, sizeof a->groups);
+        }
     }
+    const struct fake_call *first = fake_nth(&w.fake, "vkCmdUpdateBuffer", 0);
+    for (size_t i = 1; i < 5; ++i)
+        assert_memory_equal(fake_nth(&w.fake, "vkCmdUpdateBuffer", i)->update, first->update,
+                            sizeof first->update);
     world_close(&w);
+}
+
+struct marks {
+    unsigned begun, ended;
+    char names[8][16];
+};
+
+static void keep_mark(void *user_data, VkCommandBuffer cmd, const char *name, VkBool32 begins)
+{
+    struct marks *marks = user_data;
+    assert_non_null(cmd);
+    if (begins) {
+        assert_int_equal(marks->begun, marks->ended);
+        strncpy(marks->names[marks->begun++ % 8], name, 15);
+    } else {
+        assert_string_equal(marks->names[marks->ended++ % 8], name);
+    }
+}
+
+static void marks_name_each_stage_in_order(void **state)
+{
+    (void)state;
+    static const char *const want[] = {"prepare", "ssao", "blur", "upsample", "composite"};
+    for (int half = 0; half < 2; ++half) {
+        struct world w;
+        struct marks marks = {0};
+        world_init(&w, true);
+        w.info.mark = keep_mark;
+        w.info.mark_user_data = &marks;
+        assert_int_equal(vkao_context_create(&w.info, &w.ctx), VKAO_SUCCESS);
+        world_use_scratch_noise(&w);
+        w.effect_info.half_resolution = (VkBool32)half;
+        world_create_frame(&w);
+        assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+        assert_int_equal(marks.begun, half ? 5 : 4);
+        assert_int_equal(marks.ended, marks.begun);
+        for (unsigned i = 0; i < marks.begun; ++i)
+            assert_string_equal(marks.names[i], want[!half && i == 3 ? 4 : i]);
+        world_close(&w);
+    }
 }
 
 static void recording_allocates_nothing(void **state)
@@ -366,7 +399,7 @@ static void recording_allocates_nothing(void **state)
         struct world w;
         world_init(&w, callbacks);
         assert_int_equal(vkao_context_create(&w.info, &w.ctx), VKAO_SUCCESS);
-        assert_int_equal(vkao_frame_create(w.ctx, &w.frame_info, &w.frame), VKAO_SUCCESS);
+        world_create_frame(&w);
         fake_forget_calls(&w.fake);
         const unsigned before = w.host.total + host_calloc.total;
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
@@ -407,7 +440,7 @@ static void labels_begin_and_end_in_pairs(void **state)
     w.fake.debug_utils = true;
     w.info.debug_labels = VK_TRUE;
     assert_int_equal(vkao_context_create(&w.info, &w.ctx), VKAO_SUCCESS);
-    assert_int_equal(vkao_frame_create(w.ctx, &w.frame_info, &w.frame), VKAO_SUCCESS);
+    world_create_frame(&w);
     fake_forget_calls(&w.fake);
     assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
     int depth = 0;
@@ -428,10 +461,10 @@ int main(void)
         cmocka_unit_test(barriers_stand_in_every_kind_of_frame),
         cmocka_unit_test(unread_depth_does_not_reach_the_descriptors),
         cmocka_unit_test(every_call_begins_with_a_barrier),
-        cmocka_unit_test(prepare_begins_each_scratch_image_anew),
-        cmocka_unit_test(only_prepare_changes_layouts),
+        cmocka_unit_test(each_scratch_image_begins_anew_once),
         cmocka_unit_test(dispatch_covers_the_rect_exactly),
         cmocka_unit_test(all_records_what_the_stages_record),
+        cmocka_unit_test(marks_name_each_stage_in_order),
         cmocka_unit_test(recording_allocates_nothing),
         cmocka_unit_test(only_compute_set_zero_and_push_constants_change),
         cmocka_unit_test(labels_begin_and_end_in_pairs),

@@ -83,8 +83,8 @@ static void unescape(char *text)
 {
     char *out = text;
     while (*text) {
-        const bool escape = text[0] == '\\' && text[1] == 'x' && hex_digit(text[2]) >= 0 &&
-                            hex_digit(text[3]) >= 0;
+        const bool escape =
+            text[0] == '\\' && text[1] == 'x' && hex_digit(text[2]) >= 0 && hex_digit(text[3]) >= 0;
         *out++ = (char)(escape ? hex_digit(text[2]) << 4 | hex_digit(text[3]) : *text);
         text += escape ? 4 : 1;
     }
@@ -157,8 +157,12 @@ static void escapes_are_visible_and_none_can_be_forged(void **state)
     } rows[] = {
         {"\x1b]0;owned\x07", "\\x1b]0;owned\\x07"},
         {"a\nb\tc\x7f", "a\\x0ab\\x09c\\x7f"},
-        {"\xc2\x9b" "31m", "\\xc2\\x9b31m"},
-        {"\xe2\x80\xae" "gpj", "\\xe2\\x80\\xaegpj"},
+        {"\xc2\x9b"
+         "31m",
+         "\\xc2\\x9b31m"},
+        {"\xe2\x80\xae"
+         "gpj",
+         "\\xe2\\x80\\xaegpj"},
         {"caf\xe9", "caf\\xe9"},
         {"\xc0\xaf\xed\xa0\x80\xf4\x90\x80\x80", "\\xc0\\xaf\\xed\\xa0\\x80\\xf4\\x90\\x80\\x80"},
         {"\\x1b", "\\x5cx1b"},
@@ -255,8 +259,8 @@ static void json_keeps_characters_and_spells_those_that_steer(void **state)
     (void)state;
     const unsigned begun = json_begin();
     cJSON *root = cJSON_CreateArray();
-    cJSON_AddItemToArray(root,
-                         cJSON_CreateString("\x1b\xc2\x9b\x7f\xe2\x80\xae \xc3\xa4 \xff \\xff C:\\a"));
+    cJSON_AddItemToArray(
+        root, cJSON_CreateString("\x1b\xc2\x9b\x7f\xe2\x80\xae \xc3\xa4 \xff \\xff C:\\a"));
     char *json = json_text(root, false, begun);
     assert_string_equal(json,
                         "[\"\\u001b\\u009b\\u007f\\u202e \xc3\xa4 \\\\xff \\\\x5cxff C:\\\\a\"]");

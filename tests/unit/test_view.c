@@ -148,11 +148,22 @@ static void expect_near(double got, double want, double tolerance, const char *w
         fail_msg("%s of camera 0x%x is %.9g, want %.9g", what, index, got, want);
 }
 
+/* What the view's images hold: device depth until a test says otherwise. */
+static vkao_effect_info effect_of(const vkao_view *view)
+{
+    vkao_effect_info effect = vkao_effect_info_default();
+    effect.projection =
+        view->projection[15] != 0.0f ? VKAO_PROJECTION_ORTHOGRAPHIC : VKAO_PROJECTION_PERSPECTIVE;
+    return effect;
+}
+
 static struct view_constants read_off(const vkao_view *view)
 {
+    const vkao_effect_info effect = effect_of(view);
     struct view_constants k;
-    assert_int_equal(view_constants_init(&silent, view, extent, VK_FORMAT_D32_SFLOAT, &k),
-                     VKAO_SUCCESS);
+    assert_int_equal(
+        vkao_view_constants_init(&silent, view, &effect, extent, VK_FORMAT_D32_SFLOAT, &k),
+        VKAO_SUCCESS);
     return k;
 }
 
@@ -230,8 +241,11 @@ static void far_depth_is_the_far_planes(void **state)
         struct view_constants k = read_off(&view);
         expect_near(k.far_depth, c.reversed ? 0.0 : 1.0, 0.0, "far depth", i);
         expect_near(k.far_z, FLT_MAX, 0.0, "far z of device depth", i);
-        view.depth_encoding = VKAO_DEPTH_VIEW_Z;
-        k = read_off(&view);
+        vkao_effect_info effect = effect_of(&view);
+        effect.depth_encoding = VKAO_DEPTH_VIEW_Z;
+        assert_int_equal(
+            vkao_view_constants_init(&silent, &view, &effect, extent, VK_FORMAT_D32_SFLOAT, &k),
+            VKAO_SUCCESS);
         expect_near(k.far_z, c.infinite ? FLT_MAX : c.far, c.far * 1e-3, "far z", i);
     }
 }
@@ -247,9 +261,11 @@ static void depth_error_covers_one_step_of_the_format(void **state)
         for (unsigned i = 0; i < CAMERAS; ++i) {
             const struct camera c = camera_of(i);
             const vkao_view view = view_of(&c);
+            const vkao_effect_info effect = effect_of(&view);
             struct view_constants k;
-            assert_int_equal(view_constants_init(&silent, &view, extent, formats[f].format, &k),
-                             VKAO_SUCCESS);
+            assert_int_equal(
+                vkao_view_constants_init(&silent, &view, &effect, extent, formats[f].format, &k),
+                VKAO_SUCCESS);
             for (double z = 1.0; z < 45.0; z *= 1.5) {
                 double a, b;
                 depth_terms(&c, &a, &b);
@@ -318,9 +334,10 @@ static void ambiguous_orthographic_view_wants_an_axis(void **state)
     const struct vkao_logger log = {w.info.log, w.info.log_user_data, VKAO_LOG_WARNING};
     struct view_constants k;
     vkao_view view = ambiguous();
+    const vkao_effect_info effect = effect_of(&view);
     expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT,
-                   view_constants_init(&log, &view, extent, VK_FORMAT_D32_SFLOAT, &k), "view.axis",
-                   "orthographic");
+                   vkao_view_constants_init(&log, &view, &effect, extent, VK_FORMAT_D32_SFLOAT, &k),
+                   "view.axis", "orthographic");
     for (int axis = VKAO_VIEW_AXIS_NEGATIVE_Z; axis <= VKAO_VIEW_AXIS_POSITIVE_Z; ++axis) {
         view.axis = (vkao_view_axis)axis;
         k = read_off(&view);
@@ -353,7 +370,8 @@ static void rect_grow_stays_in_bounds(void **state)
         {{5, 5, 6, 6}, UINT32_MAX, UINT32_MAX, {1, 2, 30, 40}, {1, 2, 30, 40}},
     };
     for (size_t i = 0; i < COUNT(cases); ++i) {
-        struct vkao_rect got = rect_grow(cases[i].rect, cases[i].x, cases[i].y, cases[i].bounds);
+        struct vkao_rect got =
+            vkao_rect_grow(cases[i].rect, cases[i].x, cases[i].y, cases[i].bounds);
         assert_memory_equal(&got, &cases[i].want, sizeof got);
     }
 }
@@ -362,7 +380,7 @@ static void rect_pack_keeps_sixteen_bits_each(void **state)
 {
     (void)state;
     uint32_t packed[2];
-    rect_pack((struct vkao_rect){1, 2, 65535, 65534}, packed);
+    vkao_rect_pack((struct vkao_rect){1, 2, 65535, 65534}, packed);
     assert_int_equal(packed[0], 0x00020001);
     assert_int_equal(packed[1], 0xfffeffff);
 }

@@ -11,18 +11,10 @@
 static vkao_result record(struct world *w, int call)
 {
     VkCommandBuffer cmd = world_cmd(w);
-    switch (call) {
-    case 0:
-        return vkao_cmd_prepare(w->frame, cmd, &w->view);
-    case 1:
-        return vkao_cmd_ssao(w->frame, cmd, &w->view, &w->ssao);
-    case 2:
-        return vkao_cmd_blur(w->frame, cmd, &w->view, &w->blur);
-    case 3:
-        return vkao_cmd_composite(w->frame, cmd, &w->view, &w->composite);
-    default:
-        return world_record_all(w);
-    }
+    static const vkao_stage_flags stages[] = {VKAO_STAGE_PREPARE, VKAO_STAGE_SSAO, VKAO_STAGE_BLUR,
+                                              VKAO_STAGE_COMPOSITE};
+    return call < 4 ? vkao_cmd_stage(w->frame, cmd, stages[call], &w->view, &w->params)
+                    : world_record_all(w);
 }
 
 static void expect_all_refuse(struct world *w, const char *name, const char *value)
@@ -49,12 +41,8 @@ static const struct {
     size_t offset;
     uint32_t max;
 } integers[] = {
-    {V(depth_encoding), VKAO_DEPTH_INVERSE_Z},
-    {V(normal_encoding), VKAO_NORMALS_OCT_UNORM},
     {V(axis), VKAO_VIEW_AXIS_POSITIVE_Z},
-    {V(reserved), 0},
-    {V(bent_encoding), VKAO_NORMALS_OCT_UNORM},
-    {"view.reserved", offsetof(vkao_view, reserved_too), 0},
+    {V(padding), 0},
 };
 
 /* The world's view, or an orthographic one, the only kind that may name an axis. */
@@ -63,8 +51,11 @@ static void set_view(struct world *w, bool orthographic)
     static const float matrix[16] = {
         [0] = 0.1f, [5] = 0.1f, [10] = -0.05f, [14] = -0.05f, [15] = 1.0f,
     };
-    if (orthographic)
-        memcpy(w->view.projection, matrix, sizeof matrix);
+    if (!orthographic)
+        return;
+    memcpy(w->view.projection, matrix, sizeof matrix);
+    w->effect_info.projection = VKAO_PROJECTION_ORTHOGRAPHIC;
+    world_create_frame(w);
 }
 
 static void integer_out_of_range_is_refused_and_named(void **state)
@@ -118,6 +109,28 @@ static void not_finite_number_is_refused_and_named(void **state)
     world_close(&w);
 }
 
+/* Rows for columns: what is 1 or -1 in w's factor of z lands in [14]. */
+static void transposed_projection_is_refused(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open_frame(&w, VKAO_STAGE_ALL);
+    expect_all_accept(&w, "view.projection");
+    float transposed[16];
+    for (int i = 0; i < 16; ++i)
+        transposed[i] = w.view.projection[i % 4 * 4 + i / 4];
+    memcpy(w.view.projection, transposed, sizeof transposed);
+    expect_all_refuse(&w, "view.projection", "transposed");
+    /* Infinite and reversed, with a near plane at 1: both are 1 then. */
+    static const float infinite[16] = {[0] = 1.0f, [5] = 1.0f, [11] = -1.0f, [14] = 1.0f},
+                       across[16] = {[0] = 1.0f, [5] = 1.0f, [11] = 1.0f, [14] = -1.0f};
+    memcpy(w.view.projection, infinite, sizeof infinite);
+    expect_all_accept(&w, "view.projection");
+    memcpy(w.view.projection, across, sizeof across);
+    expect_all_refuse(&w, "view.projection", "transposed");
+    world_close(&w);
+}
+
 static void projection_that_is_none_is_refused(void **state)
 {
     (void)state;
@@ -127,7 +140,7 @@ static void projection_that_is_none_is_refused(void **state)
         float v;
         const char *value; /* in the log beside view.projection */
     } cases[] = {
-        {false, 1, 0.5f, "[1] is 0.5"},   {false, 2, 0.5f, "[2] is 0.5"},
+        {false, 1, 0.5f, "columns"},      {false, 2, 0.5f, "oblique"},
         {false, 3, 0.5f, "[3] is 0.5"},   {false, 4, 0.5f, "[4] is 0.5"},
         {false, 6, -0.5f, "[6] is -0.5"}, {false, 7, 0.5f, "[7] is 0.5"},
         {true, 1, 0.5f, "[1] is 0.5"},    {true, 4, 0.5f, "[4] is 0.5"},
@@ -228,24 +241,6 @@ static void rectangles_are_refused_and_named(void **state)
     world_close(&w);
 }
 
-static void normals_encoding_needs_a_normals_image(void **state)
-{
-    (void)state;
-    struct world w;
-    world_open(&w);
-    w.images.normals = (vkao_image){0};
-    assert_int_equal(vkao_frame_create(w.ctx, &w.frame_info, &w.frame), VKAO_SUCCESS);
-    expect_all_accept(&w, "view.normal_encoding");
-    for (uint32_t encoding = VKAO_NORMALS_XYZ_SNORM; encoding <= VKAO_NORMALS_OCT_UNORM;
-         ++encoding) {
-        char value[32];
-        snprintf(value, sizeof value, "is %u,", encoding);
-        w.view.normal_encoding = (vkao_normal_encoding)encoding;
-        expect_all_refuse(&w, "view.normal_encoding", value);
-    }
-    world_close(&w);
-}
-
 /* No stage of such a frame reads depth, so a projection would be asked for in vain; the rest of the
  * view counts. */
 static void composite_alone_needs_no_projection(void **state)
@@ -253,9 +248,9 @@ static void composite_alone_needs_no_projection(void **state)
     (void)state;
     struct world w;
     world_open(&w);
-    w.frame_info.stages = VKAO_STAGE_COMPOSITE;
-    w.images.specular = (vkao_image){0};
-    assert_int_equal(vkao_frame_create(w.ctx, &w.frame_info, &w.frame), VKAO_SUCCESS);
+    w.effect_info.stages = VKAO_STAGE_COMPOSITE;
+    w.effect_info.noisy_ao = VK_FALSE;
+    world_create_frame(&w);
     w.view = vkao_view_default();
     assert_int_equal(record(&w, 3), VKAO_SUCCESS);
     assert_int_equal(record(&w, 4), VKAO_SUCCESS);
@@ -281,7 +276,12 @@ static void composite_with_specular_light_needs_a_projection(void **state)
 {
     (void)state;
     struct world w;
-    world_open_frame(&w, VKAO_STAGE_COMPOSITE);
+    world_open(&w);
+    w.effect_info.stages = VKAO_STAGE_COMPOSITE;
+    w.effect_info.noisy_ao = VK_FALSE;
+    w.effect_info.specular = VKAO_SPECULAR_FROM_AO;
+    w.effect_info.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
+    world_create_frame(&w);
     assert_int_equal(record(&w, 3), VKAO_SUCCESS);
     w.view = vkao_view_default();
     fake_forget_calls(&w.fake);
@@ -291,16 +291,28 @@ static void composite_with_specular_light_needs_a_projection(void **state)
     world_close(&w);
 }
 
+static void projection_of_the_other_kind_is_refused(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open_frame(&w, VKAO_STAGE_ALL);
+    w.effect_info.projection = VKAO_PROJECTION_ORTHOGRAPHIC;
+    world_create_frame(&w);
+    expect_all_refuse(&w, "view.projection", "effect.projection is 1");
+    world_close(&w);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(integer_out_of_range_is_refused_and_named),
         cmocka_unit_test(not_finite_number_is_refused_and_named),
+        cmocka_unit_test(transposed_projection_is_refused),
         cmocka_unit_test(projection_that_is_none_is_refused),
         cmocka_unit_test(default_view_wants_a_projection),
         cmocka_unit_test(ambiguous_orthographic_view_wants_an_axis),
         cmocka_unit_test(rectangles_are_refused_and_named),
-        cmocka_unit_test(normals_encoding_needs_a_normals_image),
+        cmocka_unit_test(projection_of_the_other_kind_is_refused),
         cmocka_unit_test(composite_alone_needs_no_projection),
         cmocka_unit_test(composite_with_specular_light_needs_a_projection),
     };

@@ -8,6 +8,30 @@
 #include <string.h>
 #include <vulkan/vulkan.h>
 
+static void open_frame(const struct rig *rig, struct rig_flight *f, vkao_projection projection,
+                       VkExtent2D extent, const vkao_images *images)
+{
+    struct orbit camera = live_scene_camera(rig->kind);
+    struct ao_view view;
+    const struct ao_ssao ssao = ao_ssao_default();
+    const struct ao_blur blur = ao_blur_default();
+    struct ao_composite composite = ao_composite_default();
+    composite.mode = VKAO_COMPOSITE_INDIRECT;
+    composite.multi_bounce = rig->multi_bounce;
+    camera.orthographic = projection == VKAO_PROJECTION_ORTHOGRAPHIC;
+    live_scene_view(&camera, extent, &view);
+    vkao_effect_info info = ao_effect(VKAO_STAGE_ALL, &view, &ssao, &blur, &composite);
+    info.ao_format = VK_FORMAT_R16_UNORM;
+    check_vkao(vkao_effect_create(fixture.context, &info, &f->effects[projection]));
+    check_vkao(vkao_frame_create(f->effects[projection],
+                                 &(vkao_frame_info){
+                                     .struct_size = sizeof(vkao_frame_info),
+                                     .extent = extent,
+                                     .images = images,
+                                 },
+                                 &f->frames[projection]));
+}
+
 static void open_flight(struct rig *rig, struct rig_flight *f, VkExtent2D extent)
 {
     const VkImageUsageFlags usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT;
@@ -20,14 +44,8 @@ static void open_flight(struct rig *rig, struct rig_flight *f, VkExtent2D extent
     live_target_images(&f->target, &images);
     images.ao = gpu_image_slot(&f->ao);
     images.output = gpu_image_slot(&f->output);
-    check_vkao(vkao_frame_create(fixture.context,
-                                 &(vkao_frame_info){
-                                     .struct_size = sizeof(vkao_frame_info),
-                                     .stages = VKAO_STAGE_ALL,
-                                     .extent = extent,
-                                     .images = &images,
-                                 },
-                                 &f->frame));
+    for (int projection = 0; projection < RIG_PROJECTIONS; ++projection)
+        open_frame(rig, f, (vkao_projection)projection, extent, &images);
     assert_int_equal(
         vkCreateFence(gpu->device,
                       &(VkFenceCreateInfo){.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO}, NULL,
@@ -40,11 +58,14 @@ static void close_flight(struct rig *rig, int flight)
     struct rig_flight *f = &rig->flights[flight];
     rig_wait(rig, flight);
     vkDestroyFence(fixture.gpu.device, f->fence, NULL);
-    vkao_frame_destroy(f->frame);
+    for (int projection = 0; projection < RIG_PROJECTIONS; ++projection) {
+        vkao_frame_destroy(f->frames[projection]);
+        vkao_effect_destroy(f->effects[projection]);
+    }
     gpu_image_destroy(&fixture.gpu, &f->ao);
     gpu_image_destroy(&fixture.gpu, &f->output);
     live_target_destroy(&f->target);
-    *f = (struct rig_flight){.frame = NULL};
+    *f = (struct rig_flight){.cmd = NULL};
 }
 
 void rig_open(struct rig *rig, enum live_kind kind, uint32_t width, uint32_t height)
@@ -75,16 +96,20 @@ void rig_record(const struct rig *rig, int flight, VkCommandBuffer cmd, const st
                 double time, VkExtent2D used)
 {
     const struct rig_flight *f = &rig->flights[flight];
-    vkao_view view;
-    vkao_ssao_params ssao = vkao_ssao_params_default();
-    vkao_blur_params blur = vkao_blur_params_default();
-    vkao_composite_params composite = vkao_composite_params_default();
+    struct ao_view view;
+    struct ao_ssao ssao = ao_ssao_default();
+    struct ao_blur blur = ao_blur_default();
+    struct ao_composite composite = ao_composite_default();
     ssao.radius = live_scene_radius(rig->kind);
     composite.mode = VKAO_COMPOSITE_INDIRECT;
     composite.multi_bounce = rig->multi_bounce;
     live_scene_view(camera, used, &view);
     live_scene_record(rig->scene, &f->target, cmd, camera, time, used);
-    check_vkao(vkao_cmd_all(f->frame, cmd, &view, &ssao, &blur, &composite));
+    const vkao_view library_view = ao_library_view(&view);
+    const vkao_params params = ao_params(&ssao, &blur, &composite);
+    const vkao_projection projection =
+        camera->orthographic ? VKAO_PROJECTION_ORTHOGRAPHIC : VKAO_PROJECTION_PERSPECTIVE;
+    check_vkao(vkao_cmd_record(f->frames[projection], cmd, &library_view, &params));
 }
 
 void rig_submit(struct rig *rig, int flight, const struct orbit *camera, double time,

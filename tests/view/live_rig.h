@@ -8,12 +8,13 @@
 #include "fixture.h"
 #include "scene.h"
 
-enum { RIG_FLIGHTS = 2 };
+enum { RIG_FLIGHTS = 2, RIG_PROJECTIONS = 2 };
 
 struct rig_flight {
     struct live_target target;
     struct gpu_image ao, output;
-    vkao_frame *frame;
+    vkao_effect *effects[RIG_PROJECTIONS]; /* by vkao_projection */
+    vkao_frame *frames[RIG_PROJECTIONS];
     VkCommandBuffer cmd; /* null while nothing is pending */
     VkFence fence;
 };
@@ -28,7 +29,7 @@ struct rig {
 /* What came out, row by row; only the used texels. */
 struct shot {
     uint32_t width, height;
-    vkao_view view;
+    struct ao_view view;
     double *depth;                                /* 1 a texel, as stored */
     double *ao;                                   /* 1 a texel */
     double *normals, *indirect, *direct, *output; /* 4 a texel, as stored */

@@ -305,8 +305,9 @@ SAVES = {
 }
 
 
-# The tool compiles its pipelines for the settings at hand, the viewer for all: the same operations, but other
-# instructions, so that the last bit differs, and once in a while a sample at the edge of a texel or sector.
+# The tool compiles its pipelines for the settings at hand, the viewer for all: the same operations,
+# but other instructions, so that the last bit differs, and once in a while a sample at the edge of
+# a texel or sector.
 LARGEST, MEAN = 5e-3, 1e-6
 
 

@@ -25,93 +25,71 @@ static double uniform(void)
 
 /* --- Settings --- */
 
-static const struct option_row *find_option(const char *name)
+static void sliders_stay_in_the_range_of_the_table(void **unused)
 {
-    for (size_t i = 0; i < option_table_count; i++)
-        if (strcmp(option_table[i].name, name) == 0)
-            return &option_table[i];
-    return NULL;
-}
-
-static void every_option_of_the_table_is_one_of_vkao(void **unused)
-{
+    size_t count;
+    const struct param *rows = panel_params(&count);
     (void)unused;
-    for (size_t i = 0; i < param_count; i++) {
-        const struct option_row *row = params[i].option ? find_option(params[i].option) : NULL;
-        if (params[i].option && !row)
-            fail_msg("vkao has no --%s", params[i].option);
-        if (!row || params[i].kind == PARAM_CHOICE || params[i].kind == PARAM_COLOR)
+    for (size_t i = 0; i < count; i++) {
+        const vkao_parameter *p = rows[i].parameter;
+        const struct parameter_range r = parameter_range(p);
+        const bool is_number = p->type == VKAO_PARAMETER_FLOAT || p->type == VKAO_PARAMETER_UINT;
+        if (!is_number)
             continue;
-        if (params[i].low < row->range.low || params[i].high > row->range.high)
-            fail_msg("--%s is offered from %g to %g", params[i].option, params[i].low,
-                     params[i].high);
+        if (rows[i].low < r.low || rows[i].high > r.high ||
+            (r.low_is_excluded && !(rows[i].low > r.low)))
+            fail_msg("%s is offered from %g to %g", p->name, rows[i].low, rows[i].high);
+        if (p->standard < rows[i].low || p->standard > rows[i].high || !(rows[i].high < 1e7))
+            fail_msg("%s: default %g, offered from %g to %g", p->name, p->standard, rows[i].low,
+                     rows[i].high);
     }
 }
 
-/* A field that the panel cannot change would be one that nobody sees. */
-static void every_field_of_the_header_has_a_row(void **unused)
+/* What the panel cannot change would be something that nobody sees. */
+static void every_parameter_has_a_row_but_what_images_or_views_decide(void **unused)
 {
-    static const struct {
-        size_t offset, bytes;
-    } left_out[] = {
-        {offsetof(struct setting, ssao.struct_size), 4},
-        {offsetof(struct setting, ssao.reserved), 4},
-        {offsetof(struct setting, ssao.reserved_too), 4},
-        {offsetof(struct setting, blur.struct_size), 4},
-        {offsetof(struct setting, blur.reserved), 4},
-        {offsetof(struct setting, composite.struct_size), 4},
-        {offsetof(struct setting, composite.reserved), 4},
-    };
-    unsigned char covered[sizeof(struct setting)] = {0};
+    static const char *const hidden[] = {"depth_bits", "bent_normals", "noisy_ao"};
+    size_t count;
+    uint32_t all_count;
+    const struct param *rows = panel_params(&count);
+    const vkao_parameter *all = vkao_parameters(&all_count);
     (void)unused;
-    for (size_t i = 0; i < param_count; i++)
-        memset(covered + params[i].offset, 1, params[i].kind == PARAM_COLOR ? 12 : 4);
-    for (size_t i = 0; i < sizeof left_out / sizeof *left_out; i++)
-        memset(covered + left_out[i].offset, 1, left_out[i].bytes);
-    for (size_t i = 0; i < sizeof covered; i++)
-        if (!covered[i])
-            fail_msg("byte %zu of struct setting is in no row", i);
+    for (uint32_t i = 0; i < all_count; i++) {
+        int found = 0;
+        for (size_t k = 0; k < count; k++)
+            found += rows[k].parameter == &all[i];
+        bool is_hidden = parameter_is_of_images(&all[i]);
+        for (size_t k = 0; k < sizeof hidden / sizeof *hidden; k++)
+            is_hidden = is_hidden || strcmp(all[i].name, hidden[k]) == 0;
+        assert_int_equal(found, !is_hidden);
+    }
 }
 
-static void defaults_are_in_the_range_offered(void **unused)
+static void defaults_are_known_and_come_back(void **unused)
 {
-    struct setting s = setting_default();
+    size_t count;
+    const struct param *rows = panel_params(&count);
     (void)unused;
-    for (size_t i = 0; i < param_count; i++) {
-        const struct param *p = &params[i];
-        assert_true(param_is_default(p, &s));
-        double value = p->kind == PARAM_FLOAT  ? (double)*(float *)param_of(&s, p)
-                       : p->kind == PARAM_UINT ? *(uint32_t *)param_of(&s, p)
-                                               : p->low;
-        if (value < p->low || value > p->high)
-            fail_msg("the default of %s is %g", p->label, value);
+    for (size_t i = 0; i < count; i++) {
+        struct setting s = setting_default(), standard = s;
+        assert_true(param_is_default(&rows[i], &s));
+        memset(parameter_of(&s, rows[i].parameter), 0x3f, 4);
+        assert_false(param_is_default(&rows[i], &s));
+        param_reset(&rows[i], &s);
+        assert_memory_equal(&s, &standard, sizeof s);
     }
 }
 
-static void randomise(const struct param *p, struct setting *s)
+static void randomise(const struct param *row, struct setting *s)
 {
-    double value = p->low + (p->high - p->low) * uniform();
-    int choices = 0;
-    switch (p->kind) {
-    case PARAM_FLOAT:
-        *(float *)param_of(s, p) = (float)value;
-        break;
-    case PARAM_UINT:
-        *(uint32_t *)param_of(s, p) = (uint32_t)(value + 0.5);
-        break;
-    case PARAM_CHOICE:
-        while (p->choices[choices].word)
-            choices++;
-        memcpy(param_of(s, p), &p->choices[(int)(uniform() * choices)].value, sizeof(int));
-        break;
-    case PARAM_SWITCH:
-        *(VkBool32 *)param_of(s, p) = uniform() < 0.5;
-        break;
-    case PARAM_COLOR:
-        for (int i = 0; i < 3; i++)
-            ((float *)param_of(s, p))[i] = (float)uniform();
-        break;
-    }
+    const vkao_parameter *p = row->parameter;
+    const double value = row->low + (row->high - row->low) * uniform();
+    float numbers[3] = {(float)value, (float)uniform(), (float)uniform()};
+    uint32_t word = (uint32_t)(value + 0.5);
+    if (p->type == VKAO_PARAMETER_CHOICE)
+        word = (uint32_t)(uniform() * (last_choice(row) + 1));
+    const bool is_number = p->type == VKAO_PARAMETER_FLOAT || p->type == VKAO_PARAMETER_COLOR;
+    memcpy(parameter_of(s, p), is_number ? (const void *)numbers : &word, parameter_bytes(p));
 }
 
 static void parse(char *line, struct options *options)
@@ -127,31 +105,29 @@ static void parse(char *line, struct options *options)
 
 static void vkao_reads_back_what_save_writes(void **unused)
 {
+    size_t count;
+    const struct param *rows = panel_params(&count);
     (void)unused;
     for (int round = 0; round < 2000; round++) {
+        const enum view_kind view = round % 2 ? VIEW_COMPOSITE : VIEW_RAW;
         struct setting s = setting_default();
         struct text line = {0}, unsaid = {0};
         struct options o;
-        for (size_t i = 0; i < param_count; i++)
+        for (size_t i = 0; i < count; i++)
             if (uniform() < 0.4)
-                randomise(&params[i], &s);
-        setting_add_options(&s, VIEW_COMPOSITE, &line, &unsaid);
+                randomise(&rows[i], &s);
+        setting_add_options(&s, view, &line, &unsaid);
         assert_non_null(line.data);
         parse(line.data, &o);
-        const struct setting back = {
-            .ssao = o.ssao,
-            .blur = o.blur,
-            .composite = o.composite,
-            .half_resolution = o.half_resolution,
-        };
-        for (size_t i = 0; i < param_count; i++) {
-            const struct param *p = &params[i];
-            size_t bytes = p->kind == PARAM_COLOR ? 12 : 4;
-            if ((p->option || p->kind == PARAM_SWITCH) && !p->needs &&
-                memcmp(param_of_const(&back, p), param_of_const(&s, p), bytes) != 0)
-                fail_msg("%s is read back otherwise", p->label);
-            if (!p->option && !param_is_default(p, &s) && p->needs)
-                assert_non_null(strstr(unsaid.data, p->label));
+        const struct setting said = setting_as_said(&s, view);
+        for (size_t i = 0; i < count; i++) {
+            const vkao_parameter *p = rows[i].parameter;
+            if (!parameter_equals(p, &o.setting, &said))
+                fail_msg("%s is read back otherwise", p->name);
+            if (view == VIEW_COMPOSITE && rows[i].needs && !param_is_default(&rows[i], &s))
+                assert_non_null(strstr(unsaid.data, rows[i].label));
+            if (view == VIEW_COMPOSITE && option_of_parameter(p) && !parameter_equals(p, &said, &s))
+                fail_msg("%s is not said", p->name);
         }
         assert_true(o.bias_is_given && !o.radius_is_auto);
         text_free(&line);
@@ -218,7 +194,7 @@ static void probe_finds_the_point_that_was_projected(void **unused)
     (void)unused;
     for (int round = 0; round < 3000; round++) {
         const int kind = round % 3;
-        vkao_view view = vkao_view_default();
+        struct ao_view view = ao_view_default();
         fill_projection(kind, view.projection);
         view.depth_encoding = (vkao_depth_encoding)(round / 3 % 4);
         view.axis = kind == 2 ? VKAO_VIEW_AXIS_NEGATIVE_Z : VKAO_VIEW_AXIS_FROM_MATRIX;
@@ -248,7 +224,7 @@ static void probe_knows_background(void **unused)
 {
     const VkExtent2D extent = {4, 4};
     double position[3];
-    vkao_view view = vkao_view_default();
+    struct ao_view view = ao_view_default();
     (void)unused;
     fill_projection(0, view.projection);
     assert_false(unproject(&view, extent, 1, 1, 1.0, position));
@@ -263,9 +239,9 @@ static void probe_knows_background(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_option_of_the_table_is_one_of_vkao),
-        cmocka_unit_test(every_field_of_the_header_has_a_row),
-        cmocka_unit_test(defaults_are_in_the_range_offered),
+        cmocka_unit_test(sliders_stay_in_the_range_of_the_table),
+        cmocka_unit_test(every_parameter_has_a_row_but_what_images_or_views_decide),
+        cmocka_unit_test(defaults_are_known_and_come_back),
         cmocka_unit_test(vkao_reads_back_what_save_writes),
         cmocka_unit_test(standard_setting_needs_radius_and_bias_alone),
         cmocka_unit_test(shell_reads_back_what_was_quoted),

@@ -84,7 +84,7 @@ class Display:
 
 
 def sanitizer_options():
-    """Leaks of libraries that are not ours are left out, by name; for that they must stay loaded."""
+    """Leaks of libraries that are not ours are left out, by name; they must stay loaded."""
     suppressions = os.path.join(HERE, 'leaks.supp')
     return {'LSAN_OPTIONS': f'suppressions={suppressions}:print_suppressions=0',
             **cli.loaded_driver(VIEWER)}

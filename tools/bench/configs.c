@@ -32,19 +32,54 @@ static const struct config default_set[] = {
 };
 enum { DEFAULT_COUNT = sizeof default_set / sizeof default_set[0] };
 
-/* What the two numbers of a setting are. The limits are those of vkao_ssao_params. */
-static const struct method_row {
-    const char *name;
-    bool has_samples, has_slices, has_steps;
-} methods[] = {
-    [VKAO_SSAO_SPHERE] = {"sphere", true, false, false},
-    [VKAO_SSAO_HEMISPHERE] = {"hemisphere", true, false, false},
-    [VKAO_SSAO_HBAO] = {"hbao", false, true, true},
-    [VKAO_SSAO_GTAO] = {"gtao", false, true, true},
-    [VKAO_SSAO_VBAO] = {"vbao", false, true, true},
-    [VKAO_SSAO_RAYMARCH] = {"raymarch", true, false, true},
-};
-enum { METHOD_COUNT = sizeof methods / sizeof methods[0], MAX_FIRST = 64, MAX_STEPS = 256 };
+/* --- What the library's tables say of the numbers of a setting --- */
+
+bool config_reads(vkao_ssao_method method, const char *name)
+{
+    const vkao_parameter *row = parameter_named(name);
+    return row && (row->methods == 0 || (row->methods >> method & 1u));
+}
+
+static bool is_in_range(const char *name, unsigned count)
+{
+    const vkao_parameter *row = parameter_named(name);
+    return row && count >= 1 && (double)count <= row->most;
+}
+
+bool config_find_method(const char *name, size_t length, vkao_ssao_method *method)
+{
+    uint32_t count;
+    const vkao_method *rows = vkao_methods(&count);
+    for (uint32_t m = 0; m < count; m++) {
+        if (strlen(rows[m].name) == length && strncmp(rows[m].name, name, length) == 0) {
+            *method = (vkao_ssao_method)m;
+            return true;
+        }
+    }
+    return false;
+}
+
+const char *config_method_name(const struct config *config)
+{
+    uint32_t count;
+    return vkao_methods(&count)[config->method].name;
+}
+
+struct config config_of(vkao_ssao_method method, unsigned samples, unsigned slices, unsigned steps)
+{
+    struct config c = {.method = method};
+    c.samples = config_reads(method, "sample_count") ? samples : 0;
+    c.slices = config_reads(method, "slice_count") ? slices : 0;
+    c.steps = config_reads(method, "step_count") ? steps : 0;
+    const unsigned first = c.slices ? c.slices : c.samples;
+    if (c.steps)
+        snprintf(c.name, sizeof c.name, "%s-%ux%u", config_method_name(&c), first, c.steps);
+    else
+        snprintf(c.name, sizeof c.name, "%s-%u", config_method_name(&c), first);
+    return c;
+}
+
+/* --- The list --- */
 
 struct config config_yardstick(void)
 {
@@ -53,11 +88,6 @@ struct config config_yardstick(void)
                            .samples = 64,
                            .steps = 64,
                            .is_yardstick = true};
-}
-
-const char *config_method_name(const struct config *config)
-{
-    return methods[config->method].name;
 }
 
 static bool add(const char *option, struct config_list *list, const struct config *config,
@@ -72,36 +102,26 @@ static bool add(const char *option, struct config_list *list, const struct confi
     return true;
 }
 
-/* "gtao-2x12", "hemisphere-32"; leaves *config alone if it is neither. */
+/* "gtao-2x12", "hemisphere-32"; leaves *config alone if it is neither. Its name has the numbers
+ * again, so that 'gtao-03x06' is no other setting than 'gtao-3x6'. */
 static bool parse_setting(const char *name, struct config *config)
 {
-    struct config c = {0};
+    vkao_ssao_method method;
     unsigned first = 0, steps = 0;
     int end = 0;
     size_t length = strcspn(name, "-");
-    for (size_t m = 0; m < METHOD_COUNT; m++) {
-        const struct method_row *row = &methods[m];
-        if (strncmp(row->name, name, length) != 0 || row->name[length] || !name[length])
-            continue;
-        const char *numbers = name + length + 1;
-        bool fits = row->has_steps ? sscanf(numbers, "%3ux%3u%n", &first, &steps, &end) == 2
-                                   : sscanf(numbers, "%3u%n", &first, &end) == 1;
-        bool in_range = first >= 1 && first <= MAX_FIRST && steps <= MAX_STEPS;
-        if (!fits || numbers[end] || !in_range || (row->has_steps && steps == 0))
-            return false;
-        c.method = (vkao_ssao_method)m;
-        c.samples = row->has_samples ? first : 0;
-        c.slices = row->has_slices ? first : 0;
-        c.steps = steps;
-        /* The numbers again, so that 'gtao-03x06' is no other setting than 'gtao-3x6'. */
-        if (row->has_steps)
-            snprintf(c.name, sizeof c.name, "%s-%ux%u", row->name, first, steps);
-        else
-            snprintf(c.name, sizeof c.name, "%s-%u", row->name, first);
-        *config = c;
-        return true;
-    }
-    return false;
+    if (!name[length] || !config_find_method(name, length, &method))
+        return false;
+    const char *numbers = name + length + 1;
+    const char *what = config_reads(method, "slice_count") ? "slice_count" : "sample_count";
+    const bool has_steps = config_reads(method, "step_count");
+    bool fits = has_steps ? sscanf(numbers, "%4ux%3u%n", &first, &steps, &end) == 2
+                          : sscanf(numbers, "%4u%n", &first, &end) == 1;
+    if (!fits || numbers[end] || !is_in_range(what, first) ||
+        (has_steps && !is_in_range("step_count", steps)))
+        return false;
+    *config = config_of(method, first, first, steps);
+    return true;
 }
 
 /* By its name, its method, or, of a preset, what stands behind the method: "fast". */
@@ -157,37 +177,34 @@ bool configs_choose(const char *option, const char *names, struct config_list *l
 
 void config_apply(const struct config *config, struct ao_job *job)
 {
-    job->ssao = vkao_ssao_params_default();
-    job->blur = vkao_blur_params_default();
-    job->half_resolution = false;
+    vkao_effect_info *effect = &job->setting.effect;
+    job->setting = setting_default();
     if (config->is_preset) {
-        vkao_frame_info frame = {.struct_size = sizeof frame};
-        /* The table holds no quality that the library does not know. */
-        (void)vkao_preset(config->quality, &frame, &job->ssao, &job->blur);
-        job->half_resolution = frame.half_resolution;
+        setting_apply_preset(&job->setting, config->quality);
         return;
     }
-    job->ssao.method = config->method;
+    effect->method = config->method;
     if (config->samples)
-        job->ssao.sample_count = config->samples;
+        effect->sample_count = config->samples;
     if (config->slices)
-        job->ssao.slice_count = config->slices;
+        effect->slice_count = config->slices;
     if (config->steps)
-        job->ssao.step_count = config->steps;
+        effect->step_count = config->steps;
     /* Averaging takes the noise away without taking detail along. */
     if (config->is_yardstick)
-        job->blur.radius = 0;
+        effect->blur_radius = 0;
 }
 
 void config_describe(const struct config *config, char *text, size_t size)
 {
     struct ao_job job = {0};
-    const struct method_row *row = &methods[config->method];
     config_apply(config, &job);
-    unsigned first = row->has_slices ? job.ssao.slice_count : job.ssao.sample_count;
-    const char *half = job.half_resolution ? ", half resolution" : "";
-    if (row->has_steps)
-        snprintf(text, size, "%s %u x %u%s", row->name, first, job.ssao.step_count, half);
+    unsigned first = config_reads(config->method, "slice_count") ? job.setting.effect.slice_count
+                                                                 : job.setting.effect.sample_count;
+    const char *half = job.setting.effect.half_resolution ? ", half resolution" : "";
+    if (config_reads(config->method, "step_count"))
+        snprintf(text, size, "%s %u x %u%s", config_method_name(config), first,
+                 job.setting.effect.step_count, half);
     else
-        snprintf(text, size, "%s %u%s", row->name, first, half);
+        snprintf(text, size, "%s %u%s", config_method_name(config), first, half);
 }

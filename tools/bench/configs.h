@@ -7,7 +7,7 @@
 
 #include "ao.h"
 #include "error.h"
-#include "vkao.h"
+#include "setting.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -41,6 +41,12 @@ struct config config_yardstick(void);
 /* Fills ssao, blur and half_resolution; radius and falloff are the caller's to set after it. */
 void config_apply(const struct config *config, struct ao_job *job);
 const char *config_method_name(const struct config *config);
+/* Any setting by its numbers, of which it has those that the method reads; and its name. */
+struct config config_of(vkao_ssao_method method, unsigned samples, unsigned slices, unsigned steps);
+/* Whether a method reads a member of vkao_effect_info: "step_count". */
+bool config_reads(vkao_ssao_method method, const char *name);
+/* name: length bytes of it. False if there is no such method. */
+bool config_find_method(const char *name, size_t length, vkao_ssao_method *method);
 /* "vbao 1 x 8, half resolution" */
 void config_describe(const struct config *config, char *text, size_t size);
 

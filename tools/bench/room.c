@@ -2,7 +2,9 @@
 #include "room.h"
 
 #include "atomic_file.h"
+#include "parallel.h"
 #include "text.h"
+#include "trace.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -13,11 +15,14 @@
 #define HALF_WIDTH 0.57735026918962576
 
 /* The room itself: its walls, seen from inside. The camera is at the origin, level. */
-static const double walls[3][2] = {{-3.7, 3.7}, {-1.6, 1.4}, {-1.0, 9.0}};
+static const struct vec3 room_center = {0, -0.1, 4}, room_half = {3.7, 1.5, 5};
 
 /* A sphere if half is all zero, else a box turned by yaw about y. */
 struct thing {
-    double center[3], radius, half[3], yaw;
+    struct vec3 center;
+    double radius;
+    struct vec3 half;
+    double yaw;
 };
 
 #define SPHERE(x, y, z, r)                                                                         \
@@ -80,144 +85,50 @@ static const struct thing furniture[] = {
 /* clang-format on */
 enum { FURNITURE = sizeof furniture / sizeof furniture[0] };
 
-/* --- What a ray hits: rays leave the eye along (x, y, 1), so that view z is their length --- */
-
-struct hit {
-    double z, normal[3];
-};
-
-static void hit_walls(const double ray[3], struct hit *hit)
-{
-    hit->z = INFINITY;
-    for (int axis = 0; axis < 3; axis++) {
-        bool positive = ray[axis] > 0;
-        double z = ray[axis] != 0 ? walls[axis][positive] / ray[axis] : INFINITY;
-        if (z >= hit->z)
-            continue;
-        *hit = (struct hit){.z = z};
-        hit->normal[axis] = positive ? -1 : 1;
-    }
-}
-
-static void hit_sphere(const struct thing *t, const double ray[3], struct hit *hit)
-{
-    const double *c = t->center;
-    double a = ray[0] * ray[0] + ray[1] * ray[1] + 1, b = ray[0] * c[0] + ray[1] * c[1] + c[2];
-    double rest = b * b - a * (c[0] * c[0] + c[1] * c[1] + c[2] * c[2] - t->radius * t->radius);
-    double z = rest > 0 ? (b - sqrt(rest)) / a : INFINITY;
-    if (!(z < hit->z))
-        return;
-    hit->z = z;
-    for (int i = 0; i < 3; i++)
-        hit->normal[i] = (ray[i] * z - c[i]) / t->radius;
-}
-
-/* Turns v from view space to the axes of a box; the other way round with -sine. */
-static void turn(const double v[3], double cosine, double sine, double out[3])
-{
-    out[0] = cosine * v[0] - sine * v[2];
-    out[1] = v[1];
-    out[2] = sine * v[0] + cosine * v[2];
-}
-
-static void hit_box(const struct thing *t, double cosine, double sine, const double ray[3],
-                    struct hit *hit)
-{
-    double center[3], along[3], enter = -INFINITY, leave = INFINITY;
-    int face = 0;
-    turn(t->center, cosine, sine, center);
-    turn(ray, cosine, sine, along);
-    for (int axis = 0; axis < 3; axis++) {
-        double reach = along[axis] < 0 ? -t->half[axis] : t->half[axis];
-        /* A ray along the face: divided by 0, which leaves infinities with the right signs. */
-        double in = (center[axis] - reach) / along[axis],
-               out = (center[axis] + reach) / along[axis];
-        if (in > enter) {
-            enter = in;
-            face = axis;
-        }
-        leave = out < leave ? out : leave;
-    }
-    if (!(enter < leave) || !(enter > 0) || !(enter < hit->z))
-        return;
-    double normal[3] = {0};
-    normal[face] = along[face] < 0 ? 1 : -1;
-    hit->z = enter;
-    turn(normal, cosine, -sine, hit->normal);
-}
-
 /* --- The image --- */
 
-static uint32_t pack_normal(const double n[3])
+static bool build_scene(struct trace_scene *scene)
 {
-    uint32_t word = 0;
-    for (int i = 0; i < 3; i++)
-        word |= (uint32_t)(uint8_t)(int8_t)lround(n[i] * 127.0) << (8 * i);
-    return word;
-}
-
-/* Texels of one image axis that a ball around the thing can cover, in [0,size): slopes within the
- * angle under which it is seen. */
-static void covered(const struct thing *t, int axis, double slope0, double step, uint32_t size,
-                    uint32_t *begin, uint32_t *end)
-{
-    double radius =
-        t->radius > 0
-            ? t->radius
-            : sqrt(t->half[0] * t->half[0] + t->half[1] * t->half[1] + t->half[2] * t->half[2]);
-    double a = t->center[axis], z = t->center[2], distance = hypot(a, z);
-    *begin = 0;
-    *end = size;
-    if (distance <= radius * 1.001)
-        return;
-    double middle = atan2(a, z), spread = asin(radius / distance);
-    double low = middle - spread, high = middle + spread;
-    if (low <= -1.5 || high >= 1.5) /* nearly 90 degrees: the tangent would turn over */
-        return;
-    double first = (tan(low) - slope0) / step, last = (tan(high) - slope0) / step;
-    double from = floor(fmin(first, last)) - 1, to = ceil(fmax(first, last)) + 2;
-    *begin = from > 0 ? (uint32_t)fmin(from, size) : 0;
-    *end = to > 0 ? (uint32_t)fmin(to, size) : 0;
+    trace_add(scene, trace_box(room_center, room_half));
+    for (size_t i = 0; i < FURNITURE; i++) {
+        const struct thing *t = &furniture[i];
+        struct trace_primitive p =
+            t->radius > 0 ? trace_sphere(t->center, t->radius) : trace_box(t->center, t->half);
+        p.axes = mat3_turned(t->yaw, 0, 0);
+        trace_add(scene, p);
+    }
+    return trace_build(scene);
 }
 
 struct drawing {
     struct room *room;
-    double slope[2], step[2]; /* of the first texel's centre, and from texel to texel: x, y */
+    const struct trace_scene *scene;
+    struct vec3 first;       /* the way from the eye through the first texel's centre */
+    struct vec3 right, down; /* from texel to texel */
 };
 
-static void ray_at(const struct drawing *d, uint32_t x, uint32_t y, double ray[3])
+static uint32_t pack_normal(struct vec3 n)
 {
-    ray[0] = d->slope[0] + d->step[0] * x;
-    ray[1] = d->slope[1] + d->step[1] * y;
-    ray[2] = 1;
+    const double components[] = {n.x, n.y, n.z};
+    uint32_t word = 0;
+    for (int i = 0; i < 3; i++)
+        word |= (uint32_t)(uint8_t)(int8_t)lround(components[i] * 127.0) << (8 * i);
+    return word;
 }
 
-static void keep(const struct drawing *d, uint32_t x, uint32_t y, const struct hit *hit)
+/* A job of parallel_run. */
+static void draw_row(void *data, uint32_t y)
 {
-    size_t i = (size_t)y * d->room->width + x;
-    d->room->z[i] = (float)hit->z;
-    d->room->normals[i] = pack_normal(hit->normal);
-}
-
-static void draw_thing(const struct drawing *d, const struct thing *t)
-{
-    uint32_t x0, x1, y0, y1;
-    const bool is_sphere = t->radius > 0;
-    const double cosine = cos(t->yaw), sine = sin(t->yaw);
-    covered(t, 0, d->slope[0], d->step[0], d->room->width, &x0, &x1);
-    covered(t, 1, d->slope[1], d->step[1], d->room->height, &y0, &y1);
-    for (uint32_t y = y0; y < y1; y++) {
-        for (uint32_t x = x0; x < x1; x++) {
-            double ray[3], before = (double)d->room->z[(size_t)y * d->room->width + x];
-            struct hit hit = {.z = before};
-            ray_at(d, x, y, ray);
-            if (is_sphere)
-                hit_sphere(t, ray, &hit);
-            else
-                hit_box(t, cosine, sine, ray, &hit);
-            if (hit.z < before)
-                keep(d, x, y, &hit);
-        }
+    const struct drawing *d = data;
+    const struct vec3 row = mad(d->down, y, d->first), eye = {0, 0, 0};
+    for (uint32_t x = 0; x < d->room->width; x++) {
+        const size_t texel = (size_t)y * d->room->width + x;
+        const struct vec3 ray = normalize(mad(d->right, x, row));
+        struct trace_hit hit;
+        if (!trace_closest(d->scene, eye, ray, 0, INFINITY, &hit))
+            continue; /* the walls are all around */
+        d->room->z[texel] = (float)(hit.t * ray.z);
+        d->room->normals[texel] = pack_normal(trace_facing(&hit, ray));
     }
 }
 
@@ -230,36 +141,38 @@ static void draw_sky(struct room *room, unsigned percent)
     }
 }
 
+static bool draw(struct room *room)
+{
+    const double half_height = HALF_WIDTH * room->height / room->width;
+    const double step_x = 2 * HALF_WIDTH / room->width, step_y = 2 * half_height / room->height;
+    struct trace_scene scene = {0};
+    struct drawing drawing = {
+        .room = room,
+        .scene = &scene,
+        .first = {0.5 * step_x - HALF_WIDTH, half_height - 0.5 * step_y, 1},
+        .right = {step_x, 0, 0},
+        .down = {0, -step_y, 0},
+    };
+    bool ok = build_scene(&scene);
+    if (ok)
+        parallel_run(NULL, room->height, draw_row, &drawing);
+    trace_scene_free(&scene);
+    return ok;
+}
+
 bool room_create(uint32_t width, uint32_t height, unsigned sky, struct room *room,
                  struct tool_error *err)
 {
     size_t texels, bytes;
-    const double half_height = HALF_WIDTH * height / width;
-    const struct drawing drawing = {
-        .room = room,
-        .step = {2 * HALF_WIDTH / width, -2 * half_height / height},
-        .slope = {HALF_WIDTH / width - HALF_WIDTH, half_height - half_height / height},
-    };
     *room = (struct room){.width = width, .height = height};
     if (size_multiply(width, height, &texels) && size_multiply(texels, 4, &bytes)) {
-        room->z = malloc(bytes);
-        room->normals = malloc(bytes);
+        room->z = calloc(1, bytes);
+        room->normals = calloc(1, bytes);
     }
-    if (!room->z || !room->normals) {
+    if (!room->z || !room->normals || !draw(room)) {
         room_free(room);
         return fail(err, EXIT_MEMORY, "out of memory for a room of %u x %u", width, height);
     }
-    for (uint32_t y = 0; y < height; y++) {
-        for (uint32_t x = 0; x < width; x++) {
-            struct hit hit;
-            double ray[3];
-            ray_at(&drawing, x, y, ray);
-            hit_walls(ray, &hit);
-            keep(&drawing, x, y, &hit);
-        }
-    }
-    for (size_t i = 0; i < FURNITURE; i++)
-        draw_thing(&drawing, &furniture[i]);
     draw_sky(room, sky);
     return true;
 }

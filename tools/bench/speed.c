@@ -1,25 +1,31 @@
 /* SPDX-License-Identifier: MIT
  *
  * vkao-bench speed: what each stage costs, in runs that take turns, beside any other program. */
-#include "speed.h"
+#include "commands.h"
 
 #include "arguments.h"
-#include "commands.h"
+#include "engine.h"
 #include "json.h"
+#include "memory.h"
 #include "report.h"
+#include "rival.h"
+#include "room.h"
+#include "scaling.h"
+#include "start.h"
+#include "timings.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { THREADS_AS_THEY_ARE = 1 << 16 };
+enum { THREADS_AS_THEY_ARE = 1 << 16, MAX_SIZES = 16 };
 
 struct speed_options {
-    const char *size, *configs, *preset, *method, *vs, *json, *plot, *dump, *device;
+    const char *size, *configs, *preset, *method, *vs, *json, *dump, *device;
     unsigned slices, steps, samples; /* 0 = the method's default */
     unsigned sky, threads, runs;
     float radius;
-    bool composite, bent_normals, half_view_z, start, scaling, memory, text, markdown, quiet, help;
+    bool composite, bent_normals, start, scaling, memory, text, markdown, quiet, help;
 };
 
 #define AT(member) offsetof(struct speed_options, member)
@@ -36,10 +42,9 @@ static const struct argument rows[] = {
     {"method", "LIST", "sphere, hemisphere, hbao, gtao, vbao, raymarch; with the next three",
      ARGUMENT_TEXT, AT(method), 0, 0, NULL},
     {"slices", "N", "of hbao, gtao and vbao (1)", ARGUMENT_COUNT, AT(slices), 1, 64, NULL},
-    {"steps", "N", "of hbao, gtao, vbao and raymarch (8)", ARGUMENT_COUNT, AT(steps), 1, 256,
-     NULL},
+    {"steps", "N", "of hbao, gtao, vbao and raymarch (8)", ARGUMENT_COUNT, AT(steps), 1, 256, NULL},
     {"samples", "N", "of sphere and hemisphere, rays of raymarch (16)", ARGUMENT_COUNT, AT(samples),
-     1, 64, NULL},
+     1, 1024, NULL},
     {"radius", "R", "scene units; the room is 10 deep (0.5)", ARGUMENT_NUMBER, AT(radius), 0, 0,
      NULL},
     {"sky", "PERCENT", "rows that show sky, from the top (0)", ARGUMENT_COUNT, AT(sky), 0, 100,
@@ -48,8 +53,6 @@ static const struct argument rows[] = {
      NULL},
     {"bent-normals", NULL, "also write bent normals: gtao, vbao, raymarch", ARGUMENT_FLAG,
      AT(bent_normals), 0, 0, NULL},
-    {"half-view-z", NULL, "keep view z in 16-bit floats", ARGUMENT_FLAG, AT(half_view_z), 0, 0,
-     NULL},
     {"threads", "N", "of Mesa lavapipe (LP_NUM_THREADS), for --vs too; others ignore it",
      ARGUMENT_COUNT, AT(threads), 0, 256, NULL},
     {"runs", "N", "of each setting, taking turns, after one that does not count (9)",
@@ -59,7 +62,7 @@ static const struct argument rows[] = {
      "prints, or the list that --json writes",
      ARGUMENT_TEXT, AT(vs), 0, 0, NULL},
     {"start", NULL,
-     "instead: device, vkao_context_create and the first two frames of a process, with an empty "
+     "instead: device, context and effect, and the first two frames of a process, with an empty "
      "(cold) and a filled (warm) shader cache on disk",
      ARGUMENT_FLAG, AT(start), 0, 0, NULL},
     {"scaling", NULL,
@@ -72,9 +75,8 @@ static const struct argument rows[] = {
     {"text", NULL, "print tables (default, unless another output goes there)", ARGUMENT_FLAG,
      AT(text), 0, 0, NULL},
     {"markdown", NULL, "print Markdown tables", ARGUMENT_FLAG, AT(markdown), 0, 0, NULL},
-    {"json", "FILE", "write all medians; - = standard output", ARGUMENT_TEXT, AT(json), 0, 0, NULL},
-    {"plot", "FILE.png", "draw the stages of every setting, or the growth", ARGUMENT_TEXT, AT(plot),
-     0, 0, NULL},
+    {"json", "FILE", "write all medians, as tools/bench/plot draws them; - = standard output",
+     ARGUMENT_TEXT, AT(json), 0, 0, NULL},
     {"device", "NAME", "auto, cpu, a number from 'vkao devices' or part of a name", ARGUMENT_TEXT,
      AT(device), 0, 0, NULL},
     {"quiet", NULL, "no progress", ARGUMENT_FLAG, AT(quiet), 0, 0, NULL},
@@ -91,10 +93,10 @@ struct bench {
     struct config_list configs;
     VkExtent2D sizes[MAX_SIZES];
     size_t size_count;
-    struct speed_device device;
-    struct speed speed;
-    struct speed_vs vs;
-    struct speed_start starts[MAX_CONFIGS];
+    struct engine engine;
+    struct timings timings;
+    struct rivals rivals;
+    struct start starts[MAX_CONFIGS];
 };
 
 /* --- What to measure --- */
@@ -142,7 +144,7 @@ static bool choose_sizes(struct bench *b, const char *names, struct tool_error *
 /* --method and its numbers, in the names of settings. */
 static bool name_methods(const struct speed_options *o, struct text *names, struct tool_error *err)
 {
-    const vkao_ssao_params params = vkao_ssao_params_default();
+    const vkao_effect_info params = vkao_effect_info_default();
     const unsigned slices = o->slices ? o->slices : params.slice_count;
     const unsigned steps = o->steps ? o->steps : params.step_count;
     const unsigned samples = o->samples ? o->samples : params.sample_count;
@@ -150,13 +152,11 @@ static bool name_methods(const struct speed_options *o, struct text *names, stru
     if (!rest && (o->slices || o->steps || o->samples))
         return fail(err, EXIT_USAGE, "--slices, --steps and --samples belong to --method");
     while (rest && *rest) {
-        int length = (int)strcspn(rest, ",");
-        bool has_samples = strncmp(rest, "sphere", 6) == 0 || strncmp(rest, "hemisphere", 10) == 0;
-        bool is_raymarch = strncmp(rest, "raymarch", 8) == 0;
-        if (has_samples)
-            text_add(names, ",%.*s-%u", length, rest, samples);
-        else
-            text_add(names, ",%.*s-%ux%u", length, rest, is_raymarch ? samples : slices, steps);
+        const size_t length = strcspn(rest, ",");
+        vkao_ssao_method method;
+        if (!config_find_method(rest, length, &method))
+            return fail(err, EXIT_USAGE, "--method: no method '%.*s'", (int)length, rest);
+        text_add(names, ",%s", config_of(method, samples, slices, steps).name);
         rest += length + (rest[length] == ',');
     }
     return true;
@@ -180,8 +180,7 @@ static bool choose_configs(struct bench *b, struct tool_error *err)
     text_free(&names);
     for (size_t i = 0; ok && o->bent_normals && i < b->configs.count; i++) {
         const struct config *c = &b->configs.rows[i];
-        if (c->method != VKAO_SSAO_GTAO && c->method != VKAO_SSAO_VBAO &&
-            c->method != VKAO_SSAO_RAYMARCH)
+        if (!config_reads(c->method, "bent_normals"))
             ok = fail(err, EXIT_USAGE, "--bent-normals: %s has none", c->name);
     }
     return ok;
@@ -192,7 +191,7 @@ static bool choose_configs(struct bench *b, struct tool_error *err)
 static bool add_rows(struct bench *b, VkExtent2D size, struct tool_error *err)
 {
     for (size_t c = 0; c < b->configs.count; c++)
-        if (!speed_add_row(&b->speed, &b->configs.rows[c], size, b->options->radius, err))
+        if (!timings_add(&b->timings, &b->configs.rows[c], size, b->options->radius, err))
             return false;
     return true;
 }
@@ -200,20 +199,20 @@ static bool add_rows(struct bench *b, VkExtent2D size, struct tool_error *err)
 static bool measure_size(struct bench *b, VkExtent2D size, struct tool_error *err)
 {
     const struct speed_options *o = b->options;
-    struct speed_images images = {0};
+    struct engine_images images = {0};
     struct room room = {0};
-    size_t first = b->speed.count;
+    size_t first = b->timings.count;
     report_note(&b->report, "%u x %u: %zu setting%s, %u run%s", size.width, size.height,
                 b->configs.count, b->configs.count == 1 ? "" : "s", o->runs,
                 o->runs == 1 ? "" : "s");
-    bool ok = speed_size_check(&b->device, size, err) &&
+    bool ok = engine_check_size(&b->engine, size, err) &&
               room_create(size.width, size.height, o->sky, &room, err) &&
               (!o->dump || room_dump(&room, o->dump, err)) &&
-              speed_images_create(&b->device, &room, &images, err);
+              engine_images_create(&b->engine, &room, &images, err);
     room_free(&room);
     ok = ok && add_rows(b, size, err) &&
-         speed_measure(&b->device, &b->speed, first, &images, &b->vs, err);
-    speed_images_destroy(&b->device, &images);
+         timings_measure(&b->timings, first, &b->engine, &images, &b->rivals, err);
+    engine_images_destroy(&b->engine, &images);
     return ok;
 }
 
@@ -222,42 +221,55 @@ static bool measure_sizes(struct bench *b, struct tool_error *err)
 {
     for (size_t i = 0; i < b->size_count; i++) {
         struct tool_error once = {0};
-        size_t before = b->speed.count;
+        size_t before = b->timings.count;
         if (measure_size(b, b->sizes[i], &once))
             continue;
         bool is_limit = once.code == EXIT_MEMORY || once.code == EXIT_DEVICE;
-        if (!is_limit || b->size_count == 1 || b->speed.count != before) {
+        if (!is_limit || b->size_count == 1 || b->timings.count != before) {
             *err = once;
             return false;
         }
         report_note(&b->report, "%u x %u left out: %s", b->sizes[i].width, b->sizes[i].height,
                     once.message);
     }
-    if (b->speed.count == 0)
+    if (b->timings.count == 0)
         return fail(err, EXIT_DEVICE, "no size fits the device");
     return true;
+}
+
+static void name_device(struct bench *b, const char *name)
+{
+    const unsigned threads = b->options->threads;
+    char *text = b->timings.device;
+    const size_t size = sizeof b->timings.device;
+    if (threads == THREADS_AS_THEY_ARE)
+        snprintf(text, size, "%s", name);
+    else
+        snprintf(text, size, "%s, LP_NUM_THREADS %u", name, threads);
 }
 
 static bool open_device(struct bench *b, struct tool_error *err)
 {
     const struct speed_options *o = b->options;
-    const struct speed_features features = {
-        .composite = o->composite, .bent_normals = o->bent_normals, .half_view_z = o->half_view_z};
-    if (!speed_device_create(o->device, features, &b->device, err) ||
-        !speed_device_compile(&b->device, b->configs.rows, b->configs.count, err))
+    const struct engine_features features = {.composite = o->composite,
+                                             .bent_normals = o->bent_normals};
+    if (!engine_create(o->device, features, &b->engine, err) ||
+        !engine_compile(&b->engine, b->configs.rows, b->configs.count, err))
         return false;
-    snprintf(b->speed.device, sizeof b->speed.device, "%s", b->device.gpu.properties.deviceName);
+    name_device(b, b->engine.gpu.properties.deviceName);
     return true;
 }
 
 static bool measure_starts(struct bench *b, struct tool_error *err)
 {
     const struct speed_options *o = b->options;
+    char device[256];
     for (size_t c = 0; c < b->configs.count; c++) {
         report_note(&b->report, "%s: %u starts", b->configs.rows[c].name, 2 * o->runs);
-        if (!speed_start_measure(o->device, &b->configs.rows[c], b->sizes[0], o->runs,
-                                 b->speed.device, &b->starts[c], err))
+        if (!start_measure(o->device, &b->configs.rows[c], b->sizes[0], o->runs, device,
+                           &b->starts[c], err))
             return false;
+        name_device(b, device);
     }
     return true;
 }
@@ -265,17 +277,14 @@ static bool measure_starts(struct bench *b, struct tool_error *err)
 static bool measure(struct bench *b, struct tool_error *err)
 {
     const struct speed_options *o = b->options;
-    bool ok = true;
     if (o->start)
         return measure_starts(b, err);
     if (!open_device(b, err))
         return false;
     if (o->scaling)
-        ok = speed_scaling(&b->device, &b->configs.rows[0], b->sizes[0], o->sky, &b->speed, err);
-    else
-        ok = measure_sizes(b, err);
-    speed_finish(&b->speed);
-    return ok;
+        return scaling_measure(&b->engine, &b->configs.rows[0], b->sizes[0], o->sky, &b->timings,
+                               err);
+    return measure_sizes(b, err);
 }
 
 /* --- Command --- */
@@ -289,8 +298,6 @@ static bool check(const struct bench *b, struct tool_error *err)
     if (instead && (o->vs || o->dump))
         return fail(err, EXIT_USAGE,
                     "--vs and --dump do not go with --start, --scaling or --memory");
-    if (o->plot && (o->start || o->memory))
-        return fail(err, EXIT_USAGE, "--plot does not go with --start or --memory");
     if (o->json && o->memory)
         return fail(err, EXIT_USAGE, "--json does not go with --memory");
     if (o->vs && b->size_count > 1)
@@ -315,11 +322,10 @@ static bool prepare(struct bench *b, struct tool_error *err)
         char number[16];
         snprintf(number, sizeof number, "%u", o->threads);
         setenv("LP_NUM_THREADS", number, 1); /* lavapipe reads it when it starts */
-        snprintf(b->speed.threads, sizeof b->speed.threads, ", LP_NUM_THREADS %s", number);
     }
-    b->speed.runs = o->runs;
-    b->speed.radius = o->radius;
-    b->vs.command = o->vs;
+    b->timings.runs = o->runs;
+    b->timings.radius = o->radius;
+    b->rivals.command = o->vs;
     return true;
 }
 
@@ -328,15 +334,16 @@ static bool add_report(const struct bench *b, bool markdown, struct text *text,
 {
     const struct speed_options *o = b->options;
     if (o->memory)
-        return speed_memory(o->device, b->sizes, b->size_count, markdown, text, err);
+        return memory_report(o->device, b->sizes, b->size_count, markdown, text, err);
     if (o->start)
-        speed_start_report(b->starts, b->configs.count, &b->speed, b->sizes[0], markdown, text);
+        start_report(b->starts, b->configs.count, b->timings.device, b->sizes[0], o->runs, markdown,
+                     text);
     else if (o->scaling)
-        speed_scaling_report(&b->speed, markdown, text);
+        scaling_report(&b->timings, markdown, text);
     else if (markdown)
-        speed_markdown(&b->speed, text);
+        timings_markdown(&b->timings, text);
     else
-        speed_text(&b->speed, &b->vs, text);
+        timings_text(&b->timings, &b->rivals, text);
     return true;
 }
 
@@ -358,11 +365,9 @@ static bool put_out(const struct bench *b, struct tool_error *err)
     const unsigned begun = json_begin();
     if (ok && o->json)
         ok = json_write(o->json,
-                        o->start ? speed_start_json(b->starts, b->configs.count, o->runs)
-                                 : speed_json(&b->speed, &b->vs),
+                        o->start ? start_json(b->starts, b->configs.count, o->runs)
+                                 : timings_json(&b->timings, &b->rivals),
                         begun, err);
-    if (ok && o->plot)
-        ok = (o->scaling ? speed_scaling_plot : speed_plot)(&b->speed, o->plot, err);
     return ok;
 }
 
@@ -400,8 +405,8 @@ int command_speed(int argc, char **argv)
         fail_hint(&err, "'vkao-bench speed --help' explains the options");
     if (!ok)
         report_error(&err);
-    speed_device_destroy(&b.device);
-    speed_vs_free(&b.vs);
-    speed_free(&b.speed);
+    engine_destroy(&b.engine);
+    rivals_free(&b.rivals);
+    timings_free(&b.timings);
     return ok ? EXIT_OK : err.code;
 }

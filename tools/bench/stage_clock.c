@@ -10,9 +10,6 @@ static const char *const names[STAGES] = {
     [STAGE_UPSAMPLE] = "upsample", [STAGE_COMPOSITE] = "composite", [STAGE_TOTAL] = "total",
 };
 
-/* Label functions get a command buffer and nothing else, so the clock that runs must be known. */
-static struct stage_clock *running;
-
 const char *stage_name(enum stage stage)
 {
     return names[stage];
@@ -28,72 +25,16 @@ static void mark(struct stage_clock *clock, enum stage after)
     clock->marks++;
 }
 
-/* What no label names belongs to the total alone. */
-static enum stage current(const struct stage_clock *clock)
+void stage_clock_mark(void *user_data, VkCommandBuffer cmd, const char *name, VkBool32 begins)
 {
-    int depth = clock->depth < STAGE_CLOCK_DEPTH ? clock->depth : STAGE_CLOCK_DEPTH;
-    return depth > 0 ? clock->labels[depth - 1] : STAGE_TOTAL;
-}
-
-static enum stage stage_of(const struct stage_clock *clock, const char *label)
-{
-    static const char prefix[] = "vkao ";
-    const size_t length = sizeof prefix - 1;
-    for (int s = 0; s < STAGE_TOTAL; s++)
-        if (strncmp(label, prefix, length) == 0 && strcmp(label + length, names[s]) == 0)
-            return (enum stage)s;
-    return current(clock);
-}
-
-static VKAPI_ATTR void VKAPI_CALL begin_label(VkCommandBuffer cmd,
-                                              const VkDebugUtilsLabelEXT *label)
-{
-    struct stage_clock *clock = running;
-    if (!clock || clock->cmd != cmd)
+    struct stage_clock *clock = user_data;
+    enum stage stage = STAGE_TOTAL;
+    if (!clock->pool || clock->cmd != cmd)
         return;
-    enum stage stage = stage_of(clock, label->pLabelName);
-    if (clock->depth < STAGE_CLOCK_DEPTH)
-        clock->labels[clock->depth] = stage;
-    clock->depth++;
+    for (int s = 0; begins && s < STAGE_TOTAL; s++)
+        if (strcmp(name, names[s]) == 0)
+            stage = (enum stage)s;
     mark(clock, stage);
-}
-
-static VKAPI_ATTR void VKAPI_CALL end_label(VkCommandBuffer cmd)
-{
-    struct stage_clock *clock = running;
-    if (!clock || clock->cmd != cmd || clock->depth == 0)
-        return;
-    clock->depth--;
-    mark(clock, current(clock));
-}
-
-static PFN_vkVoidFunction label_function(const char *name)
-{
-    if (strcmp(name, "vkCmdBeginDebugUtilsLabelEXT") == 0)
-        return (PFN_vkVoidFunction)begin_label;
-    if (strcmp(name, "vkCmdEndDebugUtilsLabelEXT") == 0)
-        return (PFN_vkVoidFunction)end_label;
-    return NULL;
-}
-
-static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instance_function(VkInstance instance,
-                                                                  const char *name)
-{
-    PFN_vkVoidFunction own = label_function(name);
-    return own ? own : vkGetInstanceProcAddr(instance, name);
-}
-
-static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL device_function(VkDevice device, const char *name)
-{
-    PFN_vkVoidFunction own = label_function(name);
-    return own ? own : vkGetDeviceProcAddr(device, name);
-}
-
-void stage_clock_hook(vkao_context_info *info)
-{
-    info->debug_labels = VK_TRUE;
-    info->get_instance_proc_addr = instance_function;
-    info->get_device_proc_addr = device_function;
 }
 
 bool stage_clock_create(struct gpu *gpu, struct stage_clock *clock, struct tool_error *err)
@@ -126,17 +67,15 @@ void stage_clock_start(struct stage_clock *clock, VkCommandBuffer cmd)
     if (!clock->pool)
         return;
     clock->cmd = cmd;
-    clock->marks = clock->depth = 0;
+    clock->marks = 0;
     vkCmdResetQueryPool(cmd, clock->pool, 0, STAGE_CLOCK_MARKS);
     mark(clock, STAGE_TOTAL);
-    running = clock;
 }
 
 void stage_clock_stop(struct stage_clock *clock)
 {
     if (!clock->pool)
         return;
-    running = NULL;
     mark(clock, STAGE_TOTAL);
     clock->cmd = VK_NULL_HANDLE;
 }
@@ -155,7 +94,7 @@ bool stage_clock_read(const struct stage_clock *clock, double wall_ms, double ms
     if (!clock->pool)
         return true;
     if (clock->marks > STAGE_CLOCK_MARKS)
-        return fail(err, EXIT_BUG, "%d labels in one recording", clock->marks);
+        return fail(err, EXIT_BUG, "%d marks in one recording", clock->marks);
     VkResult result = vkGetQueryPoolResults(gpu->device, clock->pool, 0, (uint32_t)clock->marks,
                                             sizeof ticks, ticks, sizeof ticks[0],
                                             VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);

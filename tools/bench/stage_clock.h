@@ -1,9 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Times the stages of a recording from outside of the library: it labels them for debuggers, and a
- * context that was made with stage_clock_hook() calls this clock's label functions instead, which
- * write timestamps where a label begins or ends. A time belongs to the innermost label that the
- * clock knows. One clock runs at a time. */
+ * Times the stages of a recording: a context calls stage_clock_mark where a stage begins or ends,
+ * and a timestamp is written there. */
 #ifndef VKAO_BENCH_STAGE_CLOCK_H_
 #define VKAO_BENCH_STAGE_CLOCK_H_
 
@@ -25,20 +23,18 @@ enum stage {
 /* "prepare" ... "total" */
 const char *stage_name(enum stage stage);
 
-enum { STAGE_CLOCK_MARKS = 64, STAGE_CLOCK_DEPTH = 8 };
+enum { STAGE_CLOCK_MARKS = 64 };
 
 struct stage_clock {
     struct gpu *gpu;
-    VkQueryPool pool;                     /* VK_NULL_HANDLE: the queue has no timestamps */
-    VkCommandBuffer cmd;                  /* while it runs */
-    int marks;                            /* written so far */
-    enum stage after[STAGE_CLOCK_MARKS];  /* whose time begins at that mark */
-    enum stage labels[STAGE_CLOCK_DEPTH]; /* that are open */
-    int depth;
+    VkQueryPool pool;                    /* VK_NULL_HANDLE: the queue has no timestamps */
+    VkCommandBuffer cmd;                 /* while it runs */
+    int marks;                           /* written so far */
+    enum stage after[STAGE_CLOCK_MARKS]; /* whose time begins at that mark */
 };
 
-/* Makes the context of this info call the clock. The device needs no debug extension for it. */
-void stage_clock_hook(vkao_context_info *info);
+/* vkao_context_info.mark, with the clock as mark_user_data. */
+void stage_clock_mark(void *user_data, VkCommandBuffer cmd, const char *name, VkBool32 begins);
 
 bool stage_clock_create(struct gpu *gpu, struct stage_clock *clock, struct tool_error *err);
 void stage_clock_destroy(struct stage_clock *clock);

@@ -1,7 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "ao.h"
 
+#include "parallel.h"
+
 #include <stdlib.h>
+#include <string.h>
 #include <time.h>
 #include <vulkan/vulkan.h>
 
@@ -18,15 +21,14 @@ enum job_image {
 
 struct ao_session {
     struct gpu *gpu;
-    uint32_t method_mask; /* 0 = ctx is made for the job at hand */
     vkao_context *ctx;
-    vkao_stage_flags stages; /* that ctx has for the job at hand */
-    vkao_scratch_layout layout;
+    vkao_effect *effect;
+    vkao_effect_info compiled; /* what it was made for */
     vkao_frame *frame;
     struct gpu_image
         images[IMAGE_COUNT]; /* of the last job; kept while the next one has the same shape */
     VkExtent2D extent;
-    bool has_normals, has_color, half_resolution, has_bent;
+    bool has_normals, has_color;
     VkQueryPool timestamps; /* two, around the stages; VK_NULL_HANDLE if the queue has none */
 };
 
@@ -46,7 +48,7 @@ static bool create_timestamps(struct ao_session *session, struct tool_error *err
     return gpu_ok(err, "vkCreateQueryPool", result);
 }
 
-struct ao_session *ao_session_create(struct gpu *gpu, uint32_t method_mask, struct tool_error *err)
+struct ao_session *ao_session_create(struct gpu *gpu, struct tool_error *err)
 {
     struct ao_session *session = calloc(1, sizeof *session);
     if (!session) {
@@ -54,10 +56,8 @@ struct ao_session *ao_session_create(struct gpu *gpu, uint32_t method_mask, stru
         return NULL;
     }
     session->gpu = gpu;
-    session->method_mask = method_mask;
-    if (method_mask)
-        session->ctx = gpu_context(gpu, method_mask, err);
-    if ((session->ctx || !method_mask) && create_timestamps(session, err))
+    session->ctx = gpu_context(gpu, err);
+    if (session->ctx && create_timestamps(session, err))
         return session;
     ao_session_destroy(session);
     return NULL;
@@ -76,6 +76,7 @@ void ao_session_destroy(struct ao_session *session)
     if (!session)
         return;
     drop_frame(session);
+    vkao_effect_destroy(session->effect);
     vkao_context_destroy(session->ctx);
     vkDestroyQueryPool(session->gpu->device, session->timestamps, NULL);
     free(session);
@@ -83,9 +84,13 @@ void ao_session_destroy(struct ao_session *session)
 
 static const VkFormat ao_format = VK_FORMAT_R32_SFLOAT;
 
-static vkao_stage_flags job_stages(const struct ao_job *job)
+vkao_effect_info ao_job_effect(const struct ao_job *job)
 {
-    return VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (job->color ? VKAO_STAGE_COMPOSITE : 0u);
+    vkao_effect_info effect = job->setting.effect;
+    effect.stages = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (job->color ? VKAO_STAGE_COMPOSITE : 0u);
+    effect.ao_format = ao_format;
+    ao_view_describe(&job->view, &effect);
+    return effect;
 }
 
 static bool create_frame(struct ao_session *session, const struct ao_job *job,
@@ -104,7 +109,7 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
         [IMAGE_AO] = {true, ao_format, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
         [IMAGE_OUTPUT] = {job->color != NULL, VK_FORMAT_R32G32B32A32_SFLOAT,
                           VK_IMAGE_USAGE_STORAGE_BIT},
-        [IMAGE_BENT] = {job->bent_normals, VK_FORMAT_R32G32B32A32_SFLOAT,
+        [IMAGE_BENT] = {job->setting.effect.bent_normals, VK_FORMAT_R32G32B32A32_SFLOAT,
                         VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
     };
     VkExtent2D extent = {job->width, job->height};
@@ -117,22 +122,20 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
     vkao_images images = vkao_images_default();
     images.depth = gpu_image_slot(&session->images[IMAGE_DEPTH]);
     images.ao = gpu_image_slot(&session->images[IMAGE_AO]);
-    images.ao_image = session->images[IMAGE_AO].image;
+    images.ao.image = session->images[IMAGE_AO].image;
     if (job->normals)
         images.normals = gpu_image_slot(&session->images[IMAGE_NORMALS]);
     if (job->color) {
         images.color = gpu_image_slot(&session->images[IMAGE_COLOR]);
         images.output = gpu_image_slot(&session->images[IMAGE_OUTPUT]);
     }
-    if (job->bent_normals)
+    if (job->setting.effect.bent_normals)
         images.bent_normals = gpu_image_slot(&session->images[IMAGE_BENT]);
-    vkao_result result = vkao_frame_create(session->ctx,
+    vkao_result result = vkao_frame_create(session->effect,
                                            &(vkao_frame_info){
                                                .struct_size = sizeof(vkao_frame_info),
-                                               .stages = job_stages(job),
                                                .extent = extent,
                                                .images = &images,
-                                               .half_resolution = job->half_resolution,
                                            },
                                            &session->frame);
     if (result != VKAO_SUCCESS)
@@ -140,51 +143,23 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
     session->extent = extent;
     session->has_normals = job->normals != NULL;
     session->has_color = job->color != NULL;
-    session->half_resolution = job->half_resolution;
-    session->has_bent = job->bent_normals;
     return true;
 }
 
-/* Buffers of CPUs have limits that images have not: columns and rows, with more than their
- * padding. */
-static vkao_scratch_layout job_layout(const struct ao_session *session, const struct ao_job *job)
+/* An effect for this job, if that of the last one does not fit. */
+static bool fit_effect(struct ao_session *session, const struct ao_job *job, struct tool_error *err)
 {
-    const uint32_t shift = job->half_resolution ? 1 : 0;
-    const uint64_t columns = (job->width >> shift) + 64, rows = (job->height >> shift) + 8;
-    return columns * rows * 4 > session->gpu->properties.limits.maxStorageBufferRange
-               ? VKAO_SCRATCH_IMAGES
-               : VKAO_SCRATCH_AUTO;
-}
-
-/* Pipelines for this job alone, if those of the last one do not fit: compiled once, loops unrolled. */
-static bool fit_context(struct ao_session *session, const struct ao_job *job,
-                        struct tool_error *err)
-{
-    const vkao_variant variant = {
-        .struct_size = sizeof variant,
-        .half_resolution = job->half_resolution,
-        .bent_normals = job->bent_normals,
-        .staged_ao = ao_format,
-        .view = &job->view,
-        .ssao = &job->ssao,
-        .blur = &job->blur,
-    };
-    const vkao_stage_flags stages = job_stages(job);
-    const vkao_scratch_layout layout = job_layout(session, job);
-    if (session->method_mask ||
-        (session->ctx && !(stages & ~session->stages) && layout == session->layout &&
-         vkao_context_has_variant(session->ctx, &variant)))
+    vkao_effect_info info = ao_job_effect(job);
+    /* Messages of validation are counted in one thread. */
+    info.parallel = session->gpu->messenger ? NULL : parallel_run;
+    if (session->effect && memcmp(&session->compiled, &info, sizeof info) == 0)
         return true;
     drop_frame(session);
-    vkao_context_destroy(session->ctx);
-    vkao_context_info info = gpu_context_info(session->gpu, 1u << job->ssao.method);
-    info.variants = &variant;
-    info.variant_count = 1;
-    info.variants_only = VK_TRUE;
-    info.stage_mask = session->stages = stages;
-    info.scratch_layout = session->layout = layout;
-    session->ctx = gpu_context_create(&info, err);
-    return session->ctx != NULL;
+    vkao_effect_destroy(session->effect);
+    session->effect = NULL;
+    session->compiled = info;
+    vkao_result result = vkao_effect_create(session->ctx, &info, &session->effect);
+    return result == VKAO_SUCCESS || gpu_library_failed(err, "vkao_effect_create", result);
 }
 
 uint64_t ao_job_texel_bytes(bool has_normals, bool has_color, bool bent_normals)
@@ -240,15 +215,15 @@ static bool record_and_run(struct ao_session *session, const struct ao_job *job,
         vkCmdResetQueryPool(cmd, session->timestamps, 0, 2);
         vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, session->timestamps, 0);
     }
-    vkao_result result = vkao_cmd_all(session->frame, cmd, &job->view, &job->ssao, &job->blur,
-                                      job->color ? &job->composite : NULL);
+    const vkao_view view = ao_library_view(&job->view);
+    vkao_result result = vkao_cmd_record(session->frame, cmd, &view, &job->setting.params);
     if (session->timestamps)
         vkCmdWriteTimestamp(cmd, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, session->timestamps, 1);
     double start = now_ms();
     bool submitted = gpu_submit(session->gpu, cmd, err);
     *gpu_ms = now_ms() - start;
     if (result != VKAO_SUCCESS)
-        return gpu_library_failed(err, "vkao_cmd_all", result);
+        return gpu_library_failed(err, "vkao_cmd_record", result);
     return submitted && (!session->timestamps || read_timestamps(session, gpu_ms, err));
 }
 
@@ -274,13 +249,12 @@ static bool run(struct ao_session *session, const struct ao_job *job, struct ao_
 {
     uint64_t texels = (uint64_t)job->width * job->height;
     *result = (struct ao_result){0};
-    if (!fit_context(session, job, err))
+    if (!fit_effect(session, job, err))
         return false;
-    bool same =
-        session->frame && session->extent.width == job->width &&
-        session->extent.height == job->height && session->has_normals == (job->normals != NULL) &&
-        session->has_color == (job->color != NULL) &&
-        session->half_resolution == job->half_resolution && session->has_bent == job->bent_normals;
+    bool same = session->frame && session->extent.width == job->width &&
+                session->extent.height == job->height &&
+                session->has_normals == (job->normals != NULL) &&
+                session->has_color == (job->color != NULL);
     if ((!same && !create_frame(session, job, err)) ||
         !upload(session, IMAGE_DEPTH, job->depth, texels, err) ||
         !upload(session, IMAGE_NORMALS, job->normals, texels, err) ||
@@ -290,9 +264,10 @@ static bool run(struct ao_session *session, const struct ao_job *job, struct ao_
     result->ao = download(session, IMAGE_AO, texels, err);
     if (result->ao && job->color)
         result->output = download(session, IMAGE_OUTPUT, texels, err);
-    if (result->ao && job->bent_normals)
+    if (result->ao && job->setting.effect.bent_normals)
         result->bent = download(session, IMAGE_BENT, texels, err);
-    return result->ao && (result->output || !job->color) && (result->bent || !job->bent_normals);
+    return result->ao && (result->output || !job->color) &&
+           (result->bent || !job->setting.effect.bent_normals);
 }
 
 bool ao_run(struct ao_session *session, const struct ao_job *job, struct ao_result *result,

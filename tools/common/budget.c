@@ -62,8 +62,8 @@ static uint64_t control_group_limit(void)
         if (strcmp(controllers, ":") == 0)
             limit = smaller(limit, group_limit("/sys/fs/cgroup", path, "memory.max"));
         else if (strstr(controllers, "memory"))
-            limit = smaller(limit, group_limit("/sys/fs/cgroup/memory", path,
-                                               "memory.limit_in_bytes"));
+            limit =
+                smaller(limit, group_limit("/sys/fs/cgroup/memory", path, "memory.limit_in_bytes"));
     }
     if (file)
         fclose(file);
@@ -108,8 +108,8 @@ bool budget_allows_memory(const struct budget *budget, const char *path, uint64_
     const uint64_t needed = bytes / mega + (bytes % mega > 0);
     if (bytes <= most)
         return true;
-    fail_hint(err, "--max-memory %" PRIu64 "M allows it; this machine has %" PRIu64 " MB",
-              needed, machine / mega);
+    fail_hint(err, "--max-memory %" PRIu64 "M allows it; this machine has %" PRIu64 " MB", needed,
+              machine / mega);
     return fail(err, EXIT_MEMORY,
                 "%s: %" PRIu64 "x%" PRIu64 " pixels need %" PRIu64
                 " MB of memory, more than the %" PRIu64 " MB allowed",

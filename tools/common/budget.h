@@ -14,16 +14,18 @@
 
 /* Zero members stand for the defaults. */
 struct budget {
-    /* Bytes, of host and device together. Default: three quarters of what budget_machine_memory says */
+    /* Bytes, of host and device together. Default: three quarters of what budget_machine_memory
+     * says */
     uint64_t memory;
     uint64_t pixels; /* of one image. Default: BUDGET_DEFAULT_PIXELS, 16384 x 16384 */
 };
 
-/* The bytes of memory that this process could ever have: the machine's, or those that control groups
- * and resource limits leave of them. */
+/* The bytes of memory that this process could ever have: the machine's, or those that control
+ * groups and resource limits leave of them. */
 uint64_t budget_machine_memory(void);
 
-/* Whether an image of the file at path fits. Errors: EXIT_INPUT, with --max-pixels as the remedy. */
+/* Whether an image of the file at path fits. Errors: EXIT_INPUT, with --max-pixels as the
+ * remedy. */
 bool budget_allows_pixels(const struct budget *budget, const char *path, uint64_t width,
                           uint64_t height, struct tool_error *err);
 /* Whether bytes do, for the image of that size and what is made of it. Errors: EXIT_MEMORY, with
@@ -31,8 +33,8 @@ bool budget_allows_pixels(const struct budget *budget, const char *path, uint64_
 bool budget_allows_memory(const struct budget *budget, const char *path, uint64_t width,
                           uint64_t height, uint64_t bytes, struct tool_error *err);
 
-/* "800M", "4G", "1.5g", "1073741824": K, M, G and T are powers of 1024. False if it is none, or less
- * than one byte. */
+/* "800M", "4G", "1.5g", "1073741824": K, M, G and T are powers of 1024. False if it is none, or
+ * less than one byte. */
 bool budget_parse_bytes(const char *text, uint64_t *bytes);
 
 #endif

@@ -144,7 +144,7 @@ static void project_depth(const struct camera *camera, const struct camera_plane
 }
 
 void camera_project(const struct camera *camera, const struct camera_planes *planes,
-                    const struct exr_box *display, const struct exr_box *data, vkao_view *view)
+                    const struct exr_box *display, const struct exr_box *data, struct ao_view *view)
 {
     float *m = view->projection;
     memset(m, 0, sizeof view->projection);
@@ -170,9 +170,10 @@ void camera_project(const struct camera *camera, const struct camera_planes *pla
     memcpy(view->normal_to_view, identity, sizeof identity);
 }
 
-bool camera_can_project(const vkao_view *view)
+bool camera_can_project(const struct ao_view *view)
 {
-    /* A tenth of what vkao.h allows a texel to span: the place in the display may move it a little. */
+    /* A tenth of what vkao.h allows a texel to span: the place in the display may move it a
+     * little. */
     static const double least = 1e-14, most = 1e14;
     const float *m = view->projection;
     const bool perspective = m[11] < 0.0f;

@@ -7,7 +7,7 @@
 
 #include "error.h"
 #include "exr_file.h"
-#include "vkao.h"
+#include "setting.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -77,10 +77,11 @@ struct camera_planes {
 
 /* Fills projection, axis and viewport; normal_to_view becomes the identity. */
 void camera_project(const struct camera *camera, const struct camera_planes *planes,
-                    const struct exr_box *display, const struct exr_box *data, vkao_view *view);
+                    const struct exr_box *display, const struct exr_box *data,
+                    struct ao_view *view);
 /* Whether the library can use the projection: absurd fields of view and planes make zeros and
  * infinities of it. */
-bool camera_can_project(const vkao_view *view);
+bool camera_can_project(const struct ao_view *view);
 /* World-space normals to view space; the camera must have a rotation. */
 void camera_normal_to_view(const struct camera *camera, float matrix[9]);
 

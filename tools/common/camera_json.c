@@ -46,10 +46,12 @@ static bool read_matrix(const struct reader *r, const cJSON *rows, double m[16])
         return wrong(r, "world_to_view", wanted);
     int i = 0;
     const cJSON *row, *item;
-    cJSON_ArrayForEach (row, rows) {
+    cJSON_ArrayForEach(row, rows)
+    {
         if (!cJSON_IsArray(row) || cJSON_GetArraySize(row) != 4)
             return wrong(r, "world_to_view", wanted);
-        cJSON_ArrayForEach (item, row) {
+        cJSON_ArrayForEach(item, row)
+        {
             if (!cJSON_IsNumber(item) || !isfinite(item->valuedouble))
                 return wrong(r, "world_to_view", wanted);
             m[i++] = item->valuedouble;
@@ -152,7 +154,8 @@ static bool read_views(const cJSON *root, struct reader *r, struct camera_set *s
     if (!views)
         return add_view(set, r, root);
     const cJSON *object;
-    cJSON_ArrayForEach (object, views) {
+    cJSON_ArrayForEach(object, views)
+    {
         r->view = object->string;
         if (!add_view(set, r, object))
             return false;

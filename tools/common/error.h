@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * One error, as the tools report it: an exit code, one line that names the file and the thing, and a remedy. */
+ * One error, as the tools report it: an exit code, one line that names the file and the thing, and
+ * a remedy. */
 #ifndef VKAO_TOOLS_ERROR_H_
 #define VKAO_TOOLS_ERROR_H_
 
@@ -36,8 +37,8 @@ struct tool_error {
 #define TOOL_PRINTF(fmt, args)
 #endif
 
-/* Fills *err unless it already holds an error (the first cause wins), and returns false, so that callers can
- * write `return fail(err, EXIT_INPUT, "%s: ...", path);`. */
+/* Fills *err unless it already holds an error (the first cause wins), and returns false, so that
+ * callers can write `return fail(err, EXIT_INPUT, "%s: ...", path);`. */
 bool fail(struct tool_error *err, enum exit_code code, const char *format, ...) TOOL_PRINTF(3, 4);
 /* Adds the remedy to an error that has none yet; returns false. */
 bool fail_hint(struct tool_error *err, const char *format, ...) TOOL_PRINTF(2, 3);

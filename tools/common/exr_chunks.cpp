@@ -11,9 +11,11 @@
 #include <cinttypes>
 #include <cstring>
 
-namespace exr {
+namespace exr
+{
 
-namespace {
+namespace
+{
 
 /* Sizes of one axis from level 0 down to 1 pixel. */
 std::vector<int64_t> level_sizes(int64_t size, const part_layout &part)
@@ -35,7 +37,8 @@ struct tile_level {
 std::vector<tile_level> tile_levels(const part_layout &part)
 {
     enum { one_level, mipmap, ripmap };
-    auto across = level_sizes(part.data.width(), part), down = level_sizes(part.data.height(), part);
+    auto across = level_sizes(part.data.width(), part),
+         down = level_sizes(part.data.height(), part);
     std::vector<tile_level> levels;
     const auto add = [&](size_t x, size_t y) {
         levels.push_back({int32_t(x), int32_t(y), divide_up(across[x], part.tile_width),
@@ -103,8 +106,8 @@ bool read_chunk(input_stream &stream, const file_layout &layout, const part_layo
     return true;
 }
 
-/* Calls f(k, chunk) for the place of every chunk that the table of a part should name, in its order;
- * where it lies is left open. */
+/* Calls f(k, chunk) for the place of every chunk that the table of a part should name, in its
+ * order; where it lies is left open. */
 template <typename F> void each_place(const file_layout &layout, size_t index, F &&f)
 {
     const part_layout &part = layout.parts[index];
@@ -210,7 +213,10 @@ struct count_task : IlmThread::Task {
         : Task(group), data(std::move(bytes)), is_runs(runs), count(to)
     {
     }
-    void execute() override { count = is_runs ? count_runs(data) : count_inflated(data); }
+    void execute() override
+    {
+        count = is_runs ? count_runs(data) : count_inflated(data);
+    }
     std::vector<char> data;
     bool is_runs;
     int64_t &count;
@@ -254,8 +260,9 @@ uint64_t check_tables(input_stream &stream, const file_layout &layout)
     return first;
 }
 
-/* OpenEXR leaves what is missing as it was in its buffers: other pixels, or whatever else was in that
- * memory. The decoders that are not counted here find out themselves, but for no bytes at all. */
+/* OpenEXR leaves what is missing as it was in its buffers: other pixels, or whatever else was in
+ * that memory. The decoders that are not counted here find out themselves, but for no bytes at
+ * all. */
 void check_decoded(input_stream &stream, const file_layout &layout, size_t index)
 {
     constexpr size_t most_at_once = 256; /* chunks in memory, as they are in the file */
@@ -288,8 +295,8 @@ void check_decoded(input_stream &stream, const file_layout &layout, size_t index
                 std::vector<char> data(size_t(c.bytes));
                 stream.seekg(c.end - c.bytes);
                 stream.read_all(data.data(), data.size());
-                IlmThread::ThreadPool::addGlobalTask(new count_task(
-                    &group, std::move(data), part.compression == rle, counts[i]));
+                IlmThread::ThreadPool::addGlobalTask(
+                    new count_task(&group, std::move(data), part.compression == rle, counts[i]));
             }
         }
         for (size_t i = 0; i < count; i++) {

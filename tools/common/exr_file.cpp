@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  *
- * Reading: the C functions for headers and pixels. */
+ * Opening and reading: the C functions for headers and pixels. */
 #include "exr_internal.h"
 
+#include <Iex.h>
 #include <ImfBoxAttribute.h>
 #include <ImfChannelList.h>
 #include <ImfDoubleAttribute.h>
@@ -16,7 +17,6 @@
 #include <ImfStringVectorAttribute.h>
 #include <ImfThreading.h>
 #include <ImfVecAttribute.h>
-#include <OpenEXRConfig.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -25,7 +25,117 @@
 
 using namespace exr;
 
-namespace {
+/* --- Opening --- */
+
+namespace
+{
+
+bool same_window(const Imath::Box2i &box, const window &w)
+{
+    return box.min.x == w.x_min && box.min.y == w.y_min && box.max.x == w.x_max &&
+           box.max.y == w.y_max;
+}
+
+bool same_channels(const Imf::ChannelList &list, const std::vector<channel_layout> &channels)
+{
+    size_t count = 0;
+    for (auto i = list.begin(); i != list.end(); ++i)
+        count++;
+    for (const channel_layout &c : channels) {
+        const Imf::Channel *other = list.findChannel(c.name.c_str());
+        if (!other || int(other->type) != c.type || other->xSampling != c.x_sampling ||
+            other->ySampling != c.y_sampling)
+            return false;
+    }
+    return count == channels.size();
+}
+
+bool same_tiles(const Imf::Header &header, const part_layout &part)
+{
+    if (!part.tiled)
+        return true;
+    if (!header.hasTileDescription())
+        return false;
+    const Imf::TileDescription &t = header.tileDescription();
+    return t.xSize == part.tile_width && t.ySize == part.tile_height &&
+           int(t.mode) == part.level_mode && int(t.roundingMode) == part.level_rounding;
+}
+
+/* What OpenEXR understood differently from the walk; NULL if nothing. */
+const char *find_difference(const Imf::Header &header, const part_layout &part)
+{
+    if (!same_window(header.dataWindow(), part.data))
+        return "data window";
+    if (!same_window(header.displayWindow(), part.display))
+        return "display window";
+    if (int(header.compression()) != part.compression)
+        return "compression";
+    if (header.hasType() && header.type() != part.type)
+        return "type";
+    if (header.hasName() && header.name() != part.name)
+        return "name";
+    if (!same_channels(header.channels(), part.channels))
+        return "channels";
+    return same_tiles(header, part) ? nullptr : "tiles";
+}
+
+/* No header may make the two disagree: a fuzzer stops here. Anybody else is told that the file is
+ * damaged, which it is. */
+[[noreturn]] void disagree(const input_stream &stream, size_t part, const char *what)
+{
+#ifdef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION
+    fprintf(stderr, "two readings of the headers disagree: part %zu: %s\n", part, what);
+    abort();
+#endif
+    raise(EXIT_INPUT, damaged_hint, "%s: damaged header: two readings of part %zu disagree: %s",
+          stream.fileName(), part, what);
+}
+
+} // namespace
+
+exr_input::exr_input(const char *path, const char *shown)
+    : stream(path, shown), layout(exr::read_layout(stream))
+{
+}
+
+int exr_input::useful_threads() const
+{
+    int64_t most = 1;
+    for (const exr::part_layout &part : layout.parts)
+        most = std::max(most, part.chunk_count);
+    return int(std::min(int64_t{exr::Imf::globalThreadCount()}, most));
+}
+
+/* No reconstruction: OpenEXR would search an unfinished file for chunks, and we would show an image
+ * with holes. */
+std::unique_ptr<exr::Imf::MultiPartInputFile> exr_input::open()
+{
+    try {
+        stream.check_unchanged();
+        stream.seekg(0);
+        auto file = std::make_unique<Imf::MultiPartInputFile>(stream, useful_threads(), false);
+        stream.check_unchanged();
+        if (file->parts() != int(layout.parts.size()))
+            disagree(stream, 0, "number of parts");
+        for (int i = 0; i < file->parts(); i++) {
+            const char *difference = find_difference(file->header(i), layout.parts[size_t(i)]);
+            if (difference)
+                disagree(stream, size_t(i), difference);
+            if (!file->partComplete(i))
+                raise(EXIT_INPUT, damaged_hint, "%s: truncated: part %d lacks chunks",
+                      stream.fileName(), i);
+        }
+        return file;
+    } catch (const Iex::BaseExc &e) {
+        raise(EXIT_INPUT, damaged_hint, "%s: damaged: %s", stream.fileName(),
+              library_message(e).c_str());
+    }
+}
+
+/* --- Reading --- */
+
+namespace
+{
 
 template <typename T> T *allocate(size_t count)
 {
@@ -100,8 +210,8 @@ template <typename T> bool box(const Imf::Attribute &attribute, exr_attribute &o
 void fill_attribute(const char *name, const Imf::Attribute &attribute, exr_attribute &out)
 {
     static bool (*const shapes[])(const Imf::Attribute &, exr_attribute &) = {
-        scalar<int>,         scalar<float>,       scalar<double>,    vec<Imath::V2i>,
-        vec<Imath::V2f>,     vec<Imath::V2d>,     vec<Imath::V3i>,   vec<Imath::V3f>,
+        scalar<int>,         scalar<float>,       scalar<double>,      vec<Imath::V2i>,
+        vec<Imath::V2f>,     vec<Imath::V2d>,     vec<Imath::V3i>,     vec<Imath::V3f>,
         vec<Imath::V3d>,     matrix<Imath::M33f>, matrix<Imath::M33d>, matrix<Imath::M44f>,
         matrix<Imath::M44d>, box<Imath::Box2i>,   box<Imath::Box2f>,
     };
@@ -156,7 +266,8 @@ void fill_attributes(const Imf::Header &header, exr_part &part)
     }
 }
 
-/* threads: of OpenEXR. A chunk is in memory as stored, decoded, and once more while it is decoded. */
+/* threads: of OpenEXR. A chunk is in memory as stored, decoded, and once more while it is
+ * decoded. */
 uint64_t decode_bytes(const part_layout &layout, int threads)
 {
     return layout.deep ? 0 : 3 * 2 * uint64_t(std::max(threads, 1)) * uint64_t(layout.chunk_bytes);
@@ -168,7 +279,7 @@ void fill_part(const Imf::Header &header, const part_layout &layout, exr_part &p
     part.name = copy_string(layout.name);
     part.view = copy_string(view ? view->value() : "");
     part.type = copy_string(layout.type);
-    part.compression = compression_names[layout.compression];
+    part.compression = exr_compression_names[layout.compression];
     part.line_order = line_order_names[header.lineOrder()];
     part.data_window = to_box(layout.data);
     part.display_window = to_box(layout.display);
@@ -303,11 +414,6 @@ bool exr_read_channels(const struct exr_info *info, size_t part, const struct ex
 {
     return at_border(err, EXIT_INPUT, info->path, "damaged",
                      [&] { read_channels(info, part, reads, count); });
-}
-
-const char *exr_library_version(void)
-{
-    return OPENEXR_PACKAGE_STRING;
 }
 
 void exr_set_threads(int count)

@@ -18,6 +18,9 @@ extern "C" {
 
 enum exr_pixel_type { EXR_UINT = 0, EXR_HALF = 1, EXR_FLOAT = 2 };
 
+enum { EXR_COMPRESSIONS = 10 };
+extern const char *const exr_compression_names[EXR_COMPRESSIONS];
+
 struct exr_box {
     int32_t x_min, y_min, x_max, y_max;
 };
@@ -42,8 +45,7 @@ struct exr_part {
     char *name;              /* "" in single-part files without one */
     char *view;              /* "" if the part belongs to no view */
     char *type;              /* "scanlineimage", "tiledimage", "deepscanline", "deeptile" */
-    /* "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab" */
-    const char *compression;
+    const char *compression; /* one of exr_compression_names */
     const char *line_order;  /* "increasing", "decreasing", "random" */
     struct exr_box data_window, display_window;
     float pixel_aspect;
@@ -57,9 +59,9 @@ struct exr_part {
     uint64_t decode_bytes; /* memory that reading pixels takes, beside that for the values */
 };
 
-/* A file, open. Whoever reads or copies it later sees what was there when it was opened, even if the
- * path names another file by then; that somebody wrote to this one is an error 3 of the next call.
- * One thread at a time. */
+/* A file, open. Whoever reads or copies it later sees what was there when it was opened, even if
+ * the path names another file by then; that somebody wrote to this one is an error 3 of the next
+ * call. One thread at a time. */
 struct exr_info {
     char *path;
     struct exr_part *parts;
@@ -124,8 +126,8 @@ struct exr_new_part {
 
 /* Writes a new file. With copy_from every part of that file is copied first, its pixels as raw
  * chunks and its attributes as they are, and the new parts follow. The file is written beside path,
- * read back (copies byte for byte, new pixels decoded and, if the compression keeps them, compared),
- * synced and renamed; on error nothing is left. If replace is false an existing path is
+ * read back (copies byte for byte, new pixels decoded and, if the compression keeps them,
+ * compared), synced and renamed; on error nothing is left. If replace is false an existing path is
  * EXIT_OUTPUT, also when it appears meanwhile. */
 bool exr_write_file(const char *path, const struct exr_info *copy_from,
                     const struct exr_new_part *parts, size_t count, bool replace,

@@ -23,7 +23,8 @@
 #include <utility>
 #include <vector>
 
-namespace exr {
+namespace exr
+{
 
 namespace Imf = OPENEXR_IMF_NAMESPACE;
 
@@ -64,7 +65,8 @@ bool at_border(tool_error *err, exit_code code, const char *path, const char *wh
 
 /* A regular file, opened once for both the checks here and OpenEXR, so that both see the same file
  * even if it is replaced meanwhile. shown: what messages call it, if not path. */
-class input_stream : public Imf::IStream {
+class input_stream : public Imf::IStream
+{
 public:
     explicit input_stream(const char *path, const char *shown = nullptr);
     ~input_stream() override;
@@ -72,7 +74,10 @@ public:
     void read_all(char data[], size_t bytes);
     uint64_t tellg() override;
     void seekg(uint64_t position) override;
-    uint64_t size() const { return size_; }
+    uint64_t size() const
+    {
+        return size_;
+    }
     /* Refuses a file that somebody has written to since it was opened: what was learned from it
      * then may not hold for what is read now. */
     void check_unchanged() const;
@@ -95,8 +100,14 @@ struct channel_layout {
 /* Whole numbers are 64 bits wide, so that no difference of two of them overflows. */
 struct window {
     int64_t x_min, y_min, x_max, y_max;
-    int64_t width() const { return x_max - x_min + 1; }
-    int64_t height() const { return y_max - y_min + 1; }
+    int64_t width() const
+    {
+        return x_max - x_min + 1;
+    }
+    int64_t height() const
+    {
+        return y_max - y_min + 1;
+    }
 };
 
 struct part_layout {
@@ -159,7 +170,8 @@ struct exr_input {
     int useful_threads() const;
 };
 
-namespace exr {
+namespace exr
+{
 
 /* Tells OpenEXR our own limits; cheap when repeated. */
 void set_limits();
@@ -170,7 +182,6 @@ inline int64_t divide_up(int64_t a, int64_t b)
 }
 
 extern const char *const damaged_hint;
-extern const char *const compression_names[10];
 extern const char *const line_order_names[3];
 
 } // namespace exr

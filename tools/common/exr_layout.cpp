@@ -10,14 +10,16 @@
 #include <cstring>
 #include <map>
 
-namespace exr {
+const char *const exr_compression_names[EXR_COMPRESSIONS] = {
+    "none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"};
 
-const char *const compression_names[10] = {"none",  "rle", "zips", "zip",  "piz",
-                                           "pxr24", "b44", "b44a", "dwaa", "dwab"};
+namespace exr
+{
+
 const char *const line_order_names[3] = {"increasing", "decreasing", "random"};
-const char *const damaged_hint = "render or copy the file again";
 
-namespace {
+namespace
+{
 
 /* By the number in the file. ratio: how many times larger than the file the pixels can be at most.
  * DEFLATE reaches 1032; PIZ a run of 256 half values in 10 bits; DWA deflates runs of 128 bytes or
@@ -26,15 +28,15 @@ constexpr struct {
     int lines;
     int64_t ratio;
 } compressions[10] = {
-    {1, 1},     {1, 65},    {1, 1040}, {16, 1040},   {32, 520},
-    {16, 1400}, {32, 12},   {32, 12},  {32, 1 << 17}, {256, 1 << 17},
+    {1, 1},     {1, 65},  {1, 1040}, {16, 1040},    {32, 520},
+    {16, 1400}, {32, 12}, {32, 12},  {32, 1 << 17}, {256, 1 << 17},
 };
 
 constexpr int64_t max_axis = 65536;
 constexpr int64_t max_pixels = int64_t{1} << 30;
 /* The decoders of 3.1 count the bytes of a chunk in int (CVE-2026-34588). */
 constexpr int64_t max_chunk_bytes = int64_t{1} << 30;
-constexpr int64_t slack_bytes = 1 << 20; /* small files may pad more than any ratio allows */
+constexpr int64_t slack_bytes = 1 << 20;      /* small files may pad more than any ratio allows */
 constexpr int64_t tile_slack_bytes = 1 << 25; /* a small image may lie in one tile of usual size */
 
 constexpr uint32_t flag_tiled = 0x200, flag_non_image = 0x800, flag_multi_part = 0x1000;
@@ -54,9 +56,9 @@ using attributes = std::map<std::string, attribute>;
         const char *magic;
         size_t bytes;
     } formats[] = {
-        {"PNG", "\x89PNG", 4},      {"JPEG", "\xff\xd8\xff", 3}, {"TIFF", "II*\0", 4},
-        {"TIFF", "MM\0*", 4},       {"Radiance HDR", "#?", 2},   {"DPX", "SDPX", 4},
-        {"DPX", "XPDS", 4},         {"gzip", "\x1f\x8b", 2},     {"PFM", "PF\n", 3},
+        {"PNG", "\x89PNG", 4}, {"JPEG", "\xff\xd8\xff", 3}, {"TIFF", "II*\0", 4},
+        {"TIFF", "MM\0*", 4},  {"Radiance HDR", "#?", 2},   {"DPX", "SDPX", 4},
+        {"DPX", "XPDS", 4},    {"gzip", "\x1f\x8b", 2},     {"PFM", "PF\n", 3},
     };
     char bytes[4], hex[16] = "";
     const int count = int(std::min<uint64_t>(stream.size(), sizeof bytes));
@@ -93,12 +95,30 @@ const struct {
     const char *type;
     int64_t bytes;
 } natural_sizes[] = {
-    {"box2i", 16},   {"box2f", 16},      {"chromaticities", 32}, {"compression", 1},
-    {"double", 8},   {"envmap", 1},      {"float", 4},           {"int", 4},
-    {"keycode", 28}, {"lineOrder", 1},   {"m33f", 36},           {"m33d", 72},
-    {"m44f", 64},    {"m44d", 128},      {"rational", 8},        {"deepImageState", 1},
-    {"tiledesc", 9}, {"timecode", 8},    {"v2i", 8},             {"v2f", 8},
-    {"v2d", 16},     {"v3i", 12},        {"v3f", 12},            {"v3d", 24},
+    {"box2i", 16},
+    {"box2f", 16},
+    {"chromaticities", 32},
+    {"compression", 1},
+    {"double", 8},
+    {"envmap", 1},
+    {"float", 4},
+    {"int", 4},
+    {"keycode", 28},
+    {"lineOrder", 1},
+    {"m33f", 36},
+    {"m33d", 72},
+    {"m44f", 64},
+    {"m44d", 128},
+    {"rational", 8},
+    {"deepImageState", 1},
+    {"tiledesc", 9},
+    {"timecode", 8},
+    {"v2i", 8},
+    {"v2f", 8},
+    {"v2d", 16},
+    {"v3i", 12},
+    {"v3f", 12},
+    {"v3d", 24},
 };
 
 /* Whether strings with their lengths in front fill the attribute to its end. */
@@ -188,8 +208,8 @@ attributes read_attributes(input_stream &stream, std::string name)
 }
 
 /* Goes to the value of an attribute that every file has; bytes < 0: any size. */
-void seek_required(input_stream &stream, const attributes &all, const char *name,
-                               const char *type, int64_t bytes)
+void seek_required(input_stream &stream, const attributes &all, const char *name, const char *type,
+                   int64_t bytes)
 {
     const auto found = all.find(name);
     if (found == all.end())
@@ -223,7 +243,7 @@ void read_compression(input_stream &stream, const attributes &all, part_layout &
         part.chunk_lines = compressions[part.compression].lines;
         return;
     }
-    const char *name = part.compression == 10 ? "htj2k256 "
+    const char *name = part.compression == 10   ? "htj2k256 "
                        : part.compression == 11 ? "htj2k32 "
                                                 : "";
     raise(EXIT_INPUT, "convert it with newer tools: oiiotool IN.exr --compression zip -o OUT.exr",
@@ -310,7 +330,7 @@ void check_sizes(const input_stream &stream, const part_layout &part)
               "%s: truncated or damaged: %" PRId64 " bytes cannot hold %" PRId64 "x%" PRId64
               " pixels of %" PRId64 " bytes with compression %s",
               stream.fileName(), file_bytes, width, part.data.height(), part.pixel_bytes,
-              compression_names[part.compression]);
+              exr_compression_names[part.compression]);
     /* OpenEXR allocates whole tiles, also for images smaller than one. */
     if (part.tiled && part.chunk_bytes > 4 * part.level_bytes + tile_slack_bytes)
         raise(EXIT_INPUT, damaged_hint,
@@ -322,7 +342,7 @@ void check_sizes(const input_stream &stream, const part_layout &part)
 void check_types(const input_stream &stream, const attributes &all)
 {
     static const char *const types[][2] = {
-        {"name", "string"}, {"type", "string"},      {"view", "string"},
+        {"name", "string"}, {"type", "string"},    {"view", "string"},
         {"version", "int"}, {"chunkCount", "int"},
     };
     for (const auto &pair : types) {
@@ -355,8 +375,7 @@ part_layout read_part(input_stream &stream, const attributes &all, uint32_t vers
     if (part.tiled)
         read_tiles(stream, all, part);
     const int64_t chunk_pixels =
-        part.tiled ? part.tile_width * part.tile_height
-                   : part.data.width() * part.chunk_lines;
+        part.tiled ? part.tile_width * part.tile_height : part.data.width() * part.chunk_lines;
     if (chunk_pixels > max_chunk_bytes / part.pixel_bytes)
         raise(EXIT_INPUT, nullptr,
               "%s: chunks of %" PRId64 " pixels of %" PRId64
@@ -399,8 +418,8 @@ file_layout read_layout(input_stream &stream)
         const int64_t count = layout.parts[i].chunk_count;
         if (count > room)
             raise(EXIT_INPUT, damaged_hint,
-                  "%s: truncated: the chunk table of part %zu has room for %" PRId64
-                  " of %" PRId64 " chunks",
+                  "%s: truncated: the chunk table of part %zu has room for %" PRId64 " of %" PRId64
+                  " chunks",
                   stream.fileName(), i, room, count);
         room -= count;
     }

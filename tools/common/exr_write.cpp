@@ -33,18 +33,23 @@
 
 using namespace exr;
 
-namespace {
+namespace
+{
 
 /* OpenEXR writes in crumbs and seeks back for the chunk tables, where its destructors swallow
  * errors: so the first error is kept here, and finish() tells. */
-class output_stream : public Imf::OStream {
+class output_stream : public Imf::OStream
+{
 public:
     output_stream(const char *path, bool replace) : Imf::OStream(path)
     {
         if (!atomic_file_open(&file_, path, replace, &error_))
             throw_error();
     }
-    ~output_stream() override { atomic_file_abort(&file_); }
+    ~output_stream() override
+    {
+        atomic_file_abort(&file_);
+    }
     void write(const char data[], int bytes) override
     {
         throw_error();
@@ -52,7 +57,10 @@ public:
         if (buffer_.size() >= buffer_bytes)
             flush();
     }
-    uint64_t tellp() override { return position_ + buffer_.size(); }
+    uint64_t tellp() override
+    {
+        return position_ + buffer_.size();
+    }
     void seekp(uint64_t position) override;
     void throw_error() const
     {
@@ -131,11 +139,24 @@ void insert(Imf::Header &header, const char *name, const Imf::Attribute &attribu
 bool is_structural(const char *name)
 {
     static const std::set<std::string> names = {
-        "channels",    "chunkCount",           "compression",   "dataWindow",
-        "deepImageState", "displayWindow",     "dwaCompressionLevel", "idManifest",
-        "lineOrder",   "maxSamplesPerPixel",   "multiView",     "name",
-        "pixelAspectRatio", "preview",         "tiles",         "type",
-        "version",     "view",
+        "channels",
+        "chunkCount",
+        "compression",
+        "dataWindow",
+        "deepImageState",
+        "displayWindow",
+        "dwaCompressionLevel",
+        "idManifest",
+        "lineOrder",
+        "maxSamplesPerPixel",
+        "multiView",
+        "name",
+        "pixelAspectRatio",
+        "preview",
+        "tiles",
+        "type",
+        "version",
+        "view",
     };
     return names.count(name) || strncmp(name, "cryptomatte/", strlen("cryptomatte/")) == 0;
 }
@@ -167,8 +188,8 @@ void copy_attributes(const Imf::Header *from, const Imf::Header *first, Imf::Hea
 
 Imf::Compression compression_number(const char *path, const char *name)
 {
-    for (int i = 0; i < int(std::size(compression_names)); i++) {
-        if (strcmp(compression_names[i], name) == 0)
+    for (int i = 0; i < int(EXR_COMPRESSIONS); i++) {
+        if (strcmp(exr_compression_names[i], name) == 0)
             return Imf::Compression(i);
     }
     raise(EXIT_OUTPUT, nullptr, "%s: unknown compression '%s'", path, name);
@@ -212,12 +233,13 @@ void promote(Imf::Header &header, const part_layout &layout, const std::set<std:
 {
     header.setType(layout.type);
     if (!layout.tiled)
-        header = without(header, "tiles"); /* stray ones make OpenEXR take the part for a tiled one */
+        /* stray ones make OpenEXR take the part for a tiled one */
+        header = without(header, "tiles");
     if (header.hasName() && !header.name().empty())
         return;
     const Imf::ChannelList &channels = header.channels();
-    const bool color = channels.findChannel("R") && channels.findChannel("G") &&
-                       channels.findChannel("B");
+    const bool color =
+        channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
     const std::string base = color ? "rgba" : "part";
     std::string name = color ? base : base + "0";
     for (int i = 1; taken.count(name); i++)
@@ -233,8 +255,7 @@ void check_names(const char *path, const std::vector<Imf::Header> &headers)
             raise(EXIT_OUTPUT, nullptr, "%s: a part of a multi-part file needs a name", path);
         if (!names.insert(header.name()).second)
             raise(EXIT_OUTPUT, "choose another name for the new part",
-                  "%s: there would be two parts named '%s'", path,
-                  excerpt(header.name()).c_str());
+                  "%s: there would be two parts named '%s'", path, excerpt(header.name()).c_str());
     }
 }
 
@@ -255,8 +276,7 @@ struct source_file {
     const exr_info &info;
     exr_input &input;
     std::unique_ptr<Imf::MultiPartInputFile> file;
-    explicit source_file(const exr_info &from)
-        : info(from), input(*from.input), file(input.open())
+    explicit source_file(const exr_info &from) : info(from), input(*from.input), file(input.open())
     {
         check_chunks(input.stream, input.layout);
     }
@@ -277,8 +297,8 @@ std::vector<Imf::Header> make_headers(const char *path, const source_file *sourc
     }
     for (size_t i = 0; i < count; i++) {
         const auto from = attributes_of(parts[i]);
-        headers.push_back(new_header(path, parts[i], from.get(),
-                                     headers.empty() ? nullptr : &headers.front()));
+        headers.push_back(
+            new_header(path, parts[i], from.get(), headers.empty() ? nullptr : &headers.front()));
     }
     if (headers.empty())
         raise(EXIT_OUTPUT, nullptr, "%s: no parts to write", path);
@@ -380,9 +400,8 @@ void write_part(const exr_new_part &part, Imf::MultiPartOutputFile &file, int in
             }
             if (channel.type != EXR_FLOAT)
                 pixels = bands[i].data();
-            frame.insert(channel.channel,
-                         Imf::Slice::Make(Imf::PixelType(channel.type), pixels, b.window, x_stride,
-                                          x_stride * width));
+            frame.insert(channel.channel, Imf::Slice::Make(Imf::PixelType(channel.type), pixels,
+                                                           b.window, x_stride, x_stride * width));
         }
         out.setFrameBuffer(frame);
         out.writePixels(int(b.lines));
@@ -400,9 +419,8 @@ void write_parts(output_stream &stream, source_file *source,
             copy_part(*source, file, i);
         } catch (const Iex::BaseExc &e) {
             stream.throw_error();
-            raise(EXIT_INPUT, damaged_hint,
-                  "%s: damaged: cannot copy part %d: %s", source->info.path, i,
-                  library_message(e).c_str());
+            raise(EXIT_INPUT, damaged_hint, "%s: damaged: cannot copy part %d: %s",
+                  source->info.path, i, library_message(e).c_str());
         }
     }
     for (size_t i = 0; i < count; i++)
@@ -437,7 +455,8 @@ void check_band(const exr_new_part &part, const exr_write &channel, const band &
     if (!is_lossless(part.compression, channel.type))
         return;
     for (size_t i = 0; i < width * b.lines; i++) {
-        uint32_t bits = 0; /* of a half the first two bytes: the format's machines are little-endian */
+        /* of a half the first two bytes: the format's machines are little-endian */
+        uint32_t bits = 0;
         memcpy(&bits, &pixels[i * bytes], bytes);
         const float value = channel.values[(b.first * width + i) * channel.stride];
         if (bits != stored_bits(channel.type, value))

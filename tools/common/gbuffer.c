@@ -35,44 +35,6 @@ const char *pixel_type_name(enum exr_pixel_type type)
     return names[type];
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    double x = *(const double *)a, y = *(const double *)b;
-    return x < y ? -1 : x > y;
-}
-
-/* Hoare's FIND: sorts no more than it takes to know what stands in the middle. What is left after MEDIAN_MOST_ROUNDS
- * is sorted. */
-double gbuffer_median(double *values, size_t count)
-{
-    const ptrdiff_t middle = (ptrdiff_t)(count / 2);
-    ptrdiff_t low = 0, high = (ptrdiff_t)count - 1;
-    for (int rounds = 0; low < high; rounds++) {
-        if (rounds == MEDIAN_MOST_ROUNDS) {
-            qsort(values + low, (size_t)(high - low) + 1, sizeof *values, compare_doubles);
-            break;
-        }
-        const double pivot = values[middle];
-        ptrdiff_t i = low, j = high;
-        while (i <= j) {
-            while (values[i] < pivot)
-                i++;
-            while (pivot < values[j])
-                j--;
-            if (i > j)
-                break;
-            const double moved = values[i];
-            values[i++] = values[j];
-            values[j--] = moved;
-        }
-        if (j < middle)
-            low = i;
-        if (middle < i)
-            high = j;
-    }
-    return count ? values[middle] : 0.0;
-}
-
 static bool check_role(const struct exr_info *info, const struct role *role, struct tool_error *err)
 {
     for (size_t i = 0; i <= ROLE_MAX_COMPONENTS; i++) {
@@ -180,8 +142,8 @@ static uint64_t box_texels(const struct exr_box *box)
            (uint64_t)((int64_t)box->y_max - box->y_min + 1);
 }
 
-/* Bytes per texel of a role with four components, and what reading it takes for a while: the decoder
- * and, if its window is another, an image of that. */
+/* Bytes per texel of a role with four components, and what reading it takes for a while: the
+ * decoder and, if its window is another, an image of that. */
 static void add_vector(const struct exr_info *info, const struct gbuffer *g,
                        const struct role *role, uint64_t *texel_bytes, uint64_t *for_a_while)
 {
@@ -199,7 +161,8 @@ static bool check_budget(const struct exr_info *info, const struct gbuffer_optio
 {
     const struct role *normal = &g->roles.kind[ROLE_NORMAL], *color = &g->roles.kind[ROLE_COLOR];
     const struct placement placement = placement_of(&g->data_window, &g->display_window);
-    const uint64_t work_texels = ((uint64_t)g->width + placement.left) * (g->height + placement.top);
+    const uint64_t work_texels =
+        ((uint64_t)g->width + placement.left) * (g->height + placement.top);
     uint64_t texel_bytes = sizeof(float),
              for_a_while = info->parts[g->roles.kind[ROLE_DEPTH].part].decode_bytes;
     if (!budget_allows_pixels(&options->budget, info->path, g->width, g->height, err))
@@ -208,11 +171,10 @@ static bool check_budget(const struct exr_info *info, const struct gbuffer_optio
         add_vector(info, g, normal, &texel_bytes, &for_a_while);
     if (options->want_color)
         add_vector(info, g, color, &texel_bytes, &for_a_while);
-    const uint64_t work =
-        work_texels * (options->work_texel_bytes +
-                       (normal->found ? options->work_normals_texel_bytes : 0));
-    const uint64_t bytes = options->held_bytes + work_texels * texel_bytes +
-                           (for_a_while > work ? for_a_while : work);
+    const uint64_t work = work_texels * (options->work_texel_bytes +
+                                         (normal->found ? options->work_normals_texel_bytes : 0));
+    const uint64_t bytes =
+        options->held_bytes + work_texels * texel_bytes + (for_a_while > work ? for_a_while : work);
     return budget_allows_memory(&options->budget, info->path, g->width, g->height, bytes, err);
 }
 
@@ -252,7 +214,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
                   const struct camera *camera_file, struct report *report, struct gbuffer *gbuffer,
                   struct tool_error *err)
 {
-    *gbuffer = (struct gbuffer){.view = vkao_view_default()};
+    *gbuffer = (struct gbuffer){.view = ao_view_default()};
     struct gbuffer *g = gbuffer;
     if (!resolve(info, options, camera_file, g, err))
         return false;

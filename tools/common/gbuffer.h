@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * One view of one EXR file, loaded and made ready for the library: depth cleaned and in one of its
- * encodings, normals signed, colour as RGBA, all in the data window of the depth, and the vkao_view
- * that describes them. */
+ * encodings, normals signed, colour as RGBA, all in the data window of the depth, and the struct
+ * ao_view that describes them. */
 #ifndef VKAO_TOOLS_GBUFFER_H_
 #define VKAO_TOOLS_GBUFFER_H_
 
@@ -12,7 +12,7 @@
 #include "exr_file.h"
 #include "report.h"
 #include "roles.h"
-#include "vkao.h"
+#include "setting.h"
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -27,10 +27,10 @@ struct gbuffer_options {
     enum normal_encoding normal_encoding;
     bool want_color; /* colour is an error if it is missing, and is not read otherwise */
     struct budget budget;
-    /* What the caller will take per texel, counted against the budget: in any case, and more if there
-     * are normals. */
+    /* What the caller will take per texel, counted against the budget: in any case, and more if
+     * there are normals. */
     uint64_t work_texel_bytes, work_normals_texel_bytes;
-    uint64_t held_bytes;       /* what he holds already, likewise */
+    uint64_t held_bytes; /* what he holds already, likewise */
 };
 
 struct gbuffer {
@@ -53,12 +53,12 @@ struct gbuffer {
     double background_share;       /* [0,1], with the invalid ones */
     double invalid_share;          /* [0,1] of NaN, -Inf and negative values */
     double depth_step; /* distance between neighbouring half values at the median; 0 for float */
-    vkao_view view;
+    struct ao_view view;
 };
 
-/* camera_file may be NULL. Errors: EXIT_INPUT, EXIT_CHANNELS, EXIT_MEMORY (also if the budget is too
- * small, which is asked before pixels are read); *gbuffer is then empty
- * but for what was resolved: roles, camera and windows, for `vkao inspect`. */
+/* camera_file may be NULL. Errors: EXIT_INPUT, EXIT_CHANNELS, EXIT_MEMORY (also if the budget is
+ * too small, which is asked before pixels are read); *gbuffer is then empty but for what was
+ * resolved: roles, camera and windows, for `vkao inspect`. */
 bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *options,
                   const struct camera *camera_file, struct report *report, struct gbuffer *gbuffer,
                   struct tool_error *err);

@@ -1,14 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 #include "gbuffer_internal.h"
+#include "median.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-/* No scene measures more or less than this, in whatever unit. Within, squares are finite and not 0. */
+/* No scene measures more or less than this, in whatever unit. Within, squares are finite and not
+ * 0. */
 static const double least_z = 1e-18, largest_z = 1e18;
 
-/* What renderers write where there is nothing: Falcor, Cycles, clip ranges. No scene measures exactly
- * this. Arnold's is beyond the largest. */
+/* What renderers write where there is nothing: Falcor, Cycles, clip ranges. No scene measures
+ * exactly this. Arnold's is beyond the largest. */
 static bool is_sentinel(float z)
 {
     static const float values[] = {1e8f, 1e10f, 1e12f};
@@ -33,7 +35,7 @@ static bool stored_median(const struct gbuffer *g, double *median)
     for (size_t i = 0; i < gbuffer_texels(g); i += step)
         if (is_valid(g->depth[i]))
             values[count++] = (double)g->depth[i];
-    *median = gbuffer_median(values, count);
+    *median = median_of(values, count);
     free(values);
     return true;
 }
@@ -104,12 +106,15 @@ static double view_z(const struct gbuffer *g, size_t texel)
     double d = (double)g->depth[texel];
     const float *m = g->view.projection;
     switch (g->view.depth_encoding) {
-    case VKAO_DEPTH_DISTANCE: return d / ray_length(g, texel);
-    case VKAO_DEPTH_INVERSE_Z: return 1.0 / d;
+    case VKAO_DEPTH_DISTANCE:
+        return d / ray_length(g, texel);
+    case VKAO_DEPTH_INVERSE_Z:
+        return 1.0 / d;
     case VKAO_DEPTH_PROJECTED:
         return g->camera.type == CAMERA_ORTHOGRAPHIC ? ((double)m[14] - d) / (double)m[10]
                                                      : (double)m[14] / (d + (double)m[10]);
-    default: return d;
+    default:
+        return d;
     }
 }
 
@@ -134,7 +139,7 @@ static bool measure(struct gbuffer *g)
         if (i % step == 0)
             values[count++] = z;
     }
-    g->median_z = count ? gbuffer_median(values, count) : g->min_z;
+    g->median_z = count ? median_of(values, count) : g->min_z;
     g->background_share = 1.0 - (double)foreground / (double)gbuffer_texels(g);
     free(values);
     return true;
@@ -173,7 +178,8 @@ static bool check_planes(const struct gbuffer *g, const char *path, struct tool_
         return fail(err, EXIT_CHANNELS, "%s: device depth needs both planes", path);
     }
     bool infinite = isinf(n) || isinf(f);
-    if (!(n < f || n > f) || fmin(n, f) < least_z || (!infinite && fmax(n, f) > largest_z) || (infinite && (g->camera.type == CAMERA_ORTHOGRAPHIC)))
+    if (!(n < f || n > f) || fmin(n, f) < least_z || (!infinite && fmax(n, f) > largest_z) ||
+        (infinite && (g->camera.type == CAMERA_ORTHOGRAPHIC)))
         return fail(err, EXIT_CHANNELS, "%s: planes at %g and %g give no projection", path, n, f);
     return true;
 }

@@ -26,12 +26,6 @@ static inline bool gbuffer_is_foreground(const struct gbuffer *g, size_t texel)
     return !(g->depth[texel] <= g->background_depth && g->depth[texel] >= g->background_depth);
 }
 
-/* Rounds halve what is left, more or less, unless values are laid out to make them slow. */
-enum { MEDIAN_MOST_ROUNDS = 64 };
-
-/* Moves values about; 0 if there are none. */
-double gbuffer_median(double *values, size_t count);
-
 /* Depth as read becomes depth as the library takes it; fills projection and statistics. */
 bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *options,
                            const char *path, struct report *report, struct tool_error *err);

@@ -3,6 +3,7 @@
  * Normals come in world or camera space, signed or as colours, and no header says which. Names and
  * the pixels do: what the camera sees faces it. */
 #include "gbuffer_internal.h"
+#include "median.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -47,8 +48,8 @@ static bool measure_encoding(const struct gbuffer *g, struct encoding_facts *fac
         as_unsigned[facts->count++] = length3(decoded);
     }
     if (as_signed && as_unsigned) {
-        facts->signed_length = gbuffer_median(as_signed, facts->count);
-        facts->unsigned_length = gbuffer_median(as_unsigned, facts->count);
+        facts->signed_length = median_of(as_signed, facts->count);
+        facts->unsigned_length = median_of(as_unsigned, facts->count);
     }
     bool ok = as_signed && as_unsigned;
     free(as_signed);
@@ -134,7 +135,7 @@ static bool measure_facing(const struct gbuffer *g, const float matrix[9], struc
         z[count++] = n[2];
     }
     facing->share = count ? (double)towards / (double)count : 1.0;
-    facing->median_z = gbuffer_median(z, count);
+    facing->median_z = median_of(z, count);
     free(z);
     return true;
 }

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "gpu.h"
 
-#include "parallel.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -79,8 +77,8 @@ static bool create_instance(struct gpu *gpu, const struct gpu_options *options,
         .pfnUserCallback = on_message,
         .pUserData = gpu,
     };
-    /* Core checks are on by default. Queue-submit synchronization has no enumerator in these headers; the layer reads
-     * it from the environment only. */
+    /* Core checks are on by default. Queue-submit synchronization has no enumerator in these
+     * headers; the layer reads it from the environment only. */
     const VkValidationFeatureEnableEXT enables[] = {
         VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
     const VkValidationFeaturesEXT features = {
@@ -216,7 +214,8 @@ static bool pick_device(struct gpu *gpu, const struct gpu_options *options, stru
         vkGetPhysicalDeviceProperties(devices[i], &p);
         int score = device_fits(wanted, i, &p);
         any_fits = any_fits || score > 0;
-        /* A device without a compute queue says so later; one that cannot present is passed over. */
+        /* A device without a compute queue says so later; one that cannot present is passed
+         * over. */
         if (options->presentation &&
             find_family(gpu, devices[i], options->presentation) == UINT32_MAX)
             continue;
@@ -256,7 +255,6 @@ static bool create_device(struct gpu *gpu, const struct gpu_options *options,
         &(VkPhysicalDeviceProperties2){.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
                                        .pNext = &limits});
     gpu->max_allocation = limits.maxMemoryAllocationSize;
-    vkao_add_required_features(&gpu->features);
     VkPhysicalDevice16BitStorageFeatures storage = {
         .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_16BIT_STORAGE_FEATURES};
     VkPhysicalDeviceFeatures2 supported = {.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
@@ -265,17 +263,15 @@ static bool create_device(struct gpu *gpu, const struct gpu_options *options,
     if (!supported.features.shaderStorageImageWriteWithoutFormat)
         return fail(err, EXIT_DEVICE, "%s lacks shaderStorageImageWriteWithoutFormat",
                     gpu->properties.deviceName);
-    /* For contexts with half_view_z */
-    gpu->features.shaderStorageImageExtendedFormats =
-        supported.features.shaderStorageImageExtendedFormats;
-    gpu->storage_16bit = storage.storageBuffer16BitAccess;
-    storage = (VkPhysicalDevice16BitStorageFeatures){
-        .sType = storage.sType, .storageBuffer16BitAccess = gpu->storage_16bit};
+    gpu->storage_features = (VkPhysicalDevice16BitStorageFeatures){
+        .sType = storage.sType, .storageBuffer16BitAccess = storage.storageBuffer16BitAccess};
+    gpu->features = (VkPhysicalDeviceFeatures2){.sType = supported.sType};
+    vkao_add_required_features(&gpu->features.features);
     VkResult result =
         vkCreateDevice(gpu->physical_device,
                        &(VkDeviceCreateInfo){
                            .sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                           .pNext = &storage,
+                           .pNext = &gpu->storage_features,
                            .queueCreateInfoCount = 1,
                            .pQueueCreateInfos =
                                &(VkDeviceQueueCreateInfo){
@@ -286,7 +282,7 @@ static bool create_device(struct gpu *gpu, const struct gpu_options *options,
                                },
                            .enabledExtensionCount = options->presentation ? 1 : 0,
                            .ppEnabledExtensionNames = swapchain,
-                           .pEnabledFeatures = &gpu->features,
+                           .pEnabledFeatures = &gpu->features.features,
                        },
                        NULL, &gpu->device);
     if (result != VK_SUCCESS) {
@@ -407,23 +403,37 @@ bool gpu_library_failed(struct tool_error *err, const char *call, vkao_result re
     return fail(err, code, "%s: %s", call, vkao_result_string(result));
 }
 
-vkao_context_info gpu_context_info(const struct gpu *gpu, uint32_t method_mask)
+/* A trial override: with VKAO_PATH=images a CPU says that it is a GPU, and gets the passes that
+ * GPUs get. */
+static VKAPI_ATTR void VKAPI_CALL properties_of_gpu(VkPhysicalDevice device,
+                                                    VkPhysicalDeviceProperties *out)
 {
-    return (vkao_context_info){
-        .struct_size = sizeof(vkao_context_info),
-        .method_mask = method_mask,
-        .instance = gpu->instance,
-        .physical_device = gpu->physical_device,
-        .device = gpu->device,
-        .get_instance_proc_addr = vkGetInstanceProcAddr,
-        .get_device_proc_addr = vkGetDeviceProcAddr,
-        .enabled_features = &gpu->features,
-        .storage_16bit = gpu->storage_16bit,
-        .log = print_log,
-        .debug_labels = gpu->messenger != VK_NULL_HANDLE,
-        /* Messages of validation are counted in one thread. */
-        .parallel = gpu->messenger ? NULL : parallel_run,
-    };
+    vkGetPhysicalDeviceProperties(device, out);
+    out->deviceType = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
+}
+
+static VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instance_function(VkInstance instance,
+                                                                  const char *name)
+{
+    const char *path = getenv("VKAO_PATH");
+    if (path && strcmp(path, "images") == 0 && strcmp(name, "vkGetPhysicalDeviceProperties") == 0)
+        return (PFN_vkVoidFunction)properties_of_gpu;
+    return vkGetInstanceProcAddr(instance, name);
+}
+
+vkao_context_info gpu_context_info(struct gpu *gpu)
+{
+    vkao_context_info info = vkao_context_info_default();
+    info.instance = gpu->instance;
+    info.physical_device = gpu->physical_device;
+    info.device = gpu->device;
+    info.get_instance_proc_addr = instance_function;
+    info.get_device_proc_addr = vkGetDeviceProcAddr;
+    gpu->features.pNext = &gpu->storage_features;
+    info.enabled_features = &gpu->features;
+    info.log = print_log;
+    info.debug_labels = gpu->messenger != VK_NULL_HANDLE;
+    return info;
 }
 
 vkao_context *gpu_context_create(const vkao_context_info *info, struct tool_error *err)
@@ -435,8 +445,8 @@ vkao_context *gpu_context_create(const vkao_context_info *info, struct tool_erro
     return ctx;
 }
 
-vkao_context *gpu_context(struct gpu *gpu, uint32_t method_mask, struct tool_error *err)
+vkao_context *gpu_context(struct gpu *gpu, struct tool_error *err)
 {
-    const vkao_context_info info = gpu_context_info(gpu, method_mask);
+    const vkao_context_info info = gpu_context_info(gpu);
     return gpu_context_create(&info, err);
 }

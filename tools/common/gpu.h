@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * A Vulkan device for tools and tests: instance, device, one compute queue, images to upload and download.
- * Everything waits until it is done: simple first, and the tools overlap I/O with compute by threads. */
+ * A Vulkan device for tools and tests: instance, device, one compute queue, images to upload and
+ * download. Everything waits until it is done: simple first, and the tools overlap I/O with compute
+ * by threads. */
 #ifndef VKAO_TOOLS_GPU_H_
 #define VKAO_TOOLS_GPU_H_
 
@@ -27,9 +28,10 @@ struct gpu {
     VkPhysicalDeviceProperties properties;
     VkPhysicalDeviceMemoryProperties memory;
     VkDeviceSize max_allocation; /* maxMemoryAllocationSize */
-    VkPhysicalDeviceFeatures features; /* as enabled */
-    VkBool32 storage_16bit;            /* storageBuffer16BitAccess is enabled */
-    uint32_t validation_messages;      /* warnings and errors of the validation layers so far */
+    /* As enabled; the first is the head of the chain. */
+    VkPhysicalDeviceFeatures2 features;
+    VkPhysicalDevice16BitStorageFeatures storage_features;
+    uint32_t validation_messages; /* warnings and errors of the validation layers so far */
     bool print_validation;
 };
 
@@ -37,16 +39,20 @@ struct gpu {
 struct gpu_presentation {
     const char *const *instance_extensions; /* of the window system */
     uint32_t instance_extension_count;
-    /* Whether a queue family can present. The family also has graphics, and VK_KHR_swapchain is enabled. */
+    /* Whether a queue family can present. The family also has graphics, and VK_KHR_swapchain is
+     * enabled. */
     bool (*supported)(VkInstance instance, VkPhysicalDevice device, uint32_t queue_family);
 };
 
 struct gpu_options {
-    /* NULL or "auto": a discrete GPU, else an integrated one, else the CPU. "cpu": a software device (lavapipe).
-     * A number: index in `vkao devices`. Anything else: the first device whose name contains it. */
+    /* NULL or "auto": a discrete GPU, else an integrated one, else the CPU. "cpu": a software
+     * device (lavapipe). A number: index in `vkao devices`. Anything else: the first device whose
+     * name contains it. */
     const char *device;
-    bool validation; /* core, synchronization and queue-submit validation; fails if the layer is missing */
-    const struct gpu_presentation *presentation; /* NULL: compute alone. Read during gpu_create only */
+    /* core, synchronization and queue-submit validation; fails if the layer is missing */
+    bool validation;
+    /* NULL: compute alone. Read during gpu_create only */
+    const struct gpu_presentation *presentation;
 };
 
 struct gpu_device_list {
@@ -79,7 +85,8 @@ void gpu_image_destroy(struct gpu *gpu, struct gpu_image *image);
 /* Tightly packed rows in the image's own format. bytes must be the image's size. */
 bool gpu_image_upload(struct gpu *gpu, struct gpu_image *image, const void *data, uint64_t bytes,
                       struct tool_error *err);
-bool gpu_image_download(struct gpu *gpu, struct gpu_image *image, void *data, uint64_t bytes, struct tool_error *err);
+bool gpu_image_download(struct gpu *gpu, struct gpu_image *image, void *data, uint64_t bytes,
+                        struct tool_error *err);
 /* The slot of a vkao_images for it, in GENERAL. */
 vkao_image gpu_image_slot(const struct gpu_image *image);
 /* 0 for formats that the tools do not use. */
@@ -95,8 +102,8 @@ struct gpu_buffer {
     void *mapped;
 };
 
-bool gpu_buffer_create(struct gpu *gpu, uint64_t bytes, VkBufferUsageFlags usage, struct gpu_buffer *buffer,
-                       struct tool_error *err);
+bool gpu_buffer_create(struct gpu *gpu, uint64_t bytes, VkBufferUsageFlags usage,
+                       struct gpu_buffer *buffer, struct tool_error *err);
 void gpu_buffer_destroy(struct gpu *gpu, struct gpu_buffer *buffer);
 
 /* A command buffer in recording state; gpu_submit ends, runs, waits for and frees it. */
@@ -105,10 +112,11 @@ bool gpu_submit(struct gpu *gpu, VkCommandBuffer cmd, struct tool_error *err);
 /* Makes every earlier write visible to every later access on the queue. */
 void gpu_full_barrier(VkCommandBuffer cmd);
 
-/* A vkao context on this device; log lines go to stderr. method_mask as in vkao_context_info. */
-vkao_context *gpu_context(struct gpu *gpu, uint32_t method_mask, struct tool_error *err);
-/* The two halves of gpu_context, for those who change something in between. */
-vkao_context_info gpu_context_info(const struct gpu *gpu, uint32_t method_mask);
+/* A vkao context on this device; log lines go to stderr. Destroy it before the gpu. */
+vkao_context *gpu_context(struct gpu *gpu, struct tool_error *err);
+/* The two halves of gpu_context, for those who change something in between. The info points into
+ * gpu. */
+vkao_context_info gpu_context_info(struct gpu *gpu);
 vkao_context *gpu_context_create(const vkao_context_info *info, struct tool_error *err);
 /* True if result is VK_SUCCESS; else the error of the call: EXIT_MEMORY or EXIT_DEVICE. */
 bool gpu_ok(struct tool_error *err, const char *call, VkResult result);

@@ -79,13 +79,13 @@ bool gpu_submit(struct gpu *gpu, VkCommandBuffer cmd, struct tool_error *err)
 {
     bool ok = gpu_ok(err, "vkEndCommandBuffer", vkEndCommandBuffer(cmd)) &&
               gpu_ok(err, "vkQueueSubmit",
-                    vkQueueSubmit(gpu->queue, 1,
-                                  &(VkSubmitInfo){
-                                      .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
-                                      .commandBufferCount = 1,
-                                      .pCommandBuffers = &cmd,
-                                  },
-                                  VK_NULL_HANDLE)) &&
+                     vkQueueSubmit(gpu->queue, 1,
+                                   &(VkSubmitInfo){
+                                       .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO,
+                                       .commandBufferCount = 1,
+                                       .pCommandBuffers = &cmd,
+                                   },
+                                   VK_NULL_HANDLE)) &&
               gpu_ok(err, "vkQueueWaitIdle", vkQueueWaitIdle(gpu->queue));
     vkFreeCommandBuffers(gpu->device, gpu->command_pool, 1, &cmd);
     return ok;
@@ -171,7 +171,7 @@ bool gpu_image_create(struct gpu *gpu, VkFormat format, VkExtent2D extent, VkIma
     vkGetImageMemoryRequirements(gpu->device, image->image, &need);
     bool ok = gpu_allocate(gpu, &need, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, &image->memory, err) &&
               gpu_ok(err, "vkBindImageMemory",
-                    vkBindImageMemory(gpu->device, image->image, image->memory, 0));
+                     vkBindImageMemory(gpu->device, image->image, image->memory, 0));
     if (ok) {
         result = vkCreateImageView(gpu->device,
                                    &(VkImageViewCreateInfo){
@@ -205,7 +205,7 @@ void gpu_image_destroy(struct gpu *gpu, struct gpu_image *image)
 
 vkao_image gpu_image_slot(const struct gpu_image *image)
 {
-    return (vkao_image){image->view, VK_IMAGE_LAYOUT_GENERAL, image->format};
+    return (vkao_image){image->view, VK_IMAGE_LAYOUT_GENERAL, image->format, VK_NULL_HANDLE};
 }
 
 void gpu_buffer_destroy(struct gpu *gpu, struct gpu_buffer *buffer)
@@ -240,9 +240,9 @@ bool gpu_buffer_create(struct gpu *gpu, uint64_t bytes, VkBufferUsageFlags usage
                      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
                      &s->memory, err) &&
         gpu_ok(err, "vkBindBufferMemory",
-              vkBindBufferMemory(gpu->device, s->buffer, s->memory, 0)) &&
+               vkBindBufferMemory(gpu->device, s->buffer, s->memory, 0)) &&
         gpu_ok(err, "vkMapMemory",
-              vkMapMemory(gpu->device, s->memory, 0, VK_WHOLE_SIZE, 0, &s->mapped)))
+               vkMapMemory(gpu->device, s->memory, 0, VK_WHOLE_SIZE, 0, &s->mapped)))
         return true;
     gpu_buffer_destroy(gpu, s);
     return false;

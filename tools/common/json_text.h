@@ -8,7 +8,8 @@
 #include <cjson/cJSON.h>
 #include <stdbool.h>
 
-/* Before a document is built or parsed, in the thread that does so: how often memory ran out so far. */
+/* Before a document is built or parsed, in the thread that does so: how often memory ran out so
+ * far. */
 unsigned json_begin(void);
 /* Whether nothing that was asked of cJSON since then failed for want of memory. */
 bool json_is_whole(unsigned begun);

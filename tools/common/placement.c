@@ -12,8 +12,8 @@ static bool inside(const struct exr_box *data, const struct exr_box *display)
            data->x_max <= display->x_max && data->y_max <= display->y_max;
 }
 
-/* The noise repeats after 4 columns, and after 820 rows all but: 820 steps of 1/g, g being the plastic
- * number, are 619 turns less .0003. At half resolution a texel is two. */
+/* The noise repeats after 4 columns, and after 820 rows all but: 820 steps of 1/g, g being the
+ * plastic number, are 619 turns less .0003. At half resolution a texel is two. */
 enum { NOISE_COLUMNS = 2 * 4, NOISE_ROWS = 2 * 820 };
 
 struct placement placement_of(const struct exr_box *data, const struct exr_box *display)
@@ -68,7 +68,8 @@ bool placement_expand(struct gbuffer *gbuffer, struct placement *placement, stru
         !pad(&g->normals, g, placement, 4, 0.0f, err) ||
         !pad(&g->color, g, placement, 4, 0.0f, err))
         return false;
-    /* Half resolution wants to begin at even texels: a column and a row of background do no harm. */
+    /* Half resolution wants to begin at even texels: a column and a row of background do no
+     * harm. */
     const uint32_t odd_x = placement->left % 2, odd_y = placement->top % 2;
     g->view.valid = (VkRect2D){
         .offset = {(int32_t)(placement->left - odd_x), (int32_t)(placement->top - odd_y)},

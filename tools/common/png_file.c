@@ -3,9 +3,22 @@
 
 #include "atomic_file.h"
 
+#include <math.h>
 #include <png.h>
 #include <setjmp.h>
 #include <stdlib.h>
+
+uint8_t byte_of(double value)
+{
+    return value > 0 ? (uint8_t)lround(fmin(value, 1) * 255) : 0;
+}
+
+double srgb_of(double linear)
+{
+    if (!(linear > 0))
+        return 0;
+    return linear <= 0.0031308 ? linear * 12.92 : 1.055 * pow(fmin(linear, 1), 1 / 2.4) - 0.055;
+}
 
 struct sink {
     struct atomic_file *file;

@@ -58,6 +58,9 @@ extern const size_t role_table_count;
 extern const char *const role_never_depth[];
 extern const size_t role_never_depth_count;
 
+/* The label of bare channels. */
+#define ROLE_NO_LAYER "(no layer)"
+
 /* A role as found. Pointers lead into the exr_info. */
 struct role {
     bool found;

@@ -277,3 +277,19 @@ void text_add_wrapped(struct text *text, const char *words, size_t indent, size_
     }
     text_add(text, "\n");
 }
+
+void text_add_list(struct text *text, const char *const *words, uint32_t chosen, const char *last)
+{
+    bool is_first = true;
+    for (size_t i = 0; chosen >> i; i++) {
+        const bool is_last = chosen >> i == 1;
+        if (!(chosen >> i & 1u))
+            continue;
+        if (!is_first && is_last)
+            text_add(text, " %s ", last);
+        text_add(text, "%s%s", is_first || is_last ? "" : ", ", words[i]);
+        is_first = false;
+        if (is_last)
+            return;
+    }
+}

@@ -51,7 +51,10 @@ unsigned text_distance(const char *a, const char *b);
 /* False if the product does not fit. */
 bool size_multiply(size_t a, size_t b, size_t *product);
 
-/* Words from column indent on, where the text stands, and a line break: no line reaches beyond columns. */
+/* "a, b or c" of the words whose bits are set, with `last` before the last. */
+void text_add_list(struct text *text, const char *const *words, uint32_t chosen, const char *last);
+/* Words from column indent on, where the text stands, and a line break: no line reaches beyond
+ * columns. */
 void text_add_wrapped(struct text *text, const char *words, size_t indent, size_t columns);
 
 #endif

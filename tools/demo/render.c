@@ -6,10 +6,10 @@
 #include "error.h"
 #include "exr_file.h"
 #include "light.h"
+#include "parallel.h"
+#include "text.h"
 
 #include <errno.h>
-#include <pthread.h>
-#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,12 +25,11 @@ static const char usage[] =
     "  --camera-json FILE  write the camera too, for vkao --camera\n"
     "  --truth FILE        write ray-traced AO_threshold and AO_falloff\n"
     "  --radius R          of the truth, scene units, default 0.5\n"
-    "  --rays N            of the truth, per texel, default 1024\n"
-    "  --threads N         default 2\n";
+    "  --rays N            of the truth, per texel, default 1024\n";
 
 struct settings {
     const char *output, *camera_json, *truth;
-    int width, height, samples, rays, threads;
+    int width, height, samples, rays;
     double radius;
     enum light_mode light;
     bool bare;
@@ -46,29 +45,24 @@ struct job {
     const struct trace_scene *scene;
     struct trace_camera camera;
     struct picture picture;
-    atomic_int next_row;
 };
 
 /* --- command line --- */
 
 static bool whole_number(const char *text, int *value)
 {
-    char *end;
-    errno = 0;
-    long number = strtol(text, &end, 10);
-    *value = number > 0 && number <= 65535 ? (int)number : 0;
-    return *value && !*end && end != text && !errno;
+    int64_t number;
+    if (!text_to_integer(text, &number) || number < 1 || number > 65535)
+        return false;
+    *value = (int)number;
+    return true;
 }
 
 static bool size_of_image(const char *text, struct settings *s)
 {
-    char first[16];
-    const char *x = strchr(text, 'x');
-    if (!x || (size_t)(x - text) >= sizeof first)
-        return false;
-    memcpy(first, text, (size_t)(x - text));
-    first[x - text] = 0;
-    return whole_number(first, &s->width) && whole_number(x + 1, &s->height);
+    int end = 0;
+    return sscanf(text, "%5dx%5d%n", &s->width, &s->height, &end) == 2 && !text[end] &&
+           s->width > 0 && s->height > 0;
 }
 
 static bool option(const char *name, const char *value, struct settings *s)
@@ -79,13 +73,8 @@ static bool option(const char *name, const char *value, struct settings *s)
         return whole_number(value, &s->samples);
     if (!strcmp(name, "--rays"))
         return whole_number(value, &s->rays);
-    if (!strcmp(name, "--threads"))
-        return whole_number(value, &s->threads);
-    if (!strcmp(name, "--radius")) {
-        char *end;
-        s->radius = strtod(value, &end);
-        return end != value && !*end && s->radius > 0 && isfinite(s->radius);
-    }
+    if (!strcmp(name, "--radius"))
+        return text_to_number(value, &s->radius) && s->radius > 0 && isfinite(s->radius);
     if (!strcmp(name, "--beauty")) {
         s->light = strcmp(value, "path") == 0 ? LIGHT_PATH : LIGHT_FLAT;
         return s->light == LIGHT_PATH || strcmp(value, "flat") == 0;
@@ -126,8 +115,11 @@ static void store3(float *out, size_t texel, struct vec3 v)
     out[texel * 3 + 2] = (float)v.z;
 }
 
-static void draw_row(struct job *job, int row)
+/* A job of parallel_run. */
+static void draw_row(void *data, uint32_t index)
 {
+    const struct job *job = data;
+    const int row = (int)index;
     const struct settings *s = job->settings;
     const struct picture *p = &job->picture;
     struct trace_gbuffer gbuffer = {.z = p->z, .normal = p->normal, .albedo = p->albedo};
@@ -142,26 +134,6 @@ static void draw_row(struct job *job, int row)
         store3(p->color, texel, color);
         p->alpha[texel] = 1.0f;
     }
-}
-
-static void *draw_rows(void *data)
-{
-    struct job *job = data;
-    int row;
-    while ((row = atomic_fetch_add(&job->next_row, 1)) < job->settings->height)
-        draw_row(job, row);
-    return NULL;
-}
-
-static void draw(struct job *job)
-{
-    pthread_t threads[64];
-    int wanted = job->settings->threads < 64 ? job->settings->threads : 64, started = 0;
-    while (started + 1 < wanted && !pthread_create(&threads[started], NULL, draw_rows, job))
-        started++;
-    draw_rows(job);
-    while (started)
-        pthread_join(threads[--started], NULL);
 }
 
 static void picture_free(struct picture *p)
@@ -304,7 +276,7 @@ static bool render(const struct settings *s, struct tool_error *err)
     if (!good) {
         fail(err, EXIT_MEMORY, "out of memory");
     } else {
-        draw(&job);
+        parallel_run(NULL, (uint32_t)s->height, draw_row, &job);
         if (!s->bare)
             round_gbuffer(job.picture.z, job.picture.normal, texels);
         for (size_t i = 0; i < texels; i++)
@@ -320,7 +292,7 @@ static bool render(const struct settings *s, struct tool_error *err)
 int main(int argc, char **argv)
 {
     struct settings settings = {
-        .width = 640, .height = 360, .samples = 256, .rays = 1024, .threads = 2, .radius = 0.5};
+        .width = 640, .height = 360, .samples = 256, .rays = 1024, .radius = 0.5};
     struct tool_error err = {0};
     if (argc == 2 && !strcmp(argv[1], "--help")) {
         fputs(usage, stdout);

@@ -154,8 +154,8 @@ static const struct own_option own_options[] = {
 
 /* Of vkao, but not for a viewer. */
 static const char *const foreign[] = {
-    "output",    "mode", "part-name",     "pixel-type",   "compression",      "preview",
-    "overwrite", "json", "frames-syntax", "bent-normals", "continue-on-error"};
+    "output",    "mode", "part-name",     "pixel-type",   "compression",       "preview",
+    "overwrite", "json", "frames-syntax", "bent-normals", "continue-on-error", "like"};
 
 static const struct own_option *find_own(const char *name, size_t length)
 {
@@ -181,17 +181,14 @@ static const struct option_row *find_foreign(const char *word, size_t length)
 }
 
 /* Whether Save takes the option from the settings, or need not repeat it. */
-static bool is_of_settings(const char *name)
+static bool is_of_settings(const struct option_row *row)
 {
     static const char *const more[] = {"quality", "frames",  "validation",
                                        "threads", "verbose", "quiet"};
-    for (size_t i = 0; i < param_count; i++)
-        if (params[i].option && strcmp(params[i].option, name) == 0)
-            return true;
     for (size_t i = 0; i < sizeof more / sizeof *more; i++)
-        if (strcmp(more[i], name) == 0)
+        if (strcmp(more[i], row->name) == 0)
             return true;
-    return false;
+    return option_parameter(row) != NULL;
 }
 
 static bool fail_usage(struct tool_error *err)
@@ -236,7 +233,7 @@ static bool pass_on(struct arguments *a, int argc, char **argv, int *i, struct w
             return fail_usage(err);
         }
     }
-    bool keep = row && !is_of_settings(row->name) && strcmp(row->name, "camera") != 0;
+    bool keep = row && !is_of_settings(row) && strcmp(row->name, "camera") != 0;
     for (int n = 0; n < (two && *i + 1 < argc ? 2 : 1); n++) {
         if (!add_word(words, argv[*i + n], err))
             return false;
@@ -314,12 +311,9 @@ static bool parse_words(struct words words, char *input, struct options *options
 
 static struct setting setting_of(const struct options *o)
 {
-    struct setting s = {.ssao = o->ssao,
-                        .blur = o->blur,
-                        .composite = o->composite,
-                        .half_resolution = o->half_resolution};
+    struct setting s = o->setting;
     if (o->radius_is_auto)
-        s.ssao.radius = 0.0f;
+        s.params.radius = 0.0f;
     return s;
 }
 

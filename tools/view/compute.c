@@ -14,20 +14,51 @@ static bool library_ok(struct tool_error *err, const char *call, vkao_result res
 
 /* --- Frame and images --- */
 
+/* What of the composite the images and the view allow. */
+static void fit_composite(vkao_effect_info *e, const struct inputs *inputs, enum view_kind view)
+{
+    const bool color = inputs->images.color.format != VK_FORMAT_UNDEFINED;
+    if (view == VIEW_DEPTH)
+        e->composite_mode = VKAO_COMPOSITE_VIEW_Z;
+    else if (view == VIEW_NORMALS)
+        e->composite_mode = VKAO_COMPOSITE_NORMALS;
+    else if (view == VIEW_BENT)
+        e->composite_mode = VKAO_COMPOSITE_BENT_NORMALS;
+    else if (!color ||
+             (e->composite_mode == VKAO_COMPOSITE_INDIRECT && !inputs->images.direct.format))
+        e->composite_mode = color ? VKAO_COMPOSITE_MULTIPLY : VKAO_COMPOSITE_AO_ONLY;
+    if (view != VIEW_COMPOSITE || !inputs->images.albedo.format)
+        e->multi_bounce = VK_FALSE;
+    if (view != VIEW_COMPOSITE || !inputs->images.specular.format || !inputs->view.normal_encoding)
+        e->specular = VKAO_SPECULAR_NONE;
+}
+
 static struct shape shape_of(const struct inputs *inputs, const struct setting *setting,
                              enum view_kind view)
 {
+    const vkao_effect_info standard = vkao_effect_info_default();
     struct shape s;
     memset(&s, 0, sizeof s);
     s.extent = inputs->extent;
-    s.half_resolution = setting->half_resolution;
-    s.bent = view == VIEW_BENT && method_has_bent(setting->ssao.method);
+    s.bent = view == VIEW_BENT && method_has_bent(setting->effect.method);
     s.composite = view == VIEW_COMPOSITE || view == VIEW_DEPTH || view == VIEW_NORMALS || s.bent;
     s.inputs = inputs->images;
     if (view != VIEW_COMPOSITE) {
         const vkao_image none = {0};
         s.inputs.color = s.inputs.direct = s.inputs.albedo = s.inputs.specular = none;
     }
+    s.effect = setting_for_view(setting, view).effect;
+    s.effect.stages = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (s.composite ? VKAO_STAGE_COMPOSITE : 0u);
+    ao_view_describe(&inputs->view, &s.effect);
+    if (s.composite) {
+        fit_composite(&s.effect, inputs, view);
+    } else { /* nothing is compiled anew when it changes */
+        s.effect.composite_mode = standard.composite_mode;
+        s.effect.multi_bounce = standard.multi_bounce;
+        s.effect.specular = standard.specular;
+    }
+    s.effect.bent_normals = s.bent;
+    s.effect.ao_format = VK_FORMAT_R32_SFLOAT;
     return s;
 }
 
@@ -54,23 +85,22 @@ bool computation_create(struct computation *c, struct gpu *gpu, const vkao_conte
               (!shape.composite || gpu_image_create(gpu, VK_FORMAT_R32G32B32A32_SFLOAT,
                                                     shape.extent, usage, &c->output, err));
     images.ao = gpu_image_slot(&c->ao);
-    images.ao_image = c->ao.image;
+    images.ao.image = c->ao.image;
     if (shape.bent)
         images.bent_normals = gpu_image_slot(&c->bent);
     if (shape.composite)
         images.output = gpu_image_slot(&c->output);
-    ok = ok &&
-         library_ok(err, "vkao_frame_create",
-                    vkao_frame_create(ctx,
-                                      &(vkao_frame_info){
-                                          .struct_size = sizeof(vkao_frame_info),
-                                          .stages = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR |
-                                                    (shape.composite ? VKAO_STAGE_COMPOSITE : 0u),
-                                          .extent = shape.extent,
-                                          .images = &images,
-                                          .half_resolution = shape.half_resolution,
-                                      },
-                                      &c->frame));
+    ok =
+        ok &&
+        library_ok(err, "vkao_effect_create", vkao_effect_create(ctx, &shape.effect, &c->effect)) &&
+        library_ok(err, "vkao_frame_create",
+                   vkao_frame_create(c->effect,
+                                     &(vkao_frame_info){
+                                         .struct_size = sizeof(vkao_frame_info),
+                                         .extent = shape.extent,
+                                         .images = &images,
+                                     },
+                                     &c->frame));
     if (!ok)
         computation_destroy(c);
     return ok;
@@ -81,6 +111,7 @@ void computation_destroy(struct computation *c)
     if (!c->gpu)
         return;
     vkao_frame_destroy(c->frame);
+    vkao_effect_destroy(c->effect);
     gpu_image_destroy(c->gpu, &c->ao);
     gpu_image_destroy(c->gpu, &c->bent);
     gpu_image_destroy(c->gpu, &c->output);
@@ -88,26 +119,6 @@ void computation_destroy(struct computation *c)
 }
 
 /* --- Recording --- */
-
-static vkao_composite_params composite_of(const struct computation *c,
-                                          const struct setting *setting, enum view_kind view)
-{
-    vkao_composite_params p = setting->composite;
-    const bool color = c->shape.inputs.color.format != VK_FORMAT_UNDEFINED;
-    if (view == VIEW_DEPTH)
-        p.mode = VKAO_COMPOSITE_VIEW_Z;
-    else if (view == VIEW_NORMALS)
-        p.mode = VKAO_COMPOSITE_NORMALS;
-    else if (view == VIEW_BENT)
-        p.mode = VKAO_COMPOSITE_BENT_NORMALS;
-    else if (!color || (p.mode == VKAO_COMPOSITE_INDIRECT && !c->shape.inputs.direct.format))
-        p.mode = color ? VKAO_COMPOSITE_MULTIPLY : VKAO_COMPOSITE_AO_ONLY;
-    if (view != VIEW_COMPOSITE || !c->shape.inputs.albedo.format)
-        p.multi_bounce = VK_FALSE;
-    if (view != VIEW_COMPOSITE || !c->shape.inputs.specular.format)
-        p.specular = VKAO_SPECULAR_NONE;
-    return p;
-}
 
 static void barrier(VkCommandBuffer cmd, VkPipelineStageFlags from, VkPipelineStageFlags to,
                     VkAccessFlags before, VkAccessFlags after)
@@ -136,24 +147,21 @@ bool computation_record(const struct computation *c, VkCommandBuffer cmd,
     const VkPipelineStageFlags readers =
         VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT;
     const struct setting s = setting_for_view(setting, view);
-    const vkao_composite_params composite = composite_of(c, &s, view);
+    const vkao_view library_view = ao_library_view(&inputs->view);
     if (pool)
         vkCmdResetQueryPool(cmd, pool, query, STAGES + 1);
     /* The display and the probe of earlier frames read the results -> vkao writes them. */
     barrier(cmd, readers | compute, compute, VK_ACCESS_SHADER_WRITE_BIT,
             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT);
     stamp(cmd, pool, query);
-    vkao_result result = vkao_cmd_prepare(c->frame, cmd, &inputs->view);
-    stamp(cmd, pool, query + 1);
-    if (result == VKAO_SUCCESS)
-        result = vkao_cmd_ssao(c->frame, cmd, &inputs->view, &s.ssao);
-    stamp(cmd, pool, query + 2);
-    if (result == VKAO_SUCCESS)
-        result = vkao_cmd_blur(c->frame, cmd, &inputs->view, &s.blur);
-    stamp(cmd, pool, query + 3);
-    if (result == VKAO_SUCCESS && c->shape.composite)
-        result = vkao_cmd_composite(c->frame, cmd, &inputs->view, &composite);
-    stamp(cmd, pool, query + 4);
+    static const vkao_stage_flags stages[STAGES] = {VKAO_STAGE_PREPARE, VKAO_STAGE_SSAO,
+                                                    VKAO_STAGE_BLUR, VKAO_STAGE_COMPOSITE};
+    vkao_result result = VKAO_SUCCESS;
+    for (uint32_t i = 0; i < STAGES; i++) {
+        if (result == VKAO_SUCCESS && (stages[i] != VKAO_STAGE_COMPOSITE || c->shape.composite))
+            result = vkao_cmd_stage(c->frame, cmd, stages[i], &library_view, &s.params);
+        stamp(cmd, pool, query + i + 1);
+    }
     /* vkao wrote the results -> the display and the probe read them. */
     barrier(cmd, compute, readers, VK_ACCESS_SHADER_WRITE_BIT,
             VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT);

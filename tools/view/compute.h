@@ -5,13 +5,14 @@
 #define VKAO_VIEW_COMPUTE_H_
 
 #include "gpu.h"
+#include "setting.h"
 #include "settings.h"
 
 /* What vkao reads: of a file or of a live scene. */
 struct inputs {
     vkao_images images; /* depth, normals, color, direct, albedo */
     VkExtent2D extent;
-    vkao_view view;
+    struct ao_view view;
     VkImage depth, normals; /* of the slots, for the probe; normals may be VK_NULL_HANDLE */
 };
 
@@ -26,14 +27,16 @@ struct stage_times {
  * the command line tool makes, so that the same numbers come out. */
 struct shape {
     VkExtent2D extent;
-    VkBool32 half_resolution, bent, composite;
+    VkBool32 bent, composite;
     vkao_images inputs; /* slots that are read */
+    vkao_effect_info effect;
 };
 
 /* One setting's frame and results. */
 struct computation {
     struct gpu *gpu;
     struct shape shape;
+    vkao_effect *effect;
     vkao_frame *frame;
     struct gpu_image ao, bent,
         output; /* R32, RGBA32, RGBA32 float; the last two only if the shape has them */

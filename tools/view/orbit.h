@@ -38,10 +38,10 @@ void orbit_zoom(struct orbit *orbit, double steps);
 void orbit_eye(const struct orbit *orbit, double eye[3]);
 /* World to view space. */
 void orbit_view_matrix(const struct orbit *orbit, float matrix[16]);
-/* View to clip space, as vkao_view.projection wants it. aspect: width / height. */
+/* View to clip space, as struct ao_view.projection wants it. aspect: width / height. */
 void orbit_projection(const struct orbit *orbit, double aspect, float matrix[16]);
-/* The rotation alone, m[column * 3 + row], as vkao_view.normal_to_view wants it for world-space
- * normals. */
+/* The rotation alone, m[column * 3 + row], as struct ao_view.normal_to_view wants it for
+ * world-space normals. */
 void orbit_rotation(const struct orbit *orbit, float matrix[9]);
 
 #endif

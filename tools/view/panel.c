@@ -11,66 +11,61 @@
 
 /* --- Parameters --- */
 
-static void describe(const struct param *p, char *text, size_t size)
+static void describe(const struct param *row, char *text, size_t size)
 {
-    const struct setting standard = setting_default();
-    const void *at = param_of_const(&standard, p);
-    if (p->kind == PARAM_FLOAT)
-        snprintf(text, size, "%s\n\n%g to %g, default %g. Right click: default", p->help, p->low,
-                 p->high, (double)*(const float *)at);
-    else if (p->kind == PARAM_UINT)
-        snprintf(text, size, "%s\n\n%g to %g, default %u. Right click: default", p->help, p->low,
-                 p->high, *(const uint32_t *)at);
+    const vkao_parameter *p = row->parameter;
+    const bool is_number = p->type == VKAO_PARAMETER_FLOAT || p->type == VKAO_PARAMETER_UINT;
+    if (is_number)
+        snprintf(text, size, "%s\n\n%g to %g%s%s, default %g. Right click: default", p->help,
+                 row->low, row->high, *p->unit ? " " : "", p->unit, p->standard);
     else
         snprintf(text, size, "%s\n\nRight click: default", p->help);
 }
 
-static bool choice_row(const struct param *p, struct setting *s, unsigned there)
+static bool choice_row(const struct param *row, struct setting *s, unsigned there)
 {
-    int now, before;
-    const char *word = "";
-    memcpy(&now, param_of(s, p), sizeof now);
+    const vkao_parameter *p = row->parameter;
+    uint32_t now, before;
+    memcpy(&now, parameter_of(s, p), sizeof now);
     before = now;
-    for (const struct param_choice *c = p->choices; c->word; c++)
-        if (c->value == now)
-            word = c->word;
-    if (!ui_begin_choice(p->label, word))
+    if (!ui_begin_choice(row->label, (double)now <= p->most ? p->choices[now] : ""))
         return false;
-    for (const struct param_choice *c = p->choices; c->word; c++)
-        if (ui_choice(c->word, c->value == now, (c->needs & ~there) == 0))
-            now = c->value;
+    for (uint32_t c = 0; c <= last_choice(row); c++)
+        if (ui_choice(p->choices[c], c == before, (choice_needs(row, c) & ~there) == 0))
+            now = c;
     ui_end_choice();
-    memcpy(param_of(s, p), &now, sizeof now);
+    memcpy(parameter_of(s, p), &now, sizeof now);
     return now != before;
 }
 
-static bool widget_row(const struct param *p, struct setting *s, unsigned there)
+static bool widget_row(const struct param *row, struct setting *s, unsigned there)
 {
-    void *at = param_of(s, p);
+    void *at = parameter_of(s, row->parameter);
     bool on, changed;
-    switch (p->kind) {
-    case PARAM_FLOAT:
-        return ui_slider_float(p->label, at, (float)p->low, (float)p->high, p->logarithmic);
-    case PARAM_UINT:
-        return ui_slider_uint(p->label, at, (uint32_t)p->low, (uint32_t)p->high, p->logarithmic);
-    case PARAM_COLOR:
-        return ui_color(p->label, at);
-    case PARAM_CHOICE:
-        return choice_row(p, s, there);
-    case PARAM_SWITCH:
+    switch (row->parameter->type) {
+    case VKAO_PARAMETER_FLOAT:
+        return ui_slider_float(row->label, at, (float)row->low, (float)row->high, row->logarithmic);
+    case VKAO_PARAMETER_UINT:
+        return ui_slider_uint(row->label, at, (uint32_t)row->low, (uint32_t)row->high,
+                              row->logarithmic);
+    case VKAO_PARAMETER_COLOR:
+        return ui_color(row->label, at);
+    case VKAO_PARAMETER_CHOICE:
+        return choice_row(row, s, there);
+    default:
         on = *(VkBool32 *)at;
-        changed = ui_checkbox(p->label, &on);
+        changed = ui_checkbox(row->label, &on);
         *(VkBool32 *)at = on;
         return changed;
     }
-    return false;
 }
 
 /* Whether it changed. A right click resets; the radius of a file is its automatic one. */
 static bool param_row(struct viewer *v, const struct param *p, struct setting *s)
 {
     const unsigned there = viewer_images_there(v);
-    bool idle = (p->methods && !(p->methods & 1u << s->ssao.method)) || (p->needs & ~there);
+    const uint32_t readers = p->parameter->methods;
+    bool idle = (readers && !(readers & 1u << s->effect.method)) || (p->needs & ~there);
     char help[256];
     ui_begin_disabled(idle);
     bool changed = widget_row(p, s, there);
@@ -87,14 +82,16 @@ static bool param_row(struct viewer *v, const struct param *p, struct setting *s
 static void param_sections(struct viewer *v)
 {
     struct setting *s = &v->settings[v->active];
+    size_t count;
+    const struct param *rows = panel_params(&count);
     bool changed = false;
     for (int g = 0; g < GROUP_COUNT; g++) {
         const bool open = g != GROUP_COMPOSITE || v->view == VIEW_COMPOSITE;
         if (!ui_section(group_names[g], open))
             continue;
-        for (size_t i = 0; i < param_count; i++)
-            if ((int)params[i].group == g)
-                changed = param_row(v, &params[i], s) || changed;
+        for (size_t i = 0; i < count; i++)
+            if ((int)rows[i].group == g)
+                changed = param_row(v, &rows[i], s) || changed;
     }
     if (changed)
         viewer_mark_stale(v);
@@ -102,16 +99,9 @@ static void param_sections(struct viewer *v)
 
 static void presets(struct viewer *v)
 {
-    static const struct {
-        const char *label;
-        vkao_quality quality;
-    } rows[] = {{"fast", VKAO_QUALITY_FAST},
-                {"default", VKAO_QUALITY_DEFAULT},
-                {"high", VKAO_QUALITY_HIGH},
-                {"best", VKAO_QUALITY_BEST}};
-    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        if (ui_button(rows[i].label)) {
-            setting_apply_preset(&v->settings[v->active], rows[i].quality);
+    for (int q = 0; q < QUALITY_COUNT; q++) {
+        if (ui_button(quality_names[q])) {
+            setting_apply_preset(&v->settings[v->active], (vkao_quality)q);
             viewer_mark_stale(v);
         }
         ui_same_line();
@@ -158,8 +148,9 @@ static void live_rows(struct viewer *v)
     ui_text("%s, %u x %u", live_scene_name(l->kind), used.width, used.height);
     if (ui_slider_float("resolution", &scale, 0.25f, 1.0f, false))
         l->scale = (double)scale;
-    ui_help("share of the window's resolution on each axis: vkao_view.valid alone changes, and "
-            "nothing is allocated anew");
+    ui_help(
+        "share of the window's resolution on each axis: struct ao_view.valid alone changes, and "
+        "nothing is allocated anew");
     ui_checkbox("orthographic", &l->camera.orthographic);
     ui_same_line();
     ui_checkbox("clock runs", &l->running);
@@ -293,7 +284,7 @@ static void labels(const struct viewer *v)
     const char *missing = NULL;
     if (!viewer_has_image(v))
         missing = "drop an EXR file here";
-    else if (v->view == VIEW_BENT && !method_has_bent(v->settings[v->active].ssao.method))
+    else if (v->view == VIEW_BENT && !method_has_bent(v->settings[v->active].effect.method))
         missing = "bent normals come with vbao, gtao and raymarch";
     else if (v->view == VIEW_DIFFERENCE && v->live)
         missing = "a live scene has no reference";

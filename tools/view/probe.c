@@ -98,8 +98,8 @@ void probe_record(struct probe *probe, uint32_t frame, VkCommandBuffer cmd,
                                 .extent = inputs->extent,
                                 .normal_format =
                                     inputs->normals ? images->normals.format : VK_FORMAT_UNDEFINED};
-    /* The copies of an earlier frame -> these. Its fence says so too, but validation 1.3.239 forgets
-     * the fence once the queue was waited for to be idle. */
+    /* The copies of an earlier frame -> these. Its fence says so too, but validation 1.3.239
+     * forgets the fence once the queue was waited for to be idle. */
     vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1,
                          &(VkMemoryBarrier){
                              .sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
@@ -136,7 +136,7 @@ static bool is_empty(const VkRect2D *rect)
     return rect->extent.width == 0 || rect->extent.height == 0;
 }
 
-static double axis_sign(const vkao_view *view)
+static double axis_sign(const struct ao_view *view)
 {
     const float *p = view->projection;
     if (fabsf(p[11]) > 0.0f)
@@ -145,7 +145,7 @@ static double axis_sign(const vkao_view *view)
 }
 
 /* z of view space, NAN for background. Equations of the projection: clip = P * (x, y, z, 1). */
-static double view_z(const vkao_view *view, double depth)
+static double view_z(const struct ao_view *view, double depth)
 {
     const float *p = view->projection;
     if (!isfinite(depth))
@@ -160,8 +160,8 @@ static double view_z(const vkao_view *view, double depth)
     return ((double)p[14] - depth * (double)p[15]) / (depth * (double)p[11] - (double)p[10]);
 }
 
-bool unproject(const vkao_view *view, VkExtent2D extent, double column, double row, double depth,
-               double position[3])
+bool unproject(const struct ao_view *view, VkExtent2D extent, double column, double row,
+               double depth, double position[3])
 {
     const float *p = view->projection;
     const VkRect2D whole = {.extent = extent};

@@ -23,7 +23,7 @@ struct probe_request {
     int32_t x, y;
     VkOffset2D block; /* first texel of the depth block */
     VkExtent2D block_extent;
-    vkao_view view;
+    struct ao_view view;
     VkExtent2D extent;
     VkFormat normal_format; /* UNDEFINED: no normals */
 };
@@ -46,7 +46,7 @@ bool probe_read(struct probe *probe, uint32_t frame, struct probe_result *result
 /* --- Pure functions --- */
 
 /* View position of the centre of a texel with this depth, as view says. False for background. */
-bool unproject(const vkao_view *view, VkExtent2D extent, double column, double row, double depth,
-               double position[3]);
+bool unproject(const struct ao_view *view, VkExtent2D extent, double column, double row,
+               double depth, double position[3]);
 
 #endif

@@ -241,9 +241,9 @@ void live_scene_record(const struct live_scene *scene, const struct live_target 
     vkCmdEndRenderPass(cmd);
 }
 
-void live_scene_view(const struct orbit *camera, VkExtent2D used, vkao_view *out)
+void live_scene_view(const struct orbit *camera, VkExtent2D used, struct ao_view *out)
 {
-    *out = vkao_view_default();
+    *out = ao_view_default();
     out->depth_encoding = VKAO_DEPTH_PROJECTED;
     out->normal_encoding = VKAO_NORMALS_XYZ_UNORM;
     out->valid.extent = used;

@@ -10,7 +10,7 @@
  *
  *     live_scene_record(scene, &target, cmd, &camera, seconds, used);
  *     live_scene_view(&camera, used, &view);
- *     vkao_cmd_all(frame, cmd, &view, &ssao, &blur, &composite);
+ *     vkao_cmd_record(frame, cmd, &view, &params);
  *
  * Synchronization: live_scene_record brings its own. Before, every earlier access to the target's
  * images came from live_scene_record or was a read by COMPUTE_SHADER, FRAGMENT_SHADER or TRANSFER
@@ -23,6 +23,7 @@
 #define VKAO_VIEW_SCENE_H_
 
 #include "gpu.h"
+#include "setting.h"
 #include "orbit.h"
 
 enum live_kind {
@@ -73,8 +74,8 @@ void live_target_images(const struct live_target *target, vkao_images *images);
 void live_scene_record(const struct live_scene *scene, const struct live_target *target,
                        VkCommandBuffer cmd, const struct orbit *camera, double time,
                        VkExtent2D used);
-/* vkao_view_default() with encodings, matrices and `valid` set to match live_scene_record of the
+/* ao_view_default() with encodings, matrices and `valid` set to match live_scene_record of the
  * same arguments. */
-void live_scene_view(const struct orbit *camera, VkExtent2D used, vkao_view *out);
+void live_scene_view(const struct orbit *camera, VkExtent2D used, struct ao_view *out);
 
 #endif

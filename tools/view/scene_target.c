@@ -160,7 +160,7 @@ void live_target_destroy(struct live_target *target)
 
 static vkao_image slot(const struct gpu_image *image, enum live_attachment attachment)
 {
-    return (vkao_image){image->view, live_layouts[attachment], image->format};
+    return (vkao_image){image->view, live_layouts[attachment], image->format, VK_NULL_HANDLE};
 }
 
 void live_target_images(const struct live_target *target, vkao_images *images)

@@ -197,8 +197,8 @@ bool source_load(struct source *source, size_t frame, size_t view, struct report
     s->now = l;
     s->frame = frame;
     if (!(s->radius > 0))
-        s->radius =
-            s->options.radius_is_auto ? automatic_radius(&s->now.gbuffer) : s->options.ssao.radius;
+        s->radius = s->options.radius_is_auto ? automatic_radius(&s->now.gbuffer)
+                                              : s->options.setting.params.radius;
     return true;
 }
 

@@ -127,7 +127,7 @@ static bool create_frame(struct swapchain *s, struct frame_in_flight *f, struct 
                            NULL, &f->done);
     return gpu_ok(err, "vkCreateFence", result) &&
            gpu_ok(err, "vkCreateSemaphore",
-                 vkCreateSemaphore(device, &semaphore, NULL, &f->acquired));
+                  vkCreateSemaphore(device, &semaphore, NULL, &f->acquired));
 }
 
 bool swapchain_create(struct gpu *gpu, VkSurfaceKHR surface, struct swapchain *swapchain,
@@ -297,7 +297,7 @@ bool swapchain_wait(struct swapchain *swapchain, struct tool_error *err)
 {
     const struct frame_in_flight *f = &swapchain->frames[swapchain->frame];
     return gpu_ok(err, "vkWaitForFences",
-                 vkWaitForFences(swapchain->gpu->device, 1, &f->done, VK_TRUE, UINT64_MAX));
+                  vkWaitForFences(swapchain->gpu->device, 1, &f->done, VK_TRUE, UINT64_MAX));
 }
 
 enum swapchain_status swapchain_begin(struct swapchain *swapchain, VkCommandBuffer *cmd,

@@ -114,8 +114,8 @@ unsigned viewer_images_there(const struct viewer *viewer)
 void side_title(const struct viewer *viewer, enum side side, char *text, size_t size)
 {
     const struct setting *s = &viewer->settings[side];
-    snprintf(text, size, "%c %s%s", side == SIDE_A ? 'A' : 'B', method_name(s->ssao.method),
-             s->half_resolution ? " half" : "");
+    snprintf(text, size, "%c %s%s", side == SIDE_A ? 'A' : 'B', method_name(s->effect.method),
+             s->effect.half_resolution ? " half" : "");
 }
 
 /* --- Files --- */
@@ -142,18 +142,18 @@ static void complete_settings(struct viewer *viewer)
     for (int i = 0; i < SIDES; i++) {
         struct setting *s = &viewer->settings[i];
         const struct gbuffer *g = &viewer->source.now.gbuffer;
-        if (!(s->ssao.radius > 0) && viewer->live)
-            s->ssao.radius = live_scene_radius(viewer->live->kind);
-        else if (!(s->ssao.radius > 0))
-            s->ssao.radius = viewer->source.radius;
+        if (!(s->params.radius > 0) && viewer->live)
+            s->params.radius = live_scene_radius(viewer->live->kind);
+        else if (!(s->params.radius > 0))
+            s->params.radius = viewer->source.radius;
         if (!viewer->live && !viewer->bias_is_given[i])
-            s->ssao.bias = automatic_bias(g, s->ssao.radius, s->ssao.bias);
+            s->params.bias = automatic_bias(g, s->params.radius, s->params.bias);
         /* The colour of a live scene is its indirect light. */
-        if (viewer->live && s->composite.mode == VKAO_COMPOSITE_MULTIPLY)
-            s->composite.mode = VKAO_COMPOSITE_INDIRECT;
+        if (viewer->live && s->effect.composite_mode == VKAO_COMPOSITE_MULTIPLY)
+            s->effect.composite_mode = VKAO_COMPOSITE_INDIRECT;
         double far = viewer->live ? viewer->live->camera.distance * 2 : g->max_z;
         if (far > 0)
-            s->composite.debug_distance = (float)far;
+            s->params.debug_distance = (float)far;
     }
 }
 
@@ -170,9 +170,9 @@ bool viewer_load(struct viewer *viewer, size_t frame, size_t view)
     }
     for (int i = 0; other_files && i < SIDES; i++) {
         if (viewer->arguments->options.radius_is_auto)
-            viewer->settings[i].ssao.radius = 0;
+            viewer->settings[i].params.radius = 0;
         if (!viewer->bias_is_given[i])
-            viewer->settings[i].ssao.bias = viewer->arguments->settings[i].ssao.bias;
+            viewer->settings[i].params.bias = viewer->arguments->settings[i].params.bias;
     }
     if (other_files)
         complete_settings(viewer);
@@ -285,7 +285,7 @@ bool viewer_open(struct viewer *viewer, const struct arguments *arguments, struc
                                         .presentation = &presentation};
     if (!gpu_create(&options, &v->gpu, err))
         return false;
-    v->context = gpu_context(&v->gpu, 0, err);
+    v->context = gpu_context(&v->gpu, err);
     if (!v->context || !open_images(v, err) || !open_window(v, err) || !open_panel(v, err) ||
         !create_timestamps(v, err))
         return false;
@@ -322,101 +322,4 @@ void viewer_close(struct viewer *viewer)
         vkDestroyQueryPool(v->gpu.device, v->timestamps, NULL);
     gpu_destroy(&v->gpu);
     window_system_stop();
-}
-
-/* --- Running --- */
-
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
-/* What is shown, in a form that other programs can read too. */
-static void update_title(struct viewer *v)
-{
-    char title[sizeof v->title], a[64], b[64], frame[64] = "";
-    const char *name = v->live                        ? live_scene_name(v->live->kind)
-                       : source_is_loaded(&v->source) ? base_name(v->source.now.path)
-                                                      : "no file";
-    side_title(v, v->wipe ? SIDE_A : v->active, a, sizeof a);
-    side_title(v, SIDE_B, b, sizeof b);
-    if (v->source.plan.count > 1)
-        snprintf(frame, sizeof frame, " [%zu/%zu]", v->source.frame + 1, v->source.plan.count);
-    snprintf(title, sizeof title, "%s%s - %s - %s%s%s - %.4g %% - vkao-view", name, frame,
-             view_names[v->view].title, a, v->wipe ? " | " : "", v->wipe ? b : "",
-             v->placing.zoom * 100);
-    if (strcmp(title, v->title) == 0)
-        return;
-    memcpy(v->title, title, sizeof title);
-    window_set_title(&v->window, title);
-}
-
-static void advance_clock(struct viewer *v, double *last)
-{
-    double now = window_time();
-    if (v->live && v->live->running)
-        v->live->seconds += now - *last;
-    *last = now;
-}
-
-static void save_if_wanted(struct viewer *v)
-{
-    struct tool_error err = {0};
-    if (!v->save_wanted)
-        return;
-    v->save_wanted = false;
-    v->frames_wanted = FRAMES_IN_FLIGHT + 1; /* the panel says what came of it */
-    if (!viewer_save(v, &err))
-        viewer_say_error(v, &err);
-}
-
-/* Draws, and does what belongs to a frame that was drawn. False without an error in err: there was
- * nothing to draw into. */
-static bool run_frame(struct viewer *v, bool last, struct tool_error *err)
-{
-    bool drawn = viewer_draw(v, last ? v->arguments->screenshot : NULL, err);
-    if (drawn) {
-        v->frames_drawn++;
-        v->frames_wanted -= v->frames_wanted > 0;
-        save_if_wanted(v);
-        update_title(v);
-    }
-    if (v->failure.code == EXIT_OK)
-        return drawn;
-    *err = v->failure;
-    return false;
-}
-
-bool viewer_run(struct viewer *viewer, struct tool_error *err)
-{
-    struct viewer *v = viewer;
-    const uint32_t frames = v->arguments->frames;
-    double last_time = window_time();
-    bool drawn_last = false;
-    v->frames_wanted = FRAMES_IN_FLIGHT + 1;
-    while (!drawn_last) {
-        const bool runs = frames > 0 || (v->live && v->live->running);
-        window_poll(&v->window, !runs && v->frames_wanted == 0 && !v->quit, 0);
-        if (v->window.input.changed)
-            v->frames_wanted = FRAMES_IN_FLIGHT + 1;
-        viewer_handle_input(v);
-        v->quit = v->quit || window_should_close(&v->window);
-        const VkExtent2D framebuffer = window_framebuffer(&v->window);
-        if (framebuffer.width == 0 || framebuffer.height == 0) {
-            /* Minimised: there is nothing to draw into, nor anybody to see it. */
-            if (v->quit)
-                return true;
-            window_poll(&v->window, true, 0.1);
-            continue;
-        }
-        advance_clock(v, &last_time);
-        const bool last = v->quit || (frames > 0 && v->frames_drawn + 1 >= frames);
-        if (last && v->quit && !v->arguments->screenshot && !v->save_wanted)
-            return true;
-        drawn_last = run_frame(v, last, err) && last;
-        if (err->code)
-            return false;
-    }
-    return true;
 }

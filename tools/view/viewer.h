@@ -78,7 +78,7 @@ struct viewer {
 /* Opens everything that the arguments say. Errors as the exit codes. On failure viewer_close is to
  * be called too. */
 bool viewer_open(struct viewer *viewer, const struct arguments *arguments, struct tool_error *err);
-/* Until somebody quits or the frames asked for are drawn. */
+/* viewer_run.c: until somebody quits or the frames asked for are drawn. */
 bool viewer_run(struct viewer *viewer, struct tool_error *err);
 void viewer_close(struct viewer *viewer);
 

@@ -157,7 +157,7 @@ static uint32_t display_mode(const struct viewer *v, enum side side)
                                                [VIEW_NORMALS] = DISPLAY_PLAIN,
                                                [VIEW_BENT] = DISPLAY_PLAIN,
                                                [VIEW_DIFFERENCE] = DISPLAY_DIFFERENCE};
-    if (v->view == VIEW_BENT && !method_has_bent(v->settings[side].ssao.method))
+    if (v->view == VIEW_BENT && !method_has_bent(v->settings[side].effect.method))
         return DISPLAY_NOTHING;
     if (v->view == VIEW_DIFFERENCE && (v->live || !v->source.now.reference.image))
         return DISPLAY_NOTHING;

@@ -122,10 +122,11 @@ static void on_button(GLFWwindow *handle, int button, int action, int mods)
 {
     struct window *w = window_of(handle);
     struct input *input = &w->input;
-    double x, y;
     (void)mods;
-    glfwGetCursorPos(handle, &x, &y);
-    on_move(handle, x, y);
+    /* on_move was told where the mouse was when the button was pressed. glfwGetCursorPos says where
+     * it is by now. */
+    input->inside = true;
+    input->changed = true;
     if (button == GLFW_MOUSE_BUTTON_RIGHT)
         input->right = action == GLFW_PRESS;
     if (button != GLFW_MOUSE_BUTTON_LEFT)

@@ -159,8 +159,8 @@ static cJSON *describe(const struct options *options, const struct plan_frame *f
         cJSON_AddStringToObject(root, "hint", views_err.hint);
     } else {
         for (size_t i = 0; !err->code && i < source.view_count; i++)
-            cJSON_AddItemToArray(
-                views, describe_view(options, &source, &source.views[i], report, err));
+            cJSON_AddItemToArray(views,
+                                 describe_view(options, &source, &source.views[i], report, err));
     }
     frame_source_close(&source);
     if (!err->code && json_is_whole(begun))
@@ -212,7 +212,8 @@ static void print_part(const cJSON *part)
         printf(", pixel aspect %g", number_of(part, "pixel_aspect"));
     printf("\n");
     const cJSON *channel;
-    cJSON_ArrayForEach (channel, cJSON_GetObjectItemCaseSensitive(part, "channels")) {
+    cJSON_ArrayForEach(channel, cJSON_GetObjectItemCaseSensitive(part, "channels"))
+    {
         printf("  %-5s %s", text_of(channel, "type"), text_of(channel, "name"));
         if (number_of(channel, "x_sampling") > 1 || number_of(channel, "y_sampling") > 1)
             printf(" (sub-sampled %gx%g)", number_of(channel, "x_sampling"),
@@ -289,10 +290,8 @@ static void print_text(const cJSON *root)
 {
     const cJSON *item;
     printf("%s\n", text_of(root, "file"));
-    cJSON_ArrayForEach (item, cJSON_GetObjectItemCaseSensitive(root, "parts"))
-        print_part(item);
-    cJSON_ArrayForEach (item, cJSON_GetObjectItemCaseSensitive(root, "views"))
-        print_view(item);
+    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "parts")) print_part(item);
+    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "views")) print_view(item);
     print_problem(root);
 }
 

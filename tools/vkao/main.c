@@ -8,10 +8,11 @@
 
 static void print_version(void)
 {
-    uint32_t v = vkao_version(), loader = VK_API_VERSION_1_0;
+    char version[VERSION_BYTES];
+    uint32_t loader = VK_API_VERSION_1_0;
     vkEnumerateInstanceVersion(&loader);
-    printf("vkao %u.%u.%u\n", VK_API_VERSION_MAJOR(v), VK_API_VERSION_MINOR(v),
-           VK_API_VERSION_PATCH(v));
+    version_string(version);
+    printf("vkao %s\n", version);
     printf("%s, reads and writes none rle zips zip piz pxr24 b44 b44a dwaa dwab\n",
            exr_library_version());
     printf("Vulkan loader %u.%u.%u\n", VK_API_VERSION_MAJOR(loader), VK_API_VERSION_MINOR(loader),

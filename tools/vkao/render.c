@@ -48,7 +48,7 @@ static bool session_start(struct session *s, struct tool_error *err)
                                         .validation = s->options->validation};
     if (!gpu_create(&options, &s->gpu, err))
         return false;
-    s->ao = ao_session_create(&s->gpu, 0, err);
+    s->ao = ao_session_create(&s->gpu, err);
     if (!s->ao)
         gpu_destroy(&s->gpu);
     return s->ao != NULL;
@@ -78,10 +78,10 @@ static void device_name(const struct session *s, char *name, size_t size)
 /* --- Parameters --- */
 
 /* One radius for all frames: AO must not flicker. */
-static float choose_radius(struct session *s, const struct gbuffer *g)
+static float choose_radius(struct session *s, const struct options *o, const struct gbuffer *g)
 {
-    if (!s->options->radius_is_auto)
-        return s->options->ssao.radius;
+    if (!o->radius_is_auto)
+        return o->setting.params.radius;
     if (s->auto_radius > 0)
         return s->auto_radius;
     if (!(g->median_z > 0))
@@ -90,17 +90,18 @@ static float choose_radius(struct session *s, const struct gbuffer *g)
     return s->auto_radius;
 }
 
-static float choose_bias(const struct session *s, const struct gbuffer *g, float radius)
+static float choose_bias(const struct session *s, const struct options *o, const struct gbuffer *g,
+                         float radius)
 {
-    float bias = s->options->ssao.bias;
-    if (s->options->bias_is_given || !(automatic_bias(g, radius, bias) > bias))
+    float bias = o->setting.params.bias;
+    if (o->bias_is_given || !(automatic_bias(g, radius, bias) > bias))
         return bias;
     bias = automatic_bias(g, radius, bias);
     report_warn(s->report, "bias", "bias raised to %.2g for the steps of half depth", (double)bias);
     return bias;
 }
 
-static void summarise(struct session *s, const struct rendered_view *view)
+static void summarise(struct session *s, const struct options *o, const struct rendered_view *view)
 {
     const struct gbuffer *g = &view->gbuffer;
     const struct role *depth = &g->roles.kind[ROLE_DEPTH], *normal = &g->roles.kind[ROLE_NORMAL];
@@ -122,7 +123,7 @@ static void summarise(struct session *s, const struct rendered_view *view)
     report_note(s->report, "using: depth=%s (%s, %s) normal=%s %s radius=%g%s device=%s",
                 depth->label, depth_type_name(g->depth_type),
                 pixel_type_name(depth->channels[0]->type), normals, camera,
-                (double)view->ssao.radius, s->options->radius_is_auto ? " (auto)" : "", device);
+                (double)view->setting.params.radius, o->radius_is_auto ? " (auto)" : "", device);
 }
 
 static void tell_details(const struct session *s, const struct frame_source *source,
@@ -154,11 +155,7 @@ static bool compute(struct session *s, struct rendered_view *view, struct tool_e
         .normals = g->normals,
         .color = g->color,
         .view = g->view,
-        .ssao = view->ssao,
-        .blur = s->options->blur,
-        .composite = s->options->composite,
-        .half_resolution = s->options->half_resolution,
-        .bent_normals = s->options->bent_normals,
+        .setting = view->setting,
     };
     if (!ao_run(s->ao, &job, &view->result, err))
         return false;
@@ -169,6 +166,7 @@ static bool compute(struct session *s, struct rendered_view *view, struct tool_e
 /* Pixels of a view, and the driver before the first one: neither waits for the other. */
 struct opening {
     struct session *session;
+    const struct options *options; /* of the view */
     const struct frame_source *source;
     const struct view *view;
     struct gbuffer *gbuffer;
@@ -187,8 +185,8 @@ static void open_part(void *data, uint32_t part)
         o->is_started = session_start(o->session, &o->start_err);
         return;
     }
-    struct gbuffer_options options = view_options(o->session->options, o->view);
-    const bool bent = o->session->options->bent_normals;
+    struct gbuffer_options options = view_options(o->options, o->view);
+    const bool bent = o->options->setting.effect.bent_normals;
     options.work_texel_bytes = ao_job_texel_bytes(false, options.want_color, bent);
     options.work_normals_texel_bytes =
         ao_job_texel_bytes(true, options.want_color, bent) - options.work_texel_bytes;
@@ -199,12 +197,14 @@ static void open_part(void *data, uint32_t part)
     o->read_ms = now_ms() - start;
 }
 
-static bool open_view(struct session *s, const struct frame_source *source, const struct view *view,
+static bool open_view(struct session *s, const struct options *options,
+                      const struct frame_source *source, const struct view *view,
                       uint64_t held_bytes, struct gbuffer *g, struct times *times,
                       struct tool_error *err)
 {
     struct opening o = {
         .session = s,
+        .options = options,
         .source = source,
         .view = view,
         .gbuffer = g,
@@ -240,18 +240,38 @@ static uint64_t held_by(const struct rendered_view *views, size_t count)
     return bytes;
 }
 
-static bool render_view(struct session *s, const struct frame_source *source,
-                        const struct view *view, uint64_t held_bytes, struct rendered_view *out,
-                        struct times *times, struct tool_error *err)
+/* The same bits come from the same code on the same device only. */
+static void compare_makers(struct session *s, const struct record *record)
+{
+    char device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE], version[VERSION_BYTES];
+    device_name(s, device, sizeof device);
+    version_string(version);
+    if (strcmp(record->device, device) != 0 || strcmp(record->version, version) != 0)
+        report_warn(
+            s->report, "like",
+            "--like: made by vkao %s on %s, now vkao %s on %s: AO may differ in its last bits",
+            record->version, record->device, version, device);
+}
+
+static bool render_view(struct session *s, const struct options *frame_options,
+                        const struct frame_source *source, const struct view *view,
+                        uint64_t held_bytes, struct rendered_view *out, struct times *times,
+                        struct tool_error *err)
 {
     struct gbuffer *g = &out->gbuffer;
+    struct options options = *frame_options;
     out->name = view->name;
-    if (!open_view(s, source, view, held_bytes, g, times, err))
+    if (view->record && !options_take_record(&options, view->record, err))
         return false;
-    out->ssao = s->options->ssao;
-    out->ssao.radius = choose_radius(s, g);
-    out->ssao.bias = choose_bias(s, g, out->ssao.radius);
-    summarise(s, out);
+    if (!open_view(s, &options, source, view, held_bytes, g, times, err))
+        return false;
+    if (view->record)
+        compare_makers(s, view->record);
+    out->setting = options.setting;
+    out->setting.params.radius = choose_radius(s, &options, g);
+    out->setting.params.bias = choose_bias(s, &options, g, out->setting.params.radius);
+    ao_view_describe(&g->view, &out->setting.effect);
+    summarise(s, &options, out);
     tell_details(s, source, out);
     double start = now_ms();
     bool ok = compute(s, out, err);
@@ -262,24 +282,38 @@ static bool render_view(struct session *s, const struct frame_source *source,
     return ok;
 }
 
+/* The header, its views, and what --like says of them: options as they are for this frame. */
+static bool open_frame(const struct plan_frame *frame, struct options *options,
+                       struct frame_source *source, struct tool_error *err)
+{
+    if (!plan_check_outputs(options, frame, err) ||
+        !frame_source_read_header(frame->input, source, err) ||
+        (frame->like && !frame_source_read_like(frame->like, source, err)) ||
+        !frame_source_choose_views(options, frame->camera, source, err))
+        return false;
+    const struct record *record = source->views[0].record;
+    return (!record || options_take_record(options, record, err)) &&
+           output_check_names(options, frame, source, err);
+}
+
 static bool render_frame(struct session *s, const struct plan_frame *frame, struct tool_error *err)
 {
+    struct options options = *s->options;
     struct frame_source source = {0};
     struct rendered_view views[MAX_VIEWS];
     struct times times = {0};
     memset(views, 0, sizeof views);
     double start = now_ms();
-    bool ok = plan_check_outputs(s->options, frame, err) &&
-              frame_source_open(s->options, frame->input, frame->camera, &source, err) &&
-              output_check_names(s->options, frame, &source, err);
+    bool ok = open_frame(frame, &options, &source, err);
     times.read = now_ms() - start;
     for (size_t i = 0; ok && i < source.view_count; i++)
-        ok = render_view(s, &source, &source.views[i], held_by(views, i), &views[i], &times, err) ||
+        ok = render_view(s, &options, &source, &source.views[i], held_by(views, i), &views[i],
+                         &times, err) ||
              fail_of(err, frame->input);
     start = now_ms();
     char device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
     device_name(s, device, sizeof device);
-    ok = ok && output_write(s->options, frame, &source, views, device, err);
+    ok = ok && output_write(&options, frame, &source, views, device, err);
     times.write = now_ms() - start;
     if (ok)
         report_detail(s->report, "%s: read %.0f ms, compute %.0f ms, write %.0f ms", frame->output,

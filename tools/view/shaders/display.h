@@ -32,7 +32,7 @@ struct display_block {
     INT offset_x, offset_y;   /* image: the first texel that is shown */
     INT width, height;        /* image: how many are shown */
     UINT mode_a, mode_b;
-    UINT line; /* 1: draw the line at wipe */
+    UINT line;  /* 1: draw the line at wipe */
     float gain; /* of the difference */
 };
 

@@ -1,0 +1,478 @@
+/* SPDX-License-Identifier: MIT */
+#include "cpu.h"
+
+#include "recording.h"
+#include "stages.h"
+
+#include "cpu/layout.h"
+
+#include "vkao_blur_cpu.h"
+#include "vkao_blur_last_cpu.h"
+#include "vkao_debug_cpu.h"
+#include "vkao_packed_blur_x_cpu.h"
+#include "vkao_packed_blur_y_cpu.h"
+#include "vkao_packed_prepare_cpu.h"
+#include "vkao_packed_ssao_gtao_16bit_cpu.h"
+#include "vkao_packed_ssao_gtao_cpu.h"
+#include "vkao_packed_ssao_hbao_16bit_cpu.h"
+#include "vkao_packed_ssao_hbao_cpu.h"
+#include "vkao_packed_ssao_hemisphere_16bit_cpu.h"
+#include "vkao_packed_ssao_hemisphere_cpu.h"
+#include "vkao_packed_ssao_vbao_16bit_cpu.h"
+#include "vkao_packed_ssao_vbao_cpu.h"
+#include "vkao_packed_tiles_cpu.h"
+#include "vkao_packed_upsample_cpu.h"
+#include "vkao_ssao_raymarch_cpu.h"
+#include "vkao_ssao_sphere_cpu.h"
+#include "vkao_upsample_cpu.h"
+
+#include <assert.h>
+
+/* Parts of the scratch buffer. */
+enum {
+    PART_Z = VKAO_RESOURCE_CPU,
+    PART_PACKED,  /* codes of noisy AO */
+    PART_HALFWAY, /* the ring */
+    PART_BLURRED,
+    PART_COPIED,
+    PART_TILES,
+    PART_END
+};
+static_assert(PART_END == (int)VKAO_RESOURCE_COUNT, "as passes.h counts");
+static_assert(VKAO_BINDING_Z == VKAO_BINDING_CPU, "the CPU's bindings come last");
+
+#define PART(name, part, does_write, format)                                                       \
+    {                                                                                              \
+        VKAO_BINDING_##name, (enum vkao_resource)PART_##part, does_write, VK_FORMAT_##format       \
+    }
+#define READS_TEXELS(name, part, format) PART(name, part, false, format)
+#define WRITES_TEXELS(name, part, format) PART(name, part, true, format)
+#define READS_WORDS(name, part) PART(name, part, false, UNDEFINED)
+#define WRITES_WORDS(name, part) PART(name, part, true, UNDEFINED)
+#define READS_Z READS_TEXELS(Z, Z, R32_SFLOAT)
+#define READS_Z4 READS_TEXELS(Z4, Z, R32G32B32A32_SFLOAT)
+#define READS_NORMALS VKAO_READS(NORMALS, NORMALS)
+
+/* --- Recording --- */
+
+static void record_prepare(const struct vkao_recording *r, uint32_t pass)
+{
+    const struct vkao_rect valid = r->grid.valid;
+    struct vkao_dispatch push;
+    vkao_rect_pack(valid, push.rect);
+    vkao_bind(r, pass, &push, sizeof push);
+    /* As many texels as it writes, border and padding included, moved to begin at 0. */
+    vkao_dispatch(
+        r, pass,
+        (struct vkao_rect){0, 0,
+                           valid.x1 - valid.x0 + valid.x0 % VKAO_BLUR_X_WIDTH + 2 * VKAO_BUFFER_PAD,
+                           valid.y1 - valid.y0 + 2 * VKAO_VIEW_Z_BORDER});
+}
+
+static VkDeviceSize part_offset(const struct vkao_recording *r, int part)
+{
+    return r->frame->scratch.blocks[part].offset;
+}
+
+/* Where SSAO, the next pass, has work to do, into the list that its dispatch reads. */
+static void record_tiles(const struct vkao_recording *r, uint32_t pass)
+{
+    static_assert(VKAO_STRIP_TEXELS % (VKAO_ROW_GROUP_WIDTH * VKAO_SSAO_TEXELS) == 0,
+                  "strips are of whole tiles");
+    const struct vkao_pass *ssao = r->frame->program->steps[pass + 1].row;
+    const struct vkao_rect rect = vkao_area(r, ssao->area);
+    const uint32_t width = ssao->texels.width * ssao->group.width;
+    const uint32_t x0 = rect.x0 - rect.x0 % 4, rows = rect.y1 - rect.y0,
+                   columns = (rect.x1 - x0 + width - 1) / width;
+    uint32_t height = VKAO_TILE_HEIGHT;
+    /* maxComputeWorkGroupCount of an indirect dispatch's y, which is the count of tiles */
+    while (columns * ((rows + height - 1) / height) > VKAO_MOST_TILES)
+        height *= 2;
+    struct vkao_tiling push = {
+        .tiles = {columns, (rows + height - 1) / height},
+        .tile_width = width,
+        .tile_height = height,
+        .strip_columns = VKAO_STRIP_TEXELS / width,
+    };
+    vkao_rect_pack(rect, push.rect);
+    const struct vkao_tiles_head none = {.group_rows = height, .one = 1};
+    vkao_barrier(r, VKAO_SHADERS, VKAO_TRANSFER);
+    r->frame->ctx->vk.CmdUpdateBuffer(r->cmd, r->frame->scratch.buffer, part_offset(r, PART_TILES),
+                                      sizeof none, &none);
+    vkao_barrier(r, VKAO_TRANSFER, VKAO_SHADERS);
+    vkao_bind(r, pass, &push, sizeof push);
+    vkao_dispatch(r, pass, (struct vkao_rect){0, 0, push.tiles[0] * push.tiles[1], 1});
+}
+
+static void record_ssao(const struct vkao_recording *r, uint32_t pass)
+{
+    struct vkao_dispatch push;
+    vkao_rect_pack(vkao_area(r, VKAO_AREA_AROUND), push.rect);
+    vkao_barrier(r, VKAO_SHADERS, VKAO_INDIRECT); /* tiles wrote the list */
+    vkao_bind(r, pass, &push, sizeof push);
+    r->frame->ctx->vk.CmdDispatchIndirect(r->cmd, r->frame->scratch.buffer,
+                                          part_offset(r, PART_TILES));
+}
+
+/* Copied AO of a strip -> its image. Later vkao work, and whoever waits for it, sees the copy as
+ * one of its writes. */
+static void record_copy(const struct vkao_recording *r, struct vkao_rect strip)
+{
+    const vkao_frame *frame = r->frame;
+    const VkBufferImageCopy region = {
+        .bufferOffset = part_offset(r, PART_COPIED) + strip.x0 * frame->rows.copied_texel,
+        .bufferRowLength = frame->rows.copied_stride,
+        .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+        .imageOffset = {(int32_t)strip.x0, (int32_t)strip.y0, 0},
+        .imageExtent = {strip.x1 - strip.x0, strip.y1 - strip.y0, 1},
+    };
+    vkao_barrier(r, VKAO_SHADERS, VKAO_TRANSFER);
+    frame->ctx->vk.CmdCopyBufferToImage(r->cmd, frame->scratch.buffer, frame->images.ao.image,
+                                        VK_IMAGE_LAYOUT_GENERAL, 1, &region);
+    vkao_barrier(r, VKAO_TRANSFER, VKAO_SHADERS);
+}
+
+static void record_direction(const struct vkao_recording *r, uint32_t pass, uint32_t ring_row,
+                             struct vkao_rect rect)
+{
+    struct vkao_strip push = {.ring_row = ring_row};
+    vkao_rect_pack(rect, push.rect);
+    vkao_bind(r, pass, &push, sizeof push);
+    vkao_dispatch(r, pass, rect);
+}
+
+/* Both directions, down the image in strips, so that what lies between them fits a ring of rows.
+ * Each strip adds the rows that the one before did not need. */
+static void record_blur(const struct vkao_recording *r, uint32_t pass)
+{
+    static_assert(VKAO_STRIP_ROWS % VKAO_BLUR_Y_HEIGHT == 0 &&
+                      VKAO_RING_ROWS >= VKAO_STRIP_ROWS + 2 * VKAO_BUFFER_PAD,
+                  "a ring holds a strip and the largest radius around it");
+    const vkao_effect_info *e = &r->frame->program->settings;
+    const uint32_t ring = VKAO_RING_ROWS, radius = e->blur_radius;
+    const struct vkao_rect rect = r->grid.rect;
+    struct vkao_rect halfway = vkao_area(r, VKAO_AREA_ABOVE_BELOW), strip = rect;
+    const uint32_t last = halfway.y1;
+    for (; strip.y0 < rect.y1; strip.y0 = strip.y1) {
+        const uint32_t left = rect.y1 - strip.y0;
+        strip.y1 = strip.y0 + (left < VKAO_STRIP_ROWS ? left : VKAO_STRIP_ROWS);
+        halfway.y1 = strip.y1 + radius < last ? strip.y1 + radius : last;
+        /* Not below the first row that the strip reads, which may lie before row 0. */
+        const uint32_t ring_row = (strip.y0 + ring - radius) / ring * ring - ring;
+        if (strip.y0 > rect.y0) /* the strip before was read from the ring */
+            vkao_barrier(r, VKAO_SHADERS, VKAO_SHADERS);
+        record_direction(r, pass, ring_row, halfway);
+        vkao_barrier(r, VKAO_SHADERS, VKAO_SHADERS); /* x wrote the ring -> y reads it */
+        record_direction(r, pass + 1, ring_row, strip);
+        if (r->frame->copies && !e->half_resolution)
+            record_copy(r, strip);
+        halfway.y0 = halfway.y1;
+    }
+}
+
+/* record_blur has recorded it. */
+static void record_nothing(const struct vkao_recording *r, uint32_t pass)
+{
+    (void)r;
+    (void)pass;
+}
+
+static void record_upsample(const struct vkao_recording *r, uint32_t pass)
+{
+    const struct vkao_rect rect = r->image.rect;
+    const uint32_t height = r->frame->copies ? VKAO_STRIP_ROWS : rect.y1 - rect.y0;
+    for (struct vkao_rect strip = rect; strip.y0 < rect.y1; strip.y0 = strip.y1) {
+        strip.y1 = rect.y1 - strip.y0 > height ? strip.y0 + height : rect.y1;
+        struct vkao_dispatch push;
+        vkao_rect_pack(strip, push.rect);
+        vkao_bind(r, pass, &push, sizeof push);
+        /* Invocations of more than one row begin at rows of half resolution. */
+        struct vkao_rect rows = strip;
+        rows.y0 -= rows.y0 % VKAO_UPSAMPLE_HEIGHT;
+        vkao_dispatch(r, pass, rows);
+        if (r->frame->copies)
+            record_copy(r, strip);
+    }
+}
+
+/* --- Rows --- */
+
+#define GROUP .group = {VKAO_GROUP_WIDTH, VKAO_GROUP_HEIGHT}
+#define ROW_GROUP .group = {VKAO_ROW_GROUP_WIDTH, 1}
+
+static const struct vkao_pass prepare = {
+    .name = "vkao prepare",
+    .label = "prepare",
+    .stage = VKAO_STAGE_PREPARE,
+    VKAO_CODE(vkao_packed_prepare_cpu),
+    .uses = {VKAO_READS(DEPTH, DEPTH), WRITES_WORDS(Z_WORDS, Z)},
+    .area = VKAO_AREA_VALID,
+    .texels = {VKAO_PREPARE_WIDTH, 1},
+    GROUP,
+    .forms = 1,
+    .record = record_prepare,
+};
+
+static const struct vkao_pass tiles = {
+    .name = "vkao tiles",
+    .label = "ssao",
+    .stage = VKAO_STAGE_SSAO,
+    VKAO_CODE(vkao_packed_tiles_cpu),
+    .uses = {READS_Z4, WRITES_WORDS(PACKED_WORDS, PACKED), WRITES_WORDS(TILES, TILES),
+             VKAO_WRITES(TARGET, AO_NOISY)},
+    .texels = {1, 1},
+    ROW_GROUP,
+    .forms = 1,
+    .record = record_tiles,
+};
+
+#define METHOD(method, words, width, codes)                                                        \
+    {                                                                                              \
+        .name = "vkao ssao " #method, .label = "ssao", .stage = VKAO_STAGE_SSAO, VKAO_CODE(words), \
+        .uses = {READS_Z, READS_NORMALS, VKAO_WRITES(TARGET, AO_NOISY), READS_WORDS(TILES, TILES), \
+                 WRITES_TEXELS(PACKED_WRITE, PACKED, codes)},                                      \
+        .area = VKAO_AREA_AROUND, .texels = {width, 1}, ROW_GROUP, .forms = 1,                     \
+        .record = record_ssao,                                                                     \
+    }
+#define PAIRED_METHOD(method)                                                                      \
+    METHOD(method, vkao_packed_ssao_##method##_cpu, VKAO_SSAO_TEXELS, R16_UINT)
+static const struct vkao_pass methods[] = {
+    [VKAO_SSAO_SPHERE] = METHOD(sphere, vkao_ssao_sphere_cpu, 1, R8_UINT),
+    [VKAO_SSAO_HEMISPHERE] = PAIRED_METHOD(hemisphere),
+    [VKAO_SSAO_HBAO] = PAIRED_METHOD(hbao),
+    [VKAO_SSAO_GTAO] = PAIRED_METHOD(gtao),
+    [VKAO_SSAO_VBAO] = PAIRED_METHOD(vbao),
+    [VKAO_SSAO_RAYMARCH] = METHOD(raymarch, vkao_ssao_raymarch_cpu, 1, R8_UINT),
+};
+
+/* The same, with codes of two texels in one store. */
+#define METHOD_16BIT(method)                                                                       \
+    {                                                                                              \
+        .name = "vkao ssao " #method, .label = "ssao", .stage = VKAO_STAGE_SSAO,                   \
+        VKAO_CODE(vkao_packed_ssao_##method##_16bit_cpu),                                          \
+        .uses = {READS_Z, READS_NORMALS, VKAO_WRITES(TARGET, AO_NOISY), READS_WORDS(TILES, TILES), \
+                 WRITES_WORDS(PACKED_WORDS, PACKED)},                                              \
+        .area = VKAO_AREA_AROUND, .texels = {VKAO_SSAO_TEXELS, 1}, ROW_GROUP, .forms = 1,          \
+        .record = record_ssao,                                                                     \
+    }
+static const struct vkao_pass methods_16bit[] = {
+    [VKAO_SSAO_HEMISPHERE] = METHOD_16BIT(hemisphere),
+    [VKAO_SSAO_HBAO] = METHOD_16BIT(hbao),
+    [VKAO_SSAO_GTAO] = METHOD_16BIT(gtao),
+    [VKAO_SSAO_VBAO] = METHOD_16BIT(vbao),
+};
+
+static const struct vkao_pass packed_blur_x = {
+    .name = "vkao blur x",
+    .label = "blur",
+    .stage = VKAO_STAGE_BLUR,
+    VKAO_CODE(vkao_packed_blur_x_cpu),
+    .uses = {READS_Z4, READS_NORMALS, READS_TEXELS(PACKED_READ4, PACKED, R32_UINT),
+             WRITES_WORDS(HALFWAY_WORDS, HALFWAY)},
+    .texels = {VKAO_BLUR_X_WIDTH, 1},
+    GROUP,
+    .with_next = true,
+    .forms = 1,
+    .record = record_blur,
+};
+
+static const struct vkao_pass packed_blur_y = {
+    .name = "vkao blur y",
+    .label = "blur",
+    .stage = VKAO_STAGE_BLUR,
+    VKAO_CODE(vkao_packed_blur_y_cpu),
+    .uses = {READS_Z4, READS_NORMALS, READS_TEXELS(HALFWAY_READ2, HALFWAY, R32_UINT),
+             WRITES_WORDS(BLURRED_WORDS, BLURRED), WRITES_WORDS(STAGED_WORDS, COPIED),
+             VKAO_WRITES(AO_WRITE, AO)},
+    .texels = {VKAO_BLUR_Y_WIDTH, VKAO_BLUR_Y_HEIGHT},
+    GROUP,
+    .vertical = true,
+    .forms = 4,
+    .record = record_nothing,
+};
+
+static const struct vkao_pass packed_upsample = {
+    .name = "vkao upsample",
+    .label = "upsample",
+    .stage = VKAO_STAGE_BLUR,
+    VKAO_CODE(vkao_packed_upsample_cpu),
+    .uses = {VKAO_READS(DEPTH, DEPTH), READS_Z, READS_Z4, READS_NORMALS,
+             READS_TEXELS(BLURRED_READ2, BLURRED, R32_UINT), WRITES_WORDS(STAGED_WORDS, COPIED),
+             VKAO_WRITES(AO_WRITE, AO)},
+    .texels = {VKAO_UPSAMPLE_WIDTH, VKAO_UPSAMPLE_HEIGHT},
+    GROUP,
+    .forms = 4,
+    .record = record_upsample,
+};
+
+/* AO in images beside view z in the buffer: bent normals, noisy_ao, and BLUR without SSAO. */
+static const struct vkao_pass blur_x = {
+    .name = "vkao blur x",
+    .label = "blur",
+    .stage = VKAO_STAGE_BLUR,
+    VKAO_CODE(vkao_blur_cpu),
+    .uses = {READS_Z, READS_NORMALS, VKAO_READS(SOURCE, AO_NOISY), VKAO_WRITES(TARGET, HALFWAY)},
+    .area = VKAO_AREA_ABOVE_BELOW,
+    VKAO_ONE_TEXEL,
+    .forms = 1,
+};
+
+static const struct vkao_pass blur_y = {
+    .name = "vkao blur y",
+    .label = "blur",
+    .stage = VKAO_STAGE_BLUR,
+    VKAO_CODE(vkao_blur_last_cpu),
+    .uses = {READS_Z, READS_NORMALS, VKAO_READS(SOURCE, HALFWAY), VKAO_WRITES(AO_WRITE, AO),
+             VKAO_WRITES(BENT_WRITE, BENT_NORMALS)},
+    .area = VKAO_AREA_RECT,
+    VKAO_ONE_TEXEL,
+    .vertical = true,
+    .forms = 2,
+};
+
+static const struct vkao_pass blur_y_at_half = {
+    .name = "vkao blur y",
+    .label = "blur",
+    .stage = VKAO_STAGE_BLUR,
+    VKAO_CODE(vkao_blur_cpu),
+    .uses = {READS_Z, READS_NORMALS, VKAO_READS(SOURCE, HALFWAY), VKAO_WRITES(TARGET, BLURRED)},
+    .area = VKAO_AREA_RECT,
+    VKAO_ONE_TEXEL,
+    .vertical = true,
+    .forms = 1,
+};
+
+static const struct vkao_pass upsample = {
+    .name = "vkao upsample",
+    .label = "upsample",
+    .stage = VKAO_STAGE_BLUR,
+    VKAO_CODE(vkao_upsample_cpu),
+    .uses = {VKAO_READS(DEPTH, DEPTH), READS_Z, READS_NORMALS, VKAO_READS(SOURCE, BLURRED),
+             VKAO_WRITES(AO_WRITE, AO), VKAO_WRITES(BENT_WRITE, BENT_NORMALS)},
+    .area = VKAO_AREA_IMAGE_RECT,
+    VKAO_ONE_TEXEL,
+    .forms = 2,
+};
+
+static const struct vkao_pass debug = {
+    .name = "vkao debug view",
+    .label = "composite",
+    .stage = VKAO_STAGE_COMPOSITE,
+    VKAO_CODE(vkao_debug_cpu),
+    .uses = {READS_Z, READS_NORMALS, VKAO_READS(SOURCE, AO_NOISY),
+             READS_TEXELS(PACKED_READ4, PACKED, R32_UINT), VKAO_READS(BENT_READ, BENT_NORMALS),
+             VKAO_WRITES(OUTPUT, OUTPUT)},
+    .area = VKAO_AREA_IMAGE_RECT,
+    VKAO_ONE_TEXEL,
+    .forms = 1,
+};
+
+static void plan_blur(struct vkao_program *program)
+{
+    const bool half = program->settings.half_resolution;
+    vkao_program_add(program, program->is_packed ? &packed_blur_x : &blur_x);
+    if (program->is_packed)
+        vkao_program_add(program, &packed_blur_y);
+    else
+        vkao_program_add(program, half ? &blur_y_at_half : &blur_y);
+    if (half)
+        vkao_program_add(program, program->is_packed ? &packed_upsample : &upsample);
+}
+
+void vkao_cpu_plan(struct vkao_program *program)
+{
+    const vkao_effect_info *e = &program->settings;
+    const vkao_stage_flags both = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
+    const bool pairs = e->method != VKAO_SSAO_SPHERE && e->method != VKAO_SSAO_RAYMARCH;
+    program->is_packed = (e->stages & both) == both && !e->bent_normals && !e->noisy_ao;
+    if (e->stages & both)
+        vkao_program_add(program, &prepare);
+    if (e->stages & VKAO_STAGE_SSAO) {
+        vkao_program_add(program, &tiles);
+        vkao_program_add(program, pairs && program->ctx->has_16bit_storage
+                                      ? &methods_16bit[e->method]
+                                      : &methods[e->method]);
+    }
+    if (e->stages & VKAO_STAGE_BLUR)
+        plan_blur(program);
+    if ((e->stages & VKAO_STAGE_COMPOSITE) && e->composite_mode > VKAO_COMPOSITE_AO_ONLY)
+        vkao_program_add(program, &debug);
+    else if (e->stages & VKAO_STAGE_COMPOSITE)
+        vkao_composite_plan(program); /* reads nothing of the CPU's */
+}
+
+/* --- Memory --- */
+
+static const struct format {
+    VkFormat format;
+    uint32_t code;
+    VkDeviceSize bytes;
+} formats[] = {
+    {VK_FORMAT_R8_UNORM, VKAO_STAGED_UNORM8, 1},
+    {VK_FORMAT_R16_UNORM, VKAO_STAGED_UNORM16, 2},
+    {VK_FORMAT_R16_SFLOAT, VKAO_STAGED_FLOAT16, 2},
+    {VK_FORMAT_R32_SFLOAT, VKAO_STAGED_FLOAT32, 4},
+};
+
+/* Of the AO image, which was checked. */
+static const struct format *find_format(VkFormat format)
+{
+    size_t i = 0;
+    while (i + 1 < sizeof formats / sizeof formats[0] && formats[i].format != format)
+        ++i;
+    return &formats[i];
+}
+
+uint32_t vkao_cpu_setting(const struct vkao_program *program)
+{
+    return (program->is_packed ? VKAO_PATH_PACKED : 0u) |
+           find_format(program->settings.ao_format)->code;
+}
+
+void vkao_cpu_parts(const struct vkao_program *program, VkExtent2D extent, bool copies,
+                    struct vkao_rows *rows, VkDeviceSize parts[VKAO_RESOURCE_COUNT])
+{
+    enum { LEAST = 256 }; /* of what shaders name and do not use */
+    if (!vkao_makes_ao(&program->settings))
+        return;
+    const uint32_t shift = program->settings.half_resolution, window = VKAO_BLUR_X_WIDTH;
+    const VkExtent2D grid = {(extent.width + shift) >> shift, (extent.height + shift) >> shift};
+    /* The last window of a row stays inside its padding. */
+    rows->stride = (grid.width + window - 1) / window * window + 2 * VKAO_BUFFER_PAD;
+    const VkDeviceSize stride = rows->stride;
+    parts[PART_Z] = stride * (grid.height + 2 * VKAO_VIEW_Z_BORDER) * 4;
+    /* A rect may begin within a tile of this many at most. */
+    const VkDeviceSize columns = (grid.width + 3) / VKAO_ROW_GROUP_WIDTH + 1,
+                       tile_rows = (grid.height + VKAO_TILE_HEIGHT - 1) / VKAO_TILE_HEIGHT;
+    parts[PART_TILES] = sizeof(struct vkao_tiles_head) + columns * tile_rows * 4;
+    parts[PART_PACKED] = parts[PART_HALFWAY] = parts[PART_BLURRED] = parts[PART_COPIED] = LEAST;
+    if (!program->is_packed)
+        return;
+    parts[PART_PACKED] = stride * grid.height;
+    parts[PART_HALFWAY] = stride * VKAO_RING_ROWS * 2;
+    if (program->settings.half_resolution)
+        parts[PART_BLURRED] = stride * grid.height * 2;
+    if (!copies)
+        return;
+    const uint32_t wide = VKAO_UPSAMPLE_WIDTH, most = VKAO_STRIP_ROWS;
+    rows->copied_stride = (extent.width + wide - 1) / wide * wide;
+    rows->copied_texel = find_format(program->settings.ao_format)->bytes;
+    parts[PART_COPIED] =
+        rows->copied_texel * rows->copied_stride * (extent.height < most ? extent.height : most);
+}
+
+bool vkao_cpu_fits(const struct vkao_program *program, VkExtent2D extent)
+{
+    VkDeviceSize parts[VKAO_RESOURCE_COUNT] = {0};
+    struct vkao_rows rows;
+    vkao_cpu_parts(program, extent, true, &rows, parts);
+    for (int i = PART_Z; i < PART_END; ++i) {
+        /* As texels of the fewest bytes that the part is read by. */
+        const VkDeviceSize texels =
+            i == PART_Z || i == PART_HALFWAY || i == PART_BLURRED ? parts[i] / 4 : parts[i] / 2;
+        if (parts[i] > program->ctx->max_buffer ||
+            (i != PART_COPIED && i != PART_TILES && texels > program->ctx->max_texels))
+            return false;
+    }
+    return true;
+}

@@ -1,0 +1,143 @@
+/* SPDX-License-Identifier: MIT */
+#include "effect.h"
+
+#include "cpu/cpu.h"
+#include "parameters.h"
+#include "stages.h"
+
+#include <string.h>
+
+/* May the counts of slices and steps be constants? vbao loops over slices if both are too many
+ * together. */
+static bool unrolls(const vkao_effect_info *e)
+{
+    const uint32_t slices = e->method == VKAO_SSAO_VBAO ? 1 : e->slice_count;
+    return slices * e->step_count <= VKAO_MOST_UNROLLED;
+}
+
+static void set_constants(struct vkao_program *program)
+{
+    const vkao_effect_info *e = &program->settings;
+    uint32_t *c = program->constants;
+    const bool has_samples = e->method == VKAO_SSAO_SPHERE || e->method == VKAO_SSAO_HEMISPHERE;
+    const bool has_slices = !has_samples && e->method != VKAO_SSAO_RAYMARCH;
+    c[VKAO_SETTING_DEPTH_ENCODING] = (uint32_t)e->depth_encoding;
+    c[VKAO_SETTING_NORMAL_ENCODING] = (uint32_t)e->normal_encoding;
+    c[VKAO_SETTING_BENT_ENCODING] = (uint32_t)e->bent_encoding;
+    c[VKAO_SETTING_ORTHOGRAPHIC] = e->projection == VKAO_PROJECTION_ORTHOGRAPHIC;
+    c[VKAO_SETTING_GRID_SHIFT] = e->half_resolution;
+    c[VKAO_SETTING_BENT_NORMALS] = e->bent_normals;
+    c[VKAO_SETTING_THRESHOLD] = e->falloff == VKAO_FALLOFF_THRESHOLD;
+    c[VKAO_SETTING_SPHERE_LITERAL] = e->sphere_form == VKAO_SPHERE_LITERAL;
+    c[VKAO_SETTING_SLICES] = has_slices && unrolls(e) ? e->slice_count : 0;
+    c[VKAO_SETTING_STEPS] = has_slices && unrolls(e) ? e->step_count : 0;
+    c[VKAO_SETTING_SAMPLES] =
+        has_samples && e->sample_count <= VKAO_MOST_UNROLLED ? e->sample_count : 0;
+    c[VKAO_SETTING_BLUR_RADIUS] = e->blur_radius;
+    /* Without normals there is nothing to compare. */
+    if (e->normal_encoding != VKAO_NORMALS_FROM_DEPTH)
+        memcpy(&c[VKAO_SETTING_BLUR_NORMAL_POWER], &e->blur_normal_power, sizeof(float));
+    c[VKAO_SETTING_COMPOSITE_MODE] = (uint32_t)e->composite_mode;
+    c[VKAO_SETTING_MULTI_BOUNCE] = e->multi_bounce;
+    c[VKAO_SETTING_SPECULAR] = (uint32_t)e->specular;
+    if (program->is_cpu)
+        c[VKAO_SETTING_PATH] = vkao_cpu_setting(program);
+}
+
+/* What is touched of what the rows name. */
+static uint32_t needs_of(const struct vkao_program *program)
+{
+    const vkao_effect_info *e = &program->settings;
+    const bool composite = e->stages & VKAO_STAGE_COMPOSITE, makes_ao = vkao_makes_ao(e);
+    const bool lit = composite && e->composite_mode <= VKAO_COMPOSITE_INDIRECT;
+    const bool reads_bent = (composite && e->composite_mode == VKAO_COMPOSITE_BENT_NORMALS) ||
+                            (lit && e->specular == VKAO_SPECULAR_FROM_BENT);
+    const struct {
+        bool is;
+        enum vkao_resource resource;
+    } facts[] = {
+        {makes_ao, VKAO_RESOURCE_DEPTH},
+        {e->normal_encoding != VKAO_NORMALS_FROM_DEPTH &&
+             (makes_ao || (lit && e->specular != VKAO_SPECULAR_NONE)),
+         VKAO_RESOURCE_NORMALS},
+        {!program->is_packed, VKAO_RESOURCE_AO_NOISY},
+        {true, VKAO_RESOURCE_AO},
+        {lit, VKAO_RESOURCE_COLOR},
+        {lit && e->composite_mode == VKAO_COMPOSITE_INDIRECT, VKAO_RESOURCE_DIRECT},
+        {composite, VKAO_RESOURCE_OUTPUT},
+        {e->bent_normals || reads_bent, VKAO_RESOURCE_BENT_NORMALS},
+        {composite && e->composite_mode <= VKAO_COMPOSITE_AO_ONLY && e->multi_bounce,
+         VKAO_RESOURCE_ALBEDO},
+        {lit && e->specular != VKAO_SPECULAR_NONE, VKAO_RESOURCE_SPECULAR},
+    };
+    uint32_t needs = ~0u << VKAO_SLOT_COUNT;
+    for (size_t i = 0; i < sizeof facts / sizeof facts[0]; ++i)
+        needs |= facts[i].is ? VKAO_BIT(facts[i].resource) : 0u;
+    return needs;
+}
+
+void vkao_program_plan(struct vkao_program *program, const vkao_context *ctx,
+                       const vkao_effect_info *settings, bool is_cpu)
+{
+    const vkao_stage_flags stages = vkao_stages_of(settings);
+    *program = (struct vkao_program){.ctx = ctx, .settings = *settings, .is_cpu = is_cpu};
+    if (is_cpu) {
+        vkao_cpu_plan(program);
+    } else {
+#define PLAN(NAME, name)                                                                           \
+    if (stages & VKAO_STAGE_##NAME)                                                                \
+        vkao_##name##_plan(program);
+        VKAO_STAGES(PLAN)
+#undef PLAN
+    }
+    program->needs = needs_of(program);
+    set_constants(program);
+}
+
+vkao_result vkao_effect_create(const vkao_context *ctx, const vkao_effect_info *info,
+                               vkao_effect **out)
+{
+    vkao_effect_info settings;
+    if (out)
+        *out = NULL;
+    if (!ctx)
+        return VKAO_ERROR_INVALID_ARGUMENT;
+    if (!out)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "vkao_effect_create: out is NULL");
+    vkao_result result = vkao_effect_info_check(&ctx->log, info, &settings);
+    if (result != VKAO_SUCCESS)
+        return result;
+    vkao_effect *effect = vkao_calloc(ctx->allocator, sizeof *effect);
+    if (!effect)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_OUT_OF_HOST_MEMORY,
+                           "no host memory for the effect");
+    vkao_program_plan(&effect->program, ctx, &settings, ctx->is_cpu);
+    atomic_fetch_add(ctx->live, 1);
+    result = vkao_program_compile(&effect->program);
+    if (result != VKAO_SUCCESS) {
+        vkao_effect_destroy(effect);
+        return result;
+    }
+    /* The caller's, during this call only. */
+    effect->program.settings.pipeline_cache = VK_NULL_HANDLE;
+    effect->program.settings.parallel = NULL;
+    effect->program.settings.parallel_user_data = NULL;
+    *out = effect;
+    return VKAO_SUCCESS;
+}
+
+vkao_effect_info vkao_effect_settings(const vkao_effect *effect)
+{
+    return effect ? effect->program.settings : (vkao_effect_info){0};
+}
+
+void vkao_effect_destroy(vkao_effect *effect)
+{
+    if (!effect)
+        return;
+    const vkao_context *ctx = effect->program.ctx;
+    vkao_program_destroy(&effect->program);
+    vkao_free(ctx->allocator, effect);
+    atomic_fetch_sub(ctx->live, 1);
+}

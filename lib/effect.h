@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+#ifndef VKAO_EFFECT_H_
+#define VKAO_EFFECT_H_
+
+#include "passes.h"
+
+struct vkao_effect {
+    struct vkao_program program;
+};
+
+/* The rows for checked settings, not compiled. is_cpu: those of the CPU. */
+void vkao_program_plan(struct vkao_program *program, const vkao_context *ctx,
+                       const vkao_effect_info *settings, bool is_cpu);
+
+#endif

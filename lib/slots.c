@@ -1,0 +1,138 @@
+/* SPDX-License-Identifier: MIT */
+#include "slots.h"
+
+#include "formats.h"
+
+#include <stddef.h>
+
+enum slot_use { SLOT_DEPTH, SLOT_AO, SLOT_COLOR };
+
+static const struct slot {
+    const char *name;
+    size_t offset; /* in vkao_images */
+    enum slot_use use;
+} slots[] = {
+#define ROW(NAME, member, kind) {"images." #member, offsetof(vkao_images, member), SLOT_##kind},
+    VKAO_SLOTS(ROW)
+#undef ROW
+};
+
+static const char *const wants[] = {
+    [SLOT_DEPTH] = "a depth format, R16_UNORM, R16_SFLOAT or R32_SFLOAT",
+    [SLOT_AO] = "R8_UNORM, R16_UNORM, R16_SFLOAT or R32_SFLOAT",
+    [SLOT_COLOR] = "a float, UNORM or SNORM format",
+};
+
+const vkao_image *vkao_slot_image(const vkao_images *images, uint32_t slot)
+{
+    return (const vkao_image *)(const void *)((const char *)images + slots[slot].offset);
+}
+
+static bool format_fits(enum slot_use use, VkFormat format)
+{
+    switch (use) {
+    case SLOT_DEPTH:
+        return vkao_format_is_depth(format);
+    case SLOT_AO:
+        return vkao_format_is_ao(format);
+    default:
+        return vkao_format_is_sampled_float(format);
+    }
+}
+
+static bool read_layout(VkImageLayout layout)
+{
+    static const VkImageLayout allowed[] = {
+        VK_IMAGE_LAYOUT_GENERAL,
+        VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
+        VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+        VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_OPTIMAL,
+        VK_IMAGE_LAYOUT_DEPTH_READ_ONLY_STENCIL_ATTACHMENT_OPTIMAL,
+        VK_IMAGE_LAYOUT_READ_ONLY_OPTIMAL,
+    };
+    for (size_t i = 0; i < sizeof allowed / sizeof allowed[0]; ++i) {
+        if (layout == allowed[i])
+            return true;
+    }
+    return false;
+}
+
+/* Must the caller give it? What the program makes itself it can keep in scratch, if nobody else is
+ * to see it. */
+static bool is_required(const struct vkao_program *program, uint32_t slot)
+{
+    const vkao_effect_info *e = &program->settings;
+    if (slot == VKAO_RESOURCE_AO_NOISY)
+        return !(e->stages & VKAO_STAGE_SSAO) || e->noisy_ao;
+    if (slot == VKAO_RESOURCE_AO)
+        return !(e->stages & VKAO_STAGE_COMPOSITE) || e->stages == VKAO_STAGE_COMPOSITE;
+    return true;
+}
+
+static vkao_result check_slot(const struct vkao_program *program, uint32_t i,
+                              const vkao_image *image, bool reads, bool writes)
+{
+    const vkao_context *ctx = program->ctx;
+    const char *name = slots[i].name;
+    char is[VKAO_NAME_BYTES], other[VKAO_NAME_BYTES];
+    vkao_format_name(image->format, is);
+    if (!image->format && image->view)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s has a view but no format",
+                           name);
+    if (!image->format && (reads || writes) && is_required(program, i))
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "%s is required by effect.stages 0x%x and its settings", name,
+                           program->settings.stages);
+    if (!image->format)
+        return VKAO_SUCCESS;
+    if (image->image && i != VKAO_RESOURCE_AO)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "%s.image is given, want it in images.ao only", name);
+    if (!format_fits(slots[i].use, image->format))
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s.format is %s, want %s", name,
+                           is, wants[slots[i].use]);
+    if (i == VKAO_RESOURCE_AO && writes && image->format != program->settings.ao_format)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "%s.format is %s, but effect.ao_format is %s", name, is,
+                           vkao_format_name(program->settings.ao_format, other));
+    if (writes ? image->layout != VK_IMAGE_LAYOUT_GENERAL : reads && !read_layout(image->layout))
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s.layout is %s, want %s", name,
+                           vkao_layout_name(image->layout, other),
+                           writes ? "GENERAL" : "a read-only one or GENERAL");
+    const VkFormatFeatureFlags want = (reads ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT : 0u) |
+                                      (writes ? VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT : 0u);
+    if (!vkao_format_can(ctx, image->format, want))
+        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
+                           "%s.format is %s, which the device cannot %s%s", name, is,
+                           writes ? "use as a storage image" : "sample",
+                           writes && vkao_format_is_srgb(image->format)
+                               ? ": make the image with MUTABLE_FORMAT, give a UNORM view of it"
+                               : "");
+    return VKAO_SUCCESS;
+}
+
+vkao_result vkao_slots_check(const struct vkao_program *program, const vkao_images *images,
+                             bool need_views)
+{
+    const struct vkao_logger *log = &program->ctx->log;
+    if (images->padding)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "images.padding is %u, want 0",
+                           images->padding);
+    for (uint32_t i = 0; i < VKAO_SLOT_COUNT; ++i) {
+        const vkao_image *image = vkao_slot_image(images, i);
+        const bool reads = vkao_program_reads(program, (enum vkao_resource)i),
+                   writes = vkao_program_writes(program, (enum vkao_resource)i);
+        vkao_result result = check_slot(program, i, image, reads, writes);
+        if (result != VKAO_SUCCESS)
+            return result;
+        if (need_views && image->format && (reads || writes) && !image->view)
+            return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "%s.view is VK_NULL_HANDLE",
+                               slots[i].name);
+    }
+    return VKAO_SUCCESS;
+}
+
+const char *vkao_slot_name(uint32_t slot)
+{
+    return slots[slot].name;
+}

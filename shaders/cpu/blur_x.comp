@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * blur.comp, horizontally, from packed noisy AO to the ring: VKAO_BLUR_X_WIDTH texels of a row per
+ * invocation, from one window of them and their neighbours. */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_control_flow_attributes : require
+#extension GL_EXT_samplerless_texture_functions : require
+#define VKAO_GLSL
+#include "layout.h"
+
+layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
+layout(push_constant) uniform Block { vkao_strip here; };
+#include "settings.glsl"
+layout(binding = VKAO_BINDING_Z4, rgba32f) uniform readonly imageBuffer view_z4;
+layout(binding = VKAO_BINDING_PACKED_READ4, r32ui) uniform readonly uimageBuffer packed_ao;
+layout(binding = VKAO_BINDING_HALFWAY_WORDS) writeonly buffer Halfway { uint halfway[]; };
+#include "view.glsl"
+#include "blur_window.glsl"
+
+const int REACH = (RADIUS + MARGIN + 3) & ~3; /* windows begin and end at whole words */
+const int WINDOW = VKAO_BLUR_X_WIDTH + 2 * REACH;
+
+float fetch_code(ivec2 texel)
+{
+    int i = buffer_row(texel.y) + texel.x;
+    return float(int(imageLoad(packed_ao, i >> 2).x >> ((i & 3) << 3)) & 255);
+}
+
+float slope_at(ivec2 texel)
+{
+    return local_slope(surface_z(load_view_z(texel - ivec2(1, 0))), surface_z(load_view_z(texel)),
+                       surface_z(load_view_z(texel + ivec2(1, 0))));
+}
+
+void blur(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
+{
+    float z[WINDOW], code[WINDOW], slope[WINDOW];
+    vec4 normal[WINDOW];
+    bool use_normals = NORMAL_POWER > 0.0;
+    int z_word = (z_row(texel.y) + texel.x - REACH) >> 2,
+        code_word = (buffer_row(texel.y) + texel.x - REACH) >> 2;
+    [[unroll]] for (int j = 0; j < WINDOW / 4; ++j) {
+        vec4 z4 = imageLoad(view_z4, z_word + j);
+        int word = int(imageLoad(packed_ao, code_word + j).x);
+        [[unroll]] for (int i = 0; i < 4; ++i) {
+            z[4 * j + i] = surface_z(z4[i]);
+            code[4 * j + i] = float((word >> (8 * i)) & 255);
+            if (use_normals)
+                normal[4 * j + i] = window_normal(texel + ivec2(4 * j + i - REACH, 0));
+        }
+    }
+    /* Those that nothing uses cost nothing. */
+    [[unroll]] for (int i = 1; i < WINDOW - 1; ++i)
+        slope[i] = local_slope(z[i - 1], z[i], z[i + 1]);
+    [[unroll]] for (int i = 0; i < VKAO_BLUR_X_WIDTH; ++i) {
+        int c = REACH + i;
+        float edge = edge_stop(z[c], params.sharpness, params.reference_z);
+        float sum = code[c], weights = 1.0;
+        [[unroll]] for (int k = -RADIUS; k <= RADIUS; ++k) {
+            if (k == 0)
+                continue;
+            float off = off_surface(z[c], slope[c], z[c + k], slope[c + k], float(k));
+            float w = blur_weight(k, RADIUS) * max(0.0, 1.0 - edge * off);
+            if (use_normals)
+                w *= normal_weight(normal[c], normal[c + k], NORMAL_POWER);
+            sum += w * code[c + k];
+            weights += w;
+        }
+        result[i] = sum / weights;
+    }
+}
+
+void main()
+{
+    ivec2 low = unpack_texel(here.rect.x), high = unpack_texel(here.rect.y);
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) * ivec2(VKAO_BLUR_X_WIDTH, 1);
+    texel += ivec2(round_down(low.x, VKAO_BLUR_X_WIDTH), low.y);
+    if (any(greaterThanEqual(texel, high)))
+        return;
+    float result[VKAO_BLUR_X_WIDTH];
+    blur(texel, result);
+    int word = (ring_row(texel.y) * VKAO_STRIDE + VKAO_BUFFER_PAD + texel.x) >> 1;
+    [[unroll]] for (int i = 0; i < VKAO_BLUR_X_WIDTH / 2; ++i) {
+        ivec2 fine = ivec2(vec2(result[2 * i], result[2 * i + 1]) * VKAO_CODE_FINE + 0.5);
+        halfway[word + i] = uint(fine.x | fine.y << 16);
+    }
+}

@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * ../ssao_vbao.comp for two texels side by side; steps, slices or both are unrolled while the code
+ * fits an instruction cache. */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_shader_16bit_storage : enable
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
+#define VKAO_GLSL
+#include "params.h"
+#include "ssao.glsl"
+#include "horizon.glsl"
+#include "sectors.glsl"
+
+/* Is all to be unrolled, steps and slices? Unknown counts, 0, are not. */
+bool unrolls()
+{
+    return SLICES * STEPS - 1u < VKAO_VBAO_MOST_UNROLLED;
+}
+
+/* Steps that are unrolled in a loop over the rest. */
+uint chunk()
+{
+    uint chunks = (STEPS + VKAO_VBAO_MOST_AT_ONCE - 1u) / VKAO_VBAO_MOST_AT_ONCE;
+    return STEPS == 0u ? 1u : (STEPS + chunks - 1u) / chunks;
+}
+
+/* How far a march of both sides has come. */
+struct March {
+    ints mask; /* sectors that are hidden */
+    reals last_x, last_height, last_front;
+    reals hidden; /* sectors, weighted */
+    reals out_moment, eye_moment;
+};
+
+/* Takes what a sample of both sides hides first. */
+void hide(inout March march, Slice s, Masks m, reals tangent, Offset offset, reals z)
+{
+    bools seen = greaterThan(z, reals(0.0));
+    reals x, y;
+    slice_points(s, offset, mix(both(s.center_z), z, seen), x, y);
+    reals gap = x - march.last_x, height = mix(reals(0.0), y + x * tangent, seen);
+    bools joined = lessThan(abs(height - march.last_height), VKAO_VBAO_JOIN * abs(gap));
+    reals inner_x = x - VKAO_VBAO_GAP_FRONT * gap;
+    reals front_x = mix(x, inner_x, greaterThan(height, reals(0.0)));
+    front_x = mix(front_x, x, joined);
+    reals thick_y = y - (params.thickness_base + params.thickness_slope * x);
+    reals back_x = x + VKAO_VBAO_GAP_BACK * gap;
+    /* Cosines of both edges by one division. */
+    reals front_length = sqrt(front_x * front_x + y * y);
+    reals back_length = sqrt(back_x * back_x + thick_y * thick_y);
+    reals inverse = 1.0 / (front_length * back_length);
+    reals front = y * (back_length * inverse), back = thick_y * (front_length * inverse);
+    front = greater(front, mix(reals(-2.0), march.last_front, joined));
+    ints high = min(sector(m, greater(front - params.bias_cosine, m.low)), ints(31)),
+         low = min(sector(m, greater(back, m.low)), high);
+    ints bits = (ints(1) << high) - (ints(1) << low);
+    bits = mix(ints(0), bits, seen);
+    ints fresh = bits & ~march.mask;
+    march.mask |= bits;
+    reals near_y = lesser(max(thick_y, reals(0.0)), y);
+    reals w = falloff_weight(inner_x * inner_x + near_y * near_y) * reals(bitCount(fresh));
+    march.hidden += w;
+    if (BENT_NORMALS) {
+        reals middle = clamp(0.5 * (front + max(back, m.low)), reals(-1.0), reals(1.0));
+        w *= m.mass;
+        march.out_moment += w * SIDES * sqrt(max(reals(0.0), 1.0 - middle * middle));
+        march.eye_moment += w * middle;
+    }
+    march.last_x = x;
+    march.last_height = height;
+    march.last_front = mix(reals(-2.0), front, seen);
+}
+
+/* What a slice loses of its mass, weighted, and of its moment along O and along V. */
+struct Hidden {
+    real mass, out_moment, eye_moment;
+};
+
+real both_sides(reals sectors)
+{
+    return (first_side(sectors) + other_side(sectors)) * (1.0 / SECTORS);
+}
+
+/* Steps beyond the last hide nothing. */
+void take_step(inout March march, Slice s, Masks m, reals tangent, ivec2 texel, Steps steps, uint t)
+{
+    Offset offset = step_offset(s, steps, t);
+    reals z = load_sides(texel, offset);
+    if (STEPS % chunk() != 0u)
+        z = t < STEPS ? z : reals(0.0);
+    hide(march, s, m, tangent, offset, z);
+}
+
+Hidden hidden_mass(Slice s, ivec2 texel, real jitter, bool unrolled)
+{
+    float reach = params.radius;
+    reach *= THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH;
+    reals tangent = SIDES * both(s.sin_n / max(s.cos_n, real(VKAO_STEEPEST)));
+    Masks m = make_masks(SIDES * both(s.sin_n), both(s.cos_n));
+    const reals none = reals(0.0);
+    Steps steps = make_steps(s, jitter, reach);
+    March march = March(ints(0), none, none, reals(-2.0), none, none, none);
+    if (unrolled) {
+        [[unroll]] for (uint t = 0u; t < STEPS; ++t)
+            take_step(march, s, m, tangent, texel, steps, t);
+    } else {
+        uint t = 0u;
+        [[dont_unroll]] for (;;) {
+            [[unroll]] for (uint i = 0u; i < chunk(); ++i)
+                take_step(march, s, m, tangent, texel, steps, t + i);
+            t += chunk();
+            if (t >= step_count())
+                break;
+        }
+    }
+    return Hidden(both_sides(march.hidden * m.mass), both_sides(march.out_moment),
+                  both_sides(march.eye_moment));
+}
+
+void add_slice(inout Visibility v, uint k, ivec2 texel, Real3 position, Real3 normal, Real3 to_eye,
+               real turn, real jitter, bool unrolled)
+{
+    float share = 1.0 / float(slice_count());
+    Slice s = make_slice((float(k) + turn) * share, position, normal, to_eye);
+    Hidden hidden = hidden_mass(s, texel, jitter, unrolled);
+    v.open -= s.normal_length * hidden.mass * share;
+    Real3 moment = plus(times(s.outward, hidden.out_moment), times(to_eye, hidden.eye_moment));
+    v.bent = plus(v.bent, times(moment, -share * s.normal_length));
+}
+
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
+{
+    Real3 to_eye = eye_direction(texel);
+    Noise noise = texel_noise(texel, slice_count());
+    /* The mean direction of an open hemisphere is 2/3 of its normal. */
+    Visibility v = Visibility(times(normal, real(2.0 / 3.0)), real(1.0));
+    if (unrolls()) {
+        [[unroll]] for (uint k = 0u; k < SLICES; ++k)
+            add_slice(v, k, texel, position, normal, to_eye, noise.turn, noise.jitter, true);
+    } else {
+        uint k = 0u;
+        [[dont_unroll]] for (;;) {
+            add_slice(v, k, texel, position, normal, to_eye, noise.turn, noise.jitter, false);
+            if (++k >= slice_count())
+                break;
+        }
+    }
+    return v;
+}

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * SSAO of a GPU: groups are near squares, as their lanes share caches; one texel per invocation,
+ * into an image. */
+layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
+layout(binding = VKAO_BINDING_TARGET) uniform writeonly image2D noisy_image;
+
+void main()
+{
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(here.rect.x);
+    if (any(greaterThanEqual(texel, unpack_texel(here.rect.y))))
+        return;
+    Visibility v = shade(texel);
+    imageStore(noisy_image, texel, BENT_NORMALS ? vec4(v.bent, v.open) : vec4(v.open));
+}

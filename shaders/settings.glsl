@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a pass is compiled for, and what a recording says: see shaders/params.h. */
+#ifndef VKAO_SETTINGS_GLSL_
+#define VKAO_SETTINGS_GLSL_
+
+layout(constant_id = VKAO_SETTING_DEPTH_ENCODING) const uint DEPTH_ENCODING = 0u;
+layout(constant_id = VKAO_SETTING_NORMAL_ENCODING) const uint NORMAL_ENCODING = 0u;
+layout(constant_id = VKAO_SETTING_BENT_ENCODING) const uint BENT_ENCODING = 0u;
+layout(constant_id = VKAO_SETTING_ORTHOGRAPHIC) const bool ORTHOGRAPHIC = false;
+layout(constant_id = VKAO_SETTING_GRID_SHIFT) const uint GRID_SHIFT = 0u;
+layout(constant_id = VKAO_SETTING_BENT_NORMALS) const bool BENT_NORMALS = false;
+layout(constant_id = VKAO_SETTING_THRESHOLD) const bool THRESHOLD = false;
+layout(constant_id = VKAO_SETTING_SPHERE_LITERAL) const bool SPHERE_LITERAL = false;
+layout(constant_id = VKAO_SETTING_SLICES) const uint SLICES = 0u;
+layout(constant_id = VKAO_SETTING_STEPS) const uint STEPS = 0u;
+layout(constant_id = VKAO_SETTING_SAMPLES) const uint SAMPLES = 0u;
+layout(constant_id = VKAO_SETTING_BLUR_RADIUS) const int RADIUS = 0;
+layout(constant_id = VKAO_SETTING_BLUR_NORMAL_POWER) const float NORMAL_POWER = 0.0;
+layout(constant_id = VKAO_SETTING_COMPOSITE_MODE) const uint COMPOSITE_MODE = 0u;
+layout(constant_id = VKAO_SETTING_MULTI_BOUNCE) const bool MULTI_BOUNCE = false;
+layout(constant_id = VKAO_SETTING_SPECULAR) const uint SPECULAR = 0u;
+layout(constant_id = VKAO_SETTING_VERTICAL) const bool VERTICAL = false;
+layout(constant_id = VKAO_SETTING_TONED) const bool TONED = false;
+
+layout(binding = VKAO_BINDING_CONSTANTS) uniform Constants { vkao_constants params; };
+
+/* These are at least 1. Loops over them test at their end, as a driver in software goes through a
+ * body once more to find that no lane is left. */
+uint slice_count()
+{
+    return SLICES != 0u ? SLICES : params.slices;
+}
+
+uint step_count()
+{
+    return STEPS != 0u ? STEPS : params.steps;
+}
+
+uint sample_count()
+{
+    return SAMPLES != 0u ? SAMPLES : params.samples;
+}
+
+/* Is it a number, and not absurdly large? By its bits: compilers may assume of floats that they are
+ * numbers. */
+bool is_sane(float v)
+{
+    return (floatBitsToUint(v) & 0x7fffffffu) < floatBitsToUint(VKAO_LARGEST_RESULT);
+}
+
+#endif

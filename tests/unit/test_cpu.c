@@ -1,0 +1,255 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The CPU's passes: where they are chosen, how the blur goes down the image in strips, which tiles
+ * are looked at, when AO is copied, and what becomes of frames that its buffers cannot hold. */
+#include "cpu/cpu.h"
+#include "world.h"
+
+#include "cpu/layout.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static void open_cpu(struct world *w)
+{
+    world_init(w, true);
+    world_be_cpu(w);
+    assert_int_equal(vkao_context_create(&w->info, &w->ctx), VKAO_SUCCESS);
+    w->effect_info.stages = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
+    world_use_scratch_noise(w);
+}
+
+/* The AO image behind the view. */
+static void give_image(struct world *w)
+{
+    w->images.ao.image =
+        fake_caller_image(&w->fake, &(VkImageCreateInfo){.format = VK_FORMAT_R16_UNORM,
+                                                         .extent = {4096, 4096, 1},
+                                                         .mipLevels = 1,
+                                                         .arrayLayers = 1});
+}
+
+static void cpus_have_it_and_others_do_not(void **state)
+{
+    (void)state;
+    static const struct {
+        VkPhysicalDeviceType type;
+        VkFormat lacking;
+        bool want;
+    } rows[] = {
+        {VK_PHYSICAL_DEVICE_TYPE_CPU, VK_FORMAT_UNDEFINED, true},
+        {VK_PHYSICAL_DEVICE_TYPE_CPU, VK_FORMAT_R8_UINT, false},
+        {VK_PHYSICAL_DEVICE_TYPE_CPU, VK_FORMAT_R16_UINT, false},
+        {VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU, VK_FORMAT_UNDEFINED, false},
+        {VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU, VK_FORMAT_UNDEFINED, false},
+        {VK_PHYSICAL_DEVICE_TYPE_OTHER, VK_FORMAT_UNDEFINED, false},
+    };
+    for (size_t i = 0; i < COUNT(rows); ++i) {
+        struct world w;
+        world_init(&w, true);
+        w.fake.device_type = rows[i].type;
+        w.fake.no_texel_buffer = rows[i].lacking;
+        assert_int_equal(vkao_context_create(&w.info, &w.ctx), VKAO_SUCCESS);
+        w.effect_info.stages = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
+        world_use_scratch_noise(&w);
+        world_create_frame(&w);
+        assert_int_equal(fake_live_of(&w.fake, VK_OBJECT_TYPE_BUFFER_VIEW) > 0, rows[i].want);
+        assert_int_equal(fake_live_of(&w.fake, VK_OBJECT_TYPE_IMAGE) == 0, rows[i].want);
+        assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+        world_close(&w);
+    }
+}
+
+/* Every row of the rect is blurred once, each strip after the rows that it reads. */
+static void strips_cover_the_rect_once(void **state)
+{
+    (void)state;
+    for (uint32_t height = 1; height < 700; height += 37) {
+        struct world w;
+        open_cpu(&w);
+        w.fake.max_dimension = 8192;
+        w.frame_info.extent = (VkExtent2D){65, height};
+        world_create_frame(&w);
+        assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+        /* The dispatches: prepare, tiles, then x and y in turns. */
+        uint32_t blurred = 0, halfway = 0;
+        const uint32_t strips = (height + VKAO_STRIP_ROWS - 1) / VKAO_STRIP_ROWS;
+        assert_int_equal(fake_count(&w.fake, "vkCmdDispatch"), 2 + 1 + 2 * strips);
+        for (uint32_t s = 0; s < strips; ++s) {
+            struct vkao_strip x, y;
+            memcpy(&x, fake_nth(&w.fake, "vkCmdPushConstants", 3 + 2 * s)->push, sizeof x);
+            memcpy(&y, fake_nth(&w.fake, "vkCmdPushConstants", 4 + 2 * s)->push, sizeof y);
+            assert_int_equal(x.rect[0] >> 16, halfway);
+            assert_int_equal(y.rect[0] >> 16, blurred);
+            halfway = x.rect[1] >> 16;
+            blurred = y.rect[1] >> 16;
+            assert_int_equal(halfway, blurred + 3 < height ? blurred + 3 : height);
+            assert_int_equal(x.ring_row, y.ring_row);
+            assert_true((int32_t)x.ring_row <= (int32_t)(y.rect[0] >> 16) - 3);
+            assert_true((int32_t)halfway <= (int32_t)x.ring_row + 2 * VKAO_RING_ROWS);
+        }
+        assert_int_equal(blurred, height);
+        world_close(&w);
+    }
+}
+
+/* The list that SSAO's dispatch reads begins with its size, and holds as many tiles as there
+ * are. */
+static void tiles_are_those_of_the_rect(void **state)
+{
+    (void)state;
+    static const VkExtent2D extents[] = {{1, 1}, {64, 8}, {65, 9}, {640, 480}, {1921, 1081}};
+    for (size_t i = 0; i < COUNT(extents); ++i) {
+        struct world w;
+        struct vkao_tiling push;
+        struct vkao_tiles_head head;
+        open_cpu(&w);
+        w.frame_info.extent = extents[i];
+        world_create_frame(&w);
+        assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+        memcpy(&push, fake_nth(&w.fake, "vkCmdPushConstants", 1)->push, sizeof push);
+        const struct fake_call *update = fake_nth(&w.fake, "vkCmdUpdateBuffer", 1);
+        const struct fake_call *indirect = fake_nth(&w.fake, "vkCmdDispatchIndirect", 0);
+        memcpy(&head, update->update, sizeof head);
+        assert_int_equal(push.tile_width, VKAO_ROW_GROUP_WIDTH * VKAO_SSAO_TEXELS);
+        assert_int_equal(push.tiles[0], (extents[i].width + 127) / 128);
+        assert_int_equal(push.tiles[1], (extents[i].height + 7) / 8);
+        assert_int_equal(head.group_rows, push.tile_height);
+        assert_int_equal(head.count, 0);
+        assert_int_equal(head.one, 1);
+        assert_int_equal(update->offset, indirect->offset);
+        VkDeviceSize parts[VKAO_RESOURCE_COUNT] = {0};
+        struct vkao_rows rows;
+        vkao_cpu_parts(w.frame->program, extents[i], false, &rows, parts);
+        assert_true(parts[VKAO_RESOURCE_CPU + 5] >=
+                    sizeof head + 4 * (VkDeviceSize)push.tiles[0] * push.tiles[1]);
+        world_close(&w);
+    }
+}
+
+/* Copies cover the rect, each texel once. */
+static void ao_is_copied_if_its_image_is_given(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4; ++i) {
+        const bool half = i & 1, given = i & 2;
+        struct world w;
+        open_cpu(&w);
+        w.effect_info.half_resolution = half;
+        w.frame_info.extent = (VkExtent2D){300, 400};
+        if (given)
+            give_image(&w);
+        world_create_frame(&w);
+        w.view.rect = (VkRect2D){{13, 5}, {205, 391}};
+        assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+        int32_t y = 5;
+        size_t copies = 0;
+        for (const struct fake_call *c; (c = fake_nth(&w.fake, "vkCmdCopyBufferToImage", copies));
+             ++copies) {
+            assert_int_equal(c->copy.imageOffset.x, 13);
+            assert_int_equal(c->copy.imageOffset.y, y);
+            assert_int_equal(c->copy.imageExtent.width, 205);
+            y += (int32_t)c->copy.imageExtent.height;
+        }
+        assert_int_equal(copies, given ? 4 : 0);
+        assert_int_equal(y, given ? 5 + 391 : 5);
+        world_close(&w);
+    }
+}
+
+/* The directions of the blur take turns: what either needs is needed until both have ended. */
+static void parts_that_are_needed_together_do_not_overlap(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 4; ++i) {
+        struct world w;
+        open_cpu(&w);
+        w.effect_info.half_resolution = i & 1;
+        if (i & 2)
+            give_image(&w);
+        world_create_frame(&w);
+        const struct vkao_block *blocks = w.frame->scratch.blocks;
+        for (int a = VKAO_RESOURCE_CONSTANTS; a < VKAO_RESOURCE_COUNT; ++a) {
+            for (int b = VKAO_RESOURCE_CONSTANTS; b < a; ++b) {
+                /* Tiles alone are done with before the blur begins. */
+                if (a == VKAO_RESOURCE_COUNT - 1)
+                    continue;
+                /* Noisy AO ends where upsampling begins, and copies only then. */
+                if ((i & 1) && b == VKAO_RESOURCE_CPU + 1)
+                    continue;
+                assert_true(blocks[a].offset + blocks[a].size <= blocks[b].offset ||
+                            blocks[b].offset + blocks[b].size <= blocks[a].offset);
+            }
+        }
+        world_close(&w);
+    }
+}
+
+static void images_of_other_slots_are_refused(void **state)
+{
+    (void)state;
+    struct world w;
+    open_cpu(&w);
+    give_image(&w);
+    w.images.depth.image = w.images.ao.image;
+    expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, world_try_frame(&w), "images.depth.image",
+                   "images.ao");
+    world_close(&w);
+}
+
+/* What another path can do is not refused. */
+static void frames_too_large_for_buffers_use_images(void **state)
+{
+    (void)state;
+    struct world w;
+    open_cpu(&w);
+    w.fake.max_buffer = 200000;
+    w.ctx->max_buffer = 200000;
+    w.frame_info.extent = (VkExtent2D){400, 300};
+    world_create_effect(&w);
+    VkMemoryRequirements query;
+    assert_int_equal(vkao_frame_scratch(w.effect, &w.frame_info, &query), VKAO_SUCCESS);
+    world_create_frame(&w);
+    assert_true(fake_live_of(&w.fake, VK_OBJECT_TYPE_IMAGE) > 0);
+    assert_int_equal(fake_live_of(&w.fake, VK_OBJECT_TYPE_BUFFER_VIEW), 0);
+    assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+    w.frame_info.extent = (VkExtent2D){100, 60};
+    world_create_frame(&w);
+    assert_int_equal(fake_live_of(&w.fake, VK_OBJECT_TYPE_IMAGE), 0);
+    world_close(&w);
+}
+
+static void bent_normals_and_noisy_ao_go_through_images(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 3; ++i) {
+        struct world w;
+        open_cpu(&w);
+        if (i == 0)
+            world_use_bent_normals(&w);
+        if (i == 1) {
+            w.effect_info.noisy_ao = VK_TRUE;
+            w.images.ao_noisy = (vkao_image){fake_caller_view(&w.fake), VK_IMAGE_LAYOUT_GENERAL,
+                                             VK_FORMAT_R8_UNORM, VK_NULL_HANDLE};
+        }
+        world_create_frame(&w);
+        assert_int_equal(w.frame->program->is_packed, i == 2);
+        assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+        world_close(&w);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cpus_have_it_and_others_do_not),
+        cmocka_unit_test(strips_cover_the_rect_once),
+        cmocka_unit_test(tiles_are_those_of_the_rect),
+        cmocka_unit_test(ao_is_copied_if_its_image_is_given),
+        cmocka_unit_test(parts_that_are_needed_together_do_not_overlap),
+        cmocka_unit_test(images_of_other_slots_are_refused),
+        cmocka_unit_test(frames_too_large_for_buffers_use_images),
+        cmocka_unit_test(bent_normals_and_noisy_ao_go_through_images),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,248 @@
+/* SPDX-License-Identifier: MIT */
+#include "options.h"
+
+#include <getopt.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char options_example[] = "example: vkao beauty.####.exr -o ao.####.exr --frames 1001-1100";
+
+static const struct {
+    const char *name;
+    enum command command;
+} commands[] = {
+    {"render", COMMAND_RENDER}, {"inspect", COMMAND_INSPECT}, {"devices", COMMAND_DEVICES}};
+
+static const char *command_name(enum command command)
+{
+    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
+        if (commands[i].command == command)
+            return commands[i].name;
+    return "";
+}
+
+/* --- Parsing --- */
+
+static bool fail_unknown(const char *argument, struct tool_error *err)
+{
+    char name[64];
+    const char *dashless = argument + strspn(argument, "-"), *best = NULL;
+    snprintf(name, sizeof name, "%.*s", (int)strcspn(dashless, "="), dashless);
+    unsigned nearest = 4;
+    for (size_t i = 0; i < option_table_count; i++) {
+        unsigned distance = text_distance(name, option_table[i].name);
+        if (distance < nearest && distance < strlen(name)) {
+            nearest = distance;
+            best = option_table[i].name;
+        }
+    }
+    fail_hint(err, "%s", best ? options_example : "'vkao --help' lists the options");
+    if (best)
+        return fail(err, EXIT_USAGE, "unknown option '--%s' (did you mean --%s?)", name, best);
+    return fail(err, EXIT_USAGE, "unknown option '--%s'", name);
+}
+
+/* getopt says '?' for unknown and for ambiguous names, and leaves optopt at 0 for long ones. */
+static bool fail_option(char **argv, struct tool_error *err)
+{
+    if (optopt == 0 || optopt >= MAX_OPTIONS * 256)
+        return fail_unknown(argv[optind - 1], err);
+    if (strncmp(argv[optind - 1], "--", 2) == 0) {
+        fail_hint(err, "%s", options_example);
+        return fail(err, EXIT_USAGE, "option '%s' takes no argument", argv[optind - 1]);
+    }
+    fail_hint(err, "'vkao --help' lists the options");
+    return fail(err, EXIT_USAGE, "unknown option '-%c'", optopt);
+}
+
+static bool fail_argument(char **argv, struct tool_error *err)
+{
+    fail_hint(err, "%s", options_example);
+    return fail(err, EXIT_USAGE, "option '%s' needs an argument", argv[optind - 1]);
+}
+
+/* Long options carry 256 + their row, so that those without a letter differ. */
+static size_t build_getopt(struct option *longs, char *shorts)
+{
+    size_t s = 0;
+    shorts[s++] = ':';
+    for (size_t i = 0; i < option_table_count; i++) {
+        const struct option_row *row = &option_table[i];
+        longs[i] = (struct option){.name = row->name,
+                                   .has_arg = row->argument ? required_argument : no_argument,
+                                   .val = 256 + (int)i};
+        if (row->letter) {
+            shorts[s++] = row->letter;
+            if (row->argument)
+                shorts[s++] = ':';
+        }
+    }
+    longs[option_table_count] = (struct option){0};
+    shorts[s] = '\0';
+    return option_table_count;
+}
+
+static const struct option_row *row_of(int code)
+{
+    if (code >= 256)
+        return &option_table[code - 256];
+    for (size_t i = 0; i < option_table_count; i++)
+        if (option_table[i].letter == code)
+            return &option_table[i];
+    return NULL;
+}
+
+static bool apply_defaults(struct options *options, struct tool_error *err)
+{
+    *options = (struct options){.command = COMMAND_RENDER, .asked = setting_default()};
+    for (size_t i = 0; i < option_table_count; i++) {
+        const struct option_row *row = &option_table[i];
+        if (row->fallback && !row->apply(options, row, row->fallback, err))
+            return false;
+    }
+    return true;
+}
+
+static bool parse_options(int argc, char **argv, struct options *options, struct tool_error *err)
+{
+    struct option longs[MAX_OPTIONS + 1];
+    char shorts[3 * MAX_OPTIONS + 2];
+    build_getopt(longs, shorts);
+    optind = 0; /* glibc and musl: start afresh */
+    opterr = 0;
+    int code;
+    while ((code = getopt_long(argc, argv, shorts, longs, NULL)) != -1) {
+        if (code == '?')
+            return fail_option(argv, err);
+        if (code == ':')
+            return fail_argument(argv, err);
+        const struct option_row *row = row_of(code);
+        if (!row)
+            return fail(err, EXIT_BUG, "option %d is not in the table", code);
+        if (!(row->commands & (unsigned)options->command))
+            return fail(err, EXIT_USAGE, "option '--%s' has no meaning for 'vkao %s'", row->name,
+                        command_name(options->command));
+        if (!row->apply(options, row, optarg, err)) {
+            fail_hint(err, "'vkao --help' explains the options");
+            return false;
+        }
+        options->given[row - option_table] = true;
+    }
+    return true;
+}
+
+static bool fail_positional(const char *first, const char *second, struct tool_error *err)
+{
+    for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
+        if (text_distance(first, commands[i].name) <= 2)
+            return fail(err, EXIT_USAGE, "unknown command '%s' (did you mean %s?)", first,
+                        commands[i].name);
+    fail_hint(err, "quote patterns, so that the shell leaves them alone; %s", options_example);
+    return fail(err, EXIT_USAGE, "one INPUT at a time, got '%s' and '%s'", first, second);
+}
+
+static bool check_together(const struct options *o, struct tool_error *err)
+{
+    if (o->command != COMMAND_DEVICES && !o->input) {
+        fail_hint(err, "%s", options_example);
+        return fail(err, EXIT_USAGE, "no INPUT given");
+    }
+    if (o->command == COMMAND_DEVICES && o->input)
+        return fail(err, EXIT_USAGE, "'vkao devices' takes no INPUT, got '%s'", o->input);
+    if (o->command == COMMAND_RENDER && !o->output) {
+        fail_hint(err, "%s", options_example);
+        return fail(err, EXIT_USAGE, "no output given: -o FILE");
+    }
+    if (o->gbuffer.camera.fov_deg > 0 && o->gbuffer.camera.ortho_width > 0)
+        return fail(err, EXIT_USAGE, "--fov and --ortho exclude each other");
+    return true;
+}
+
+bool options_parse(int argc, char **argv, struct options *options, struct tool_error *err)
+{
+    if (option_table_count > MAX_OPTIONS)
+        return fail(err, EXIT_BUG, "too many options");
+    if (!apply_defaults(options, err))
+        return false;
+    for (size_t i = 0; argc > 1 && i < sizeof commands / sizeof *commands; i++) {
+        if (strcmp(argv[1], commands[i].name) != 0)
+            continue;
+        options->command = commands[i].command;
+        argc--;
+        argv++;
+        break;
+    }
+    if (!parse_options(argc, argv, options, err))
+        return false;
+    if (options->help || options->version)
+        return true;
+    if (optind < argc)
+        options->input = argv[optind++];
+    if (optind < argc)
+        return fail_positional(options->input, argv[optind], err);
+    return check_together(options, err) && options_settle(options, NULL, err);
+}
+
+/* --- Options, preset and record together --- */
+
+bool option_is_given(const struct options *options, const char *name)
+{
+    for (size_t i = 0; i < option_table_count; i++)
+        if (strcmp(option_table[i].name, name) == 0)
+            return options->given[i];
+    return false;
+}
+
+/* The preset decides how much is computed, not what: only vbao was chosen with it, and the other
+ * methods take its samples as they are. */
+static void apply_quality(struct setting *s, int quality)
+{
+    const struct setting before = *s;
+    setting_apply_preset(s, (vkao_quality)quality);
+    s->effect.method = before.effect.method;
+    s->params.bias = before.params.bias;
+    s->params.sharpness = before.params.sharpness;
+}
+
+static bool is_left(const struct options *o, const char *name)
+{
+    for (size_t i = 0; i < option_table_count; i++)
+        if (strcmp(option_table[i].name, name) == 0)
+            return !o->given[i] || o->automatic[i];
+    return true;
+}
+
+static bool fail_bent_normals(struct tool_error *err)
+{
+    struct text list = {0};
+    text_add_list(&list, parameter_named("method")->choices,
+                  parameter_named("bent_normals")->methods, "or");
+    fail(err, EXIT_USAGE, "--bent-normals needs --method %s", list.data ? list.data : "");
+    text_free(&list);
+    return false;
+}
+
+bool options_settle(struct options *options, const struct setting *like, struct tool_error *err)
+{
+    struct options *o = options;
+    struct setting standard = setting_default();
+    apply_quality(&standard, o->quality);
+    o->setting = like ? *like : standard;
+    if (like && option_is_given(o, "quality"))
+        apply_quality(&o->setting, o->quality);
+    for (size_t i = 0; i < option_table_count; i++) {
+        const vkao_parameter *p = o->given[i] ? option_parameter(&option_table[i]) : NULL;
+        if (p)
+            parameter_copy(p, &o->setting, o->automatic[i] ? &standard : &o->asked);
+    }
+    o->radius_is_auto = is_left(o, "radius") && (!like || option_is_given(o, "radius"));
+    o->bias_is_given = like || !is_left(o, "bias");
+    o->gbuffer.want_color = o->mode == OUTPUT_COMP;
+    /* A record may bring another method. */
+    const bool all_is_known = like || !o->like;
+    if (all_is_known && o->setting.effect.bent_normals &&
+        !method_has_bent(o->setting.effect.method))
+        return fail_bent_normals(err);
+    return true;
+}

@@ -1,0 +1,522 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The options, one row each, and above them what they do with their arguments. */
+#include "options.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* --- Parameters of the library --- */
+
+const vkao_parameter *option_parameter(const struct option_row *row)
+{
+    return row->apply == apply_parameter
+               ? parameter_at(row->offset - offsetof(struct options, asked))
+               : NULL;
+}
+
+const struct option_row *option_of_parameter(const vkao_parameter *parameter)
+{
+    for (size_t i = 0; i < option_table_count; i++)
+        if (option_parameter(&option_table[i]) == parameter)
+            return &option_table[i];
+    return NULL;
+}
+
+struct option_range option_range(const struct option_row *row)
+{
+    const vkao_parameter *p = option_parameter(row);
+    if (!p)
+        return row->range;
+    const struct parameter_range r = parameter_range(p);
+    return (struct option_range){r.low, r.high, r.low_is_excluded, false};
+}
+
+/* --- Words --- */
+
+static void *member(struct options *options, const struct option_row *row)
+{
+    return (char *)options + row->offset;
+}
+
+bool apply_flag(struct options *options, const struct option_row *row, const char *argument,
+                struct tool_error *err)
+{
+    (void)argument;
+    (void)err;
+    *(bool *)member(options, row) = true;
+    return true;
+}
+
+bool apply_text(struct options *options, const struct option_row *row, const char *argument,
+                struct tool_error *err)
+{
+    if (!*argument)
+        return fail(err, EXIT_USAGE, "--%s is empty", row->name);
+    *(const char **)member(options, row) = argument;
+    return true;
+}
+
+bool apply_word(struct options *options, const struct option_row *row, const char *argument,
+                struct tool_error *err)
+{
+    _Static_assert(sizeof(enum depth_type) == sizeof(int) && sizeof(vkao_falloff) == sizeof(int),
+                   "enums are written as int");
+    struct text wanted = {0};
+    for (const struct option_word *w = row->words; w->word; w++) {
+        if (strcmp(w->word, argument) == 0) {
+            memcpy(member(options, row), &w->value, sizeof w->value);
+            text_free(&wanted);
+            return true;
+        }
+        text_add(&wanted, "%s%s", w == row->words ? "" : w[1].word ? ", " : " or ", w->word);
+    }
+    fail(err, EXIT_USAGE, "--%s is '%s', want %s", row->name, argument,
+         wanted.data ? wanted.data : "");
+    text_free(&wanted);
+    return false;
+}
+
+/* --- Numbers --- */
+
+static bool fail_range(const struct option_row *row, const char *argument, bool whole,
+                       struct tool_error *err)
+{
+    const struct option_range r = option_range(row);
+    const char *noun = whole ? "whole number" : r.infinity_is_allowed ? "number" : "finite number";
+    char wanted[96];
+    if (isinf(r.high))
+        snprintf(wanted, sizeof wanted, "%s %g", r.low_is_excluded ? ">" : ">=", r.low);
+    else
+        snprintf(wanted, sizeof wanted, "%s %.10g and <= %.10g",
+                 r.low_is_excluded ? ">" : ">=", r.low, r.high);
+    return fail(err, EXIT_USAGE, "--%s is %s, want a %s %s", row->name, argument, noun, wanted);
+}
+
+static bool in_range(const struct option_row *row, double value)
+{
+    const struct option_range r = option_range(row);
+    bool low = r.low_is_excluded ? value > r.low : value >= r.low;
+    bool high = isinf(r.high) ? r.infinity_is_allowed || isfinite(value) : value <= r.high;
+    return low && high;
+}
+
+static bool read_number(const struct option_row *row, const char *argument, double *value,
+                        struct tool_error *err)
+{
+    if (!text_to_number(argument, value) || !in_range(row, *value))
+        return fail_range(row, argument, false, err);
+    return true;
+}
+
+bool apply_double(struct options *options, const struct option_row *row, const char *argument,
+                  struct tool_error *err)
+{
+    return read_number(row, argument, member(options, row), err);
+}
+
+static bool read_integer(const struct option_row *row, const char *argument, int64_t *value,
+                         struct tool_error *err)
+{
+    if (!text_to_integer(argument, value) || !in_range(row, (double)*value))
+        return fail_range(row, argument, true, err);
+    return true;
+}
+
+bool apply_uint(struct options *options, const struct option_row *row, const char *argument,
+                struct tool_error *err)
+{
+    int64_t value;
+    if (!read_integer(row, argument, &value, err))
+        return false;
+    *(uint32_t *)member(options, row) = (uint32_t)value;
+    return true;
+}
+
+bool apply_count(struct options *options, const struct option_row *row, const char *argument,
+                 struct tool_error *err)
+{
+    int64_t value;
+    if (!read_integer(row, argument, &value, err))
+        return false;
+    *(uint64_t *)member(options, row) = (uint64_t)value;
+    return true;
+}
+
+bool apply_bytes(struct options *options, const struct option_row *row, const char *argument,
+                 struct tool_error *err)
+{
+    return budget_parse_bytes(argument, member(options, row)) ||
+           fail(err, EXIT_USAGE, "--%s is %s, want bytes, as 800M or 4G", row->name, argument);
+}
+
+/* --- Members of the library's structs --- */
+
+static bool read_float(const struct option_row *row, const char *argument, float *number,
+                       struct tool_error *err)
+{
+    double value;
+    if (!read_number(row, argument, &value, err))
+        return false;
+    /* 1e-50 is in the range of double only. */
+    *number = (float)value;
+    return in_range(row, (double)*number) || fail_range(row, argument, false, err);
+}
+
+static bool read_color(const struct option_row *row, const char *argument, float color[3],
+                       struct tool_error *err)
+{
+    const struct option_range r = option_range(row);
+    const char *from = argument;
+    for (int i = 0; i < 3; i++) {
+        char number[64];
+        double value;
+        int length = (int)strcspn(from, ",");
+        snprintf(number, sizeof number, "%.*s", length, from);
+        from += length;
+        bool ends_well = i < 2 ? *from++ == ',' : !*from;
+        if (!ends_well || !text_to_number(number, &value) || !in_range(row, value))
+            return fail(err, EXIT_USAGE, "--%s is %s, want R,G,B, each >= %g and <= %g", row->name,
+                        argument, r.low, r.high);
+        color[i] = (float)value;
+    }
+    return true;
+}
+
+static bool read_choice(const struct option_row *row, const vkao_parameter *p, const char *argument,
+                        uint32_t *choice, struct tool_error *err)
+{
+    const uint32_t count = (uint32_t)p->most + 1;
+    for (*choice = 0; *choice < count; ++*choice)
+        if (strcmp(p->choices[*choice], argument) == 0)
+            return true;
+    struct text wanted = {0};
+    text_add_list(&wanted, p->choices, (1u << count) - 1u, "or");
+    fail(err, EXIT_USAGE, "--%s is '%s', want %s", row->name, argument,
+         wanted.data ? wanted.data : "");
+    text_free(&wanted);
+    return false;
+}
+
+bool apply_parameter(struct options *options, const struct option_row *row, const char *argument,
+                     struct tool_error *err)
+{
+    const vkao_parameter *p = option_parameter(row);
+    float numbers[3] = {0};
+    uint32_t word = VK_TRUE;
+    int64_t whole = 0;
+    bool ok = true;
+    if (!p)
+        return fail(err, EXIT_BUG, "--%s is no parameter", row->name);
+    options->automatic[row - option_table] = row->automatic && strcmp(argument, "auto") == 0;
+    if (options->automatic[row - option_table])
+        return true;
+    if (row->has_off && strcmp(argument, "off") == 0)
+        argument = "0";
+    switch (p->type) {
+    case VKAO_PARAMETER_FLOAT:
+        ok = read_float(row, argument, numbers, err);
+        break;
+    case VKAO_PARAMETER_COLOR:
+        ok = read_color(row, argument, numbers, err);
+        break;
+    case VKAO_PARAMETER_CHOICE:
+        ok = read_choice(row, p, argument, &word, err);
+        break;
+    case VKAO_PARAMETER_UINT:
+        ok = read_integer(row, argument, &whole, err);
+        word = (uint32_t)whole;
+        break;
+    default:
+        break;
+    }
+    const bool is_number = p->type == VKAO_PARAMETER_FLOAT || p->type == VKAO_PARAMETER_COLOR;
+    const void *value = is_number ? (const void *)numbers : &word;
+    if (ok)
+        memcpy(member(options, row), value, parameter_bytes(p));
+    return ok;
+}
+
+/* --- What has a form of its own --- */
+
+bool apply_fov(struct options *options, const struct option_row *row, const char *argument,
+               struct tool_error *err)
+{
+    const char *colon = strchr(argument, ':');
+    char number[64];
+    double value;
+    snprintf(number, sizeof number, "%.*s", colon ? (int)(colon - argument) : (int)strlen(argument),
+             argument);
+    bool axis = !colon || strcmp(colon, ":h") == 0 || strcmp(colon, ":v") == 0;
+    if (!axis || !text_to_number(number, &value) || !(value > 0 && value < 180))
+        return fail(err, EXIT_USAGE,
+                    "--%s is %s, want degrees > 0 and < 180, followed by :h or :v or nothing",
+                    row->name, argument);
+    options->gbuffer.camera.fov_deg = value;
+    options->gbuffer.camera.fov_is_vertical = colon && colon[1] == 'v';
+    return true;
+}
+
+bool apply_normal(struct options *options, const struct option_row *row, const char *argument,
+                  struct tool_error *err)
+{
+    options->gbuffer.roles.no_normals = strcmp(argument, "none") == 0;
+    if (!options->gbuffer.roles.no_normals)
+        return apply_text(options, row, argument, err);
+    *(const char **)member(options, row) = NULL;
+    return true;
+}
+
+bool apply_compression(struct options *options, const struct option_row *row, const char *argument,
+                       struct tool_error *err)
+{
+    for (size_t i = 0; i < EXR_COMPRESSIONS; i++)
+        if (strcmp(exr_compression_names[i], argument) == 0)
+            return apply_text(options, row, argument, err);
+    return fail(err, EXIT_USAGE, "--%s is '%s', want %s", row->name, argument, row->help);
+}
+
+bool apply_verbose(struct options *options, const struct option_row *row, const char *argument,
+                   struct tool_error *err)
+{
+    (void)row;
+    (void)argument;
+    (void)err;
+    options->verbosity = REPORT_VERBOSE;
+    return true;
+}
+
+bool apply_quiet(struct options *options, const struct option_row *row, const char *argument,
+                 struct tool_error *err)
+{
+    (void)row;
+    (void)argument;
+    (void)err;
+    options->verbosity = REPORT_QUIET;
+    return true;
+}
+
+/* --- The table --- */
+
+#define AT(member) offsetof(struct options, member)
+/* A member of the library's structs: range, default, words and help are those of its row there. */
+#define PARAMETER(option, member)                                                                  \
+    .name = option, .commands = COMMAND_RENDER, .apply = apply_parameter, .offset = AT(asked.member)
+#define BY_QUALITY .automatic = "by --quality"
+#define RENDER COMMAND_RENDER
+#define INSPECT COMMAND_INSPECT
+#define DEVICES COMMAND_DEVICES
+#define ABOVE_ZERO                                                                                 \
+    {                                                                                              \
+        .low = 0, .high = INFINITY, .low_is_excluded = true                                        \
+    }
+#define FROM_TO(from, to)                                                                          \
+    {                                                                                              \
+        .low = (from), .high = (to)                                                                \
+    }
+
+static const struct option_word modes[] = {
+    {"ao", OUTPUT_AO}, {"append", OUTPUT_APPEND}, {"comp", OUTPUT_COMP}, {0}};
+static const struct option_word syntaxes[] = {
+    {"vfx", FRAME_SYNTAX_VFX}, {"openjd", FRAME_SYNTAX_OPENJD}, {0}};
+static const struct option_word pixel_types[] = {{"half", EXR_HALF}, {"float", EXR_FLOAT}, {0}};
+static const struct option_word overwrites[] = {{"never", 0}, {"always", 1}, {0}};
+static const struct option_word depth_types[] = {{"auto", DEPTH_AUTO},
+                                                 {"planar", DEPTH_PLANAR},
+                                                 {"radial", DEPTH_RADIAL},
+                                                 {"radial-near", DEPTH_RADIAL_NEAR},
+                                                 {"inverse", DEPTH_INVERSE},
+                                                 {"device", DEPTH_DEVICE},
+                                                 {0}};
+static const struct option_word spaces[] = {{"auto", NORMAL_SPACE_AUTO},
+                                            {"world", NORMAL_SPACE_WORLD},
+                                            {"camera", NORMAL_SPACE_CAMERA},
+                                            {0}};
+static const struct option_word encodings[] = {{"auto", NORMAL_ENCODING_AUTO},
+                                               {"signed", NORMAL_ENCODING_SIGNED},
+                                               {"unsigned", NORMAL_ENCODING_UNSIGNED},
+                                               {0}};
+static const struct option_word qualities[] = {{"fast", VKAO_QUALITY_FAST},
+                                               {"default", VKAO_QUALITY_DEFAULT},
+                                               {"high", VKAO_QUALITY_HIGH},
+                                               {"best", VKAO_QUALITY_BEST},
+                                               {0}};
+
+/* clang-format off */
+const struct option_row option_table[] = {
+    {.heading = "Files", .name = "output", .letter = 'o', .argument = "FILE",
+     .help = "EXR file to write; with a frame token if INPUT has one",
+     .commands = RENDER, .apply = apply_text, .offset = AT(output),
+     .more = "It appears whole or not at all, and must not be the input."},
+    {.name = "mode", .argument = "MODE", .fallback = "ao",
+     .help = "ao: a file with channel AO alone; append: all of INPUT, untouched, and a new part "
+             "'ao'; comp: colour times AO",
+     .commands = RENDER, .apply = apply_word, .offset = AT(mode), .words = modes,
+     .more = "Of a stereo file each view has a part of its own, ao.VIEW. append leaves pixels "
+             "and attributes as they are. comp writes R, G and B into a part named like that "
+             "of the colour, with its A untouched."},
+    {.name = "part-name", .argument = "NAME",
+     .help = "name of the new part, instead of ao",
+     .commands = RENDER, .apply = apply_text, .offset = AT(part_name)},
+    {.name = "like", .argument = "FILE",
+     .help = "take every setting from the record in FILE, which vkao wrote; other options come "
+             "before it. May hold a frame token",
+     .commands = RENDER, .apply = apply_text, .offset = AT(like),
+     .more = "The record holds all that decides the picture: parameters, channels and what "
+             "they mean, camera, mode, pixel type and compression. The same vkao on the same "
+             "device makes the same pixels of it, to the bit. A sequence with one record takes "
+             "its camera for all frames."},
+    {.name = "pixel-type", .argument = "TYPE", .fallback = "half",
+     .help = "half or float",
+     .commands = RENDER, .apply = apply_word, .offset = AT(pixel_type), .words = pixel_types},
+    {.name = "compression", .argument = "NAME", .fallback = "zip",
+     .help = "none, rle, zips, zip, piz, pxr24, b44, b44a, dwaa or dwab",
+     .commands = RENDER, .apply = apply_compression, .offset = AT(compression)},
+    {.name = "preview", .argument = "FILE",
+     .help = "write an 8-bit PNG too: AO * 255 without gamma, or the composite in sRGB",
+     .commands = RENDER, .apply = apply_text, .offset = AT(preview),
+     .more = "The composite is clamped. Of several views each gets its name put before the "
+             "extension."},
+    {.name = "overwrite", .argument = "WHEN", .fallback = "never",
+     .help = "never or always: what to do if an output exists",
+     .commands = RENDER, .apply = apply_word, .offset = AT(overwrite), .words = overwrites},
+    {.name = "frames", .letter = 'f', .argument = "SPEC",
+     .help = "frames of a sequence: 1-100, 1-100x2 (every second), 1,5,20-30. Default: all files"
+             " that match INPUT",
+     .commands = RENDER, .apply = apply_text, .offset = AT(frames),
+     .more = "Numbers may be negative, and ranges may go down. 1-10:2 is refused: it means "
+             "different things to different tools."},
+    {.name = "frames-syntax", .argument = "NAME", .fallback = "vfx",
+     .help = "vfx, or openjd: 1-100:2 is then a step",
+     .commands = RENDER, .apply = apply_word, .offset = AT(frame_syntax), .words = syntaxes},
+    {.name = "continue-on-error",
+     .help = "go on with the next frame; exit status 1 if any failed",
+     .commands = RENDER, .apply = apply_flag, .offset = AT(continue_on_error)},
+    {.heading = "Channels", .name = "depth", .argument = "NAME",
+     .help = "channel, layer or part/channel. Default: found by the names that renderers use",
+     .commands = RENDER | INSPECT, .apply = apply_text,
+     .offset = AT(gbuffer.roles.name[ROLE_DEPTH])},
+    {.name = "depth-type", .argument = "TYPE", .fallback = "auto",
+     .help = "planar: along the view axis; radial: from the eye; radial-near: along the ray from"
+             " the near plane (Mitsuba); inverse: 1/planar (Nuke); device: a depth buffer. auto:"
+             " planar, but radial-near for channels *.T",
+     .commands = RENDER | INSPECT, .apply = apply_word, .offset = AT(gbuffer.depth_type),
+     .words = depth_types,
+     .more = "radial-near needs the near plane; device needs both planes, and holds values "
+             "from 0 to 1."},
+    {.name = "normal", .argument = "NAME",
+     .help = "layer of the normals, or none: derive them from depth",
+     .commands = RENDER | INSPECT, .apply = apply_normal,
+     .offset = AT(gbuffer.roles.name[ROLE_NORMAL])},
+    {.name = "normal-space", .argument = "SPACE", .fallback = "auto",
+     .help = "world or camera. auto: by name, camera and looks",
+     .commands = RENDER | INSPECT, .apply = apply_word, .offset = AT(gbuffer.normal_space),
+     .words = spaces,
+     .more = "world needs the rotation of the camera. camera has +x to the right and +y up, "
+             "and either sign of z. auto takes what the name says; else world if the rotation "
+             "is known; else camera if the normals look so."},
+    {.name = "normal-encoding", .argument = "ENC", .fallback = "auto",
+     .help = "signed (-1..1) or unsigned (0..1)",
+     .commands = RENDER | INSPECT, .apply = apply_word, .offset = AT(gbuffer.normal_encoding),
+     .words = encodings},
+    {.name = "color", .argument = "NAME",
+     .help = "layer of the colour, for --mode comp",
+     .commands = RENDER | INSPECT, .apply = apply_text,
+     .offset = AT(gbuffer.roles.name[ROLE_COLOR])},
+    {.name = "view", .argument = "NAME",
+     .help = "one view of a stereo file, or all. Default: all if the camera file has views",
+     .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(view)},
+    {.heading = "Camera", .name = "camera", .argument = "FILE",
+     .help = "JSON camera, see vkao(1); may hold a frame token. Default: what the header says",
+     .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(camera_file),
+     .more = "Options come before the camera file, and that before the header. Without any, 40 "
+             "degrees are assumed, with a warning."},
+    {.name = "fov", .argument = "DEG[:h|v]",
+     .help = "field of view over the display window, horizontal (h) or vertical",
+     .commands = RENDER | INSPECT, .apply = apply_fov, .offset = AT(gbuffer.camera.fov_deg)},
+    {.name = "ortho", .argument = "WIDTH",
+     .help = "orthographic; scene units over the display window",
+     .commands = RENDER | INSPECT, .apply = apply_double, .offset = AT(gbuffer.camera.ortho_width),
+     .range = ABOVE_ZERO},
+    {.name = "near", .argument = "DISTANCE",
+     .help = "near plane, for depth types radial-near and device",
+     .commands = RENDER | INSPECT, .apply = apply_double, .offset = AT(gbuffer.camera.near_plane),
+     .range = {.low = 0, .high = INFINITY, .low_is_excluded = true, .infinity_is_allowed = true},
+     .more = "In scene units. Either plane may be inf for device depth."},
+    {.name = "far", .argument = "DISTANCE",
+     .help = "far plane, for depth type device; may be inf. near > far: reversed",
+     .commands = RENDER | INSPECT, .apply = apply_double, .offset = AT(gbuffer.camera.far_plane),
+     .range = {.low = 0, .high = INFINITY, .low_is_excluded = true, .infinity_is_allowed = true}},
+    {.heading = "Ambient occlusion",
+     PARAMETER("method", effect.method), .letter = 'm', .argument = "NAME"},
+    {.name = "quality", .argument = "NAME", .fallback = "default",
+     .help = "fast (half resolution), default, high or best: slices, steps and blur at once",
+     .commands = RENDER, .apply = apply_word, .offset = AT(quality), .words = qualities,
+     .more = "One setting for all scenes."},
+    {PARAMETER("slices", effect.slice_count), .argument = "N", BY_QUALITY},
+    {PARAMETER("steps", effect.step_count), .argument = "N", BY_QUALITY},
+    {PARAMETER("thickness", params.thickness), .argument = "X", BY_QUALITY},
+    {PARAMETER("bent-normals", effect.bent_normals),
+     .help = "as channels bent.X, .Y, .Z in the space of the normals"},
+    {PARAMETER("sphere-form", effect.sphere_form), .argument = "FORM"},
+    {PARAMETER("radius", params.radius), .letter = 'r', .argument = "R",
+     .automatic = "5 % of the median distance of the first frame, kept for the others",
+     .more = "Give it when parts of a sequence are computed by several processes."},
+    {PARAMETER("falloff", effect.falloff), .argument = "NAME",
+     .help = "smooth is weight 1 - (t/R)^2, threshold weight 1 up to R"},
+    {PARAMETER("samples", effect.sample_count), .letter = 's', .argument = "N"},
+    {PARAMETER("bias", params.bias), .argument = "B",
+     .help = "raised for half depth if not given"},
+    {PARAMETER("blocking-scale", params.blocking_scale), .argument = "S"},
+    {PARAMETER("noise-index", params.noise_index), .argument = "N"},
+    {PARAMETER("intensity", params.intensity), .letter = 'i', .argument = "X"},
+    {PARAMETER("power", params.power), .letter = 'p', .argument = "X"},
+    {PARAMETER("blur", effect.blur_radius), .letter = 'b', .argument = "N", .has_off = true,
+     BY_QUALITY},
+    {PARAMETER("blur-sharpness", params.sharpness), .argument = "X"},
+    {PARAMETER("blur-normal-power", effect.blur_normal_power), .argument = "X", BY_QUALITY},
+    {PARAMETER("strength", params.strength), .argument = "X"},
+    {PARAMETER("tint", params.tint), .argument = "R,G,B"},
+    {.heading = "Running", .name = "device", .letter = 'd', .argument = "NAME", .fallback = "auto",
+     .help = "auto, cpu, a number from 'vkao devices' or part of a name",
+     .commands = RENDER, .apply = apply_text, .offset = AT(device),
+     .more = "auto takes a discrete GPU, else an integrated one, else the CPU."},
+    {.name = "max-memory", .argument = "SIZE",
+     .help = "refuse what needs more, of host and device together: 800M, 4G. Default: 3/4 of the "
+             "machine's",
+     .commands = RENDER | INSPECT, .apply = apply_bytes, .offset = AT(gbuffer.budget.memory),
+     .more = "What is needed is reckoned from the header, before pixels are read. The memory "
+             "of the machine is what control groups and resource limits leave of it."},
+    {.name = "max-pixels", .argument = "N", .fallback = "268435456",
+     .help = "refuse images of more pixels",
+     .commands = RENDER | INSPECT, .apply = apply_count, .offset = AT(gbuffer.budget.pixels),
+     .range = FROM_TO(1, 1073741824),
+     .more = "1 to 1073741824."},
+    {.name = "threads", .argument = "N", .fallback = "0",
+     .help = "threads that read and write EXR; 0: one for each processor",
+     .commands = RENDER | INSPECT, .apply = apply_uint, .offset = AT(threads),
+     .range = FROM_TO(0, 256)},
+    {.name = "validation",
+     .help = "run with the Vulkan validation layers",
+     .commands = RENDER, .apply = apply_flag, .offset = AT(validation)},
+    {.name = "json",
+     .help = "inspect and devices: print JSON",
+     .commands = INSPECT | DEVICES, .apply = apply_flag, .offset = AT(json)},
+    {.name = "verbose", .letter = 'v',
+     .help = "times per frame, and what was found",
+     .commands = RENDER | INSPECT | DEVICES, .apply = apply_verbose, .offset = AT(verbosity)},
+    {.name = "quiet", .letter = 'q',
+     .help = "errors only",
+     .commands = RENDER | INSPECT | DEVICES, .apply = apply_quiet, .offset = AT(verbosity)},
+    {.name = "version", .letter = 'V',
+     .help = "print versions",
+     .commands = RENDER | INSPECT | DEVICES, .apply = apply_flag, .offset = AT(version)},
+    {.name = "help", .letter = 'h',
+     .help = "print this",
+     .commands = RENDER | INSPECT | DEVICES, .apply = apply_flag, .offset = AT(help)},
+};
+/* clang-format on */
+const size_t option_table_count = sizeof option_table / sizeof *option_table;
+_Static_assert(sizeof option_table / sizeof *option_table <= MAX_OPTIONS,
+               "options.given holds them all");

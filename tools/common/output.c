@@ -1,0 +1,270 @@
+/* SPDX-License-Identifier: MIT */
+#include "output.h"
+
+#include "png_file.h"
+#include "record.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { NAME_BYTES = 512, STRINGS = 3 };
+
+/* What exr_new_part points into. */
+struct part_storage {
+    char name[NAME_BYTES];
+    struct exr_write channels[7];
+    struct exr_string strings[STRINGS];
+    char *params, version[VERSION_BYTES];
+};
+
+/* --- Names --- */
+
+/* 'ao', 'ao.left'; a lone AO part needs no name. */
+static void ao_part_name(const struct options *o, const char *view, char name[NAME_BYTES])
+{
+    const char *base = o->part_name ? o->part_name : o->mode == OUTPUT_APPEND || *view ? "ao" : "";
+    snprintf(name, NAME_BYTES, "%s%s%s", base, *view ? "." : "", view);
+}
+
+static void color_part_name(const struct options *o, const struct exr_info *info,
+                            const struct rendered_view *view, size_t view_count,
+                            char name[NAME_BYTES])
+{
+    const struct exr_part *part = &info->parts[view->gbuffer.roles.kind[ROLE_COLOR].part];
+    const char *base = o->part_name ? o->part_name : part->name ? part->name : "";
+    bool shared =
+        view_count > 1 && (o->part_name || info->part_count == 1 || !part->view || !*part->view);
+    if (shared)
+        snprintf(name, NAME_BYTES, "%s.%s", *base ? base : "rgba", view->name);
+    else
+        snprintf(name, NAME_BYTES, "%s", base);
+}
+
+/* 'x.png' becomes 'x.left.png' where there is more than one view. A view's name is the file's, and
+ * must not lead to another directory. */
+static void preview_path(const char *path, const char *view, size_t view_count, struct text *out)
+{
+    const char *dot = strrchr(path, '.');
+    size_t stem = dot && !strchr(dot, '/') ? (size_t)(dot - path) : strlen(path);
+    if (view_count < 2) {
+        text_add(out, "%s", path);
+        return;
+    }
+    text_add(out, "%.*s.%s%s", (int)stem, path, view, path + stem);
+    const size_t end = stem + 1 + strlen(view);
+    for (size_t i = stem + 1; out->data && !out->out_of_memory && i < end; i++)
+        if (out->data[i] == '/')
+            out->data[i] = '_';
+}
+
+/* The plan checked the path as given; what it becomes for each view is known only now. */
+static bool check_previews(const struct plan_frame *frame, const struct frame_source *source,
+                           struct tool_error *err)
+{
+    for (size_t v = 0; source->view_count > 1 && v < source->view_count; v++) {
+        struct text path = {0};
+        struct stat s;
+        preview_path(frame->preview, source->views[v].name, source->view_count, &path);
+        bool taken = path.data && lstat(path.data, &s) == 0;
+        if (taken) {
+            fail_hint(err, "add --overwrite always");
+            fail(err, EXIT_OUTPUT, "%s: exists, not overwritten", path.data);
+        }
+        text_free(&path);
+        if (taken)
+            return false;
+    }
+    return true;
+}
+
+bool output_check_names(const struct options *options, const struct plan_frame *frame,
+                        const struct frame_source *source, struct tool_error *err)
+{
+    if (frame->preview && !options->overwrite && !check_previews(frame, source, err))
+        return false;
+    char name[NAME_BYTES];
+    for (size_t v = 0; options->mode == OUTPUT_APPEND && v < source->view_count; v++) {
+        ao_part_name(options, source->views[v].name, name);
+        for (size_t p = 0; p < source->info.part_count; p++) {
+            const char *taken = source->info.parts[p].name;
+            if (!taken || strcmp(taken, name) != 0)
+                continue;
+            fail_hint(err, "give the new part another name: --part-name NAME");
+            return fail(err, EXIT_OUTPUT, "%s: has a part '%s' already", source->info.path, name);
+        }
+    }
+    return true;
+}
+
+/* --- EXR --- */
+
+static const char *file_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* The alpha of colour goes out as it came in; the library passes it on, but through its own image
+ * format. */
+static void restore_alpha(const struct rendered_view *view)
+{
+    size_t texels = (size_t)view->gbuffer.width * view->gbuffer.height;
+    for (size_t i = 0; i < texels; i++)
+        view->result.output[i * 4 + 3] = view->gbuffer.color[i * 4 + 3];
+}
+
+static size_t fill_channels(const struct options *o, const struct rendered_view *view,
+                            struct exr_write channels[7])
+{
+    static const char *const names[] = {"R", "G", "B", "A"};
+    static const char *const bent[] = {"bent.X", "bent.Y", "bent.Z"};
+    size_t count = 0;
+    if (o->mode == OUTPUT_COMP) {
+        restore_alpha(view);
+        size_t colors = view->gbuffer.color_has_alpha ? 4 : 3;
+        for (; count < colors; count++)
+            channels[count] =
+                (struct exr_write){names[count], o->pixel_type, view->result.output + count, 4};
+    } else {
+        channels[count++] = (struct exr_write){"AO", o->pixel_type, view->result.ao, 1};
+    }
+    for (size_t i = 0; view->result.bent && i < 3; i++)
+        channels[count++] = (struct exr_write){bent[i], o->pixel_type, view->result.bent + i, 4};
+    return count;
+}
+
+static bool fill_part(const struct options *o, const struct frame_source *source,
+                      const struct rendered_view *view, const char *device,
+                      struct part_storage *storage, struct exr_new_part *part,
+                      struct tool_error *err)
+{
+    const struct gbuffer *g = &view->gbuffer;
+    version_string(storage->version);
+    storage->params = record_write(o, &view->setting, view->name, g, device);
+    if (!storage->params)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", source->info.path);
+    storage->strings[0] = (struct exr_string){"vkao/version", storage->version};
+    storage->strings[1] = (struct exr_string){"vkao/params", storage->params};
+    storage->strings[2] = (struct exr_string){"vkao/source", file_name(source->info.path)};
+    if (o->mode == OUTPUT_COMP)
+        color_part_name(o, &source->info, view, source->view_count, storage->name);
+    else
+        ao_part_name(o, view->name, storage->name);
+    /* A file that names its views in channels must not name them in parts as well. */
+    bool views_in_channels = o->mode == OUTPUT_APPEND && source->info.parts[0].multi_view_count > 0;
+    *part = (struct exr_new_part){
+        .name = storage->name,
+        .view = views_in_channels ? "" : view->name,
+        .data_window = g->data_window,
+        .display_window = g->display_window,
+        .pixel_aspect = g->pixel_aspect,
+        .compression = o->compression,
+        .channels = storage->channels,
+        .channel_count = fill_channels(o, view, storage->channels),
+        .strings = storage->strings,
+        .string_count = STRINGS,
+        .attributes_from = &source->info,
+        .attributes_from_part = g->roles.kind[ROLE_DEPTH].part,
+    };
+    return true;
+}
+
+static bool write_exr(const struct options *o, const struct plan_frame *frame,
+                      const struct frame_source *source, const struct rendered_view *views,
+                      const char *device, struct tool_error *err)
+{
+    struct part_storage *storage = calloc(source->view_count, sizeof *storage);
+    struct exr_new_part *parts = calloc(source->view_count, sizeof *parts);
+    bool ok = storage && parts;
+    if (!ok)
+        fail(err, EXIT_MEMORY, "%s: out of memory", frame->output);
+    for (size_t i = 0; ok && i < source->view_count; i++)
+        ok = fill_part(o, source, &views[i], device, &storage[i], &parts[i], err);
+    ok = ok && exr_write_file(frame->output, o->mode == OUTPUT_APPEND ? &source->info : NULL, parts,
+                              source->view_count, o->overwrite != 0, err);
+    for (size_t i = 0; storage && i < source->view_count; i++)
+        free(storage[i].params);
+    free(storage);
+    free(parts);
+    return ok;
+}
+
+/* --- PNG --- */
+
+static bool prepare_preview(const struct options *o, const char *path,
+                            const struct rendered_view *view, struct atomic_file *file,
+                            struct tool_error *err)
+{
+    bool grey = o->mode != OUTPUT_COMP;
+    size_t texels = (size_t)view->gbuffer.width * view->gbuffer.height, bytes;
+    if (!size_multiply(texels, grey ? 1 : 3, &bytes))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    uint8_t *pixels = malloc(bytes);
+    if (!pixels)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    for (size_t i = 0; i < texels; i++) {
+        if (grey)
+            pixels[i] = byte_of((double)view->result.ao[i]);
+        for (size_t c = 0; !grey && c < 3; c++)
+            pixels[i * 3 + c] = byte_of(srgb_of((double)view->result.output[i * 4 + c]));
+    }
+    bool ok = png_file_prepare(file, path, view->gbuffer.width, view->gbuffer.height, grey ? 1 : 3,
+                               pixels, o->overwrite != 0, err);
+    free(pixels);
+    return ok;
+}
+
+static bool prepare_previews(const struct options *o, const struct plan_frame *frame,
+                             const struct frame_source *source, const struct rendered_view *views,
+                             struct atomic_file *files, struct tool_error *err)
+{
+    for (size_t i = 0; i < source->view_count; i++) {
+        struct text path = {0};
+        preview_path(frame->preview, views[i].name, source->view_count, &path);
+        bool ok = path.data && !path.out_of_memory
+                      ? prepare_preview(o, path.data, &views[i], &files[i], err)
+                      : fail(err, EXIT_MEMORY, "%s: out of memory", frame->preview);
+        text_free(&path);
+        if (!ok)
+            return false;
+    }
+    return true;
+}
+
+/* What is left to fail when all is written: a rename. Then nothing may stay that the next run would
+ * stop at. */
+static bool commit_previews(const struct options *o, const struct plan_frame *frame,
+                            struct atomic_file *files, size_t count, struct tool_error *err)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (atomic_file_commit(&files[i], err))
+            continue;
+        for (size_t done = 0; !o->overwrite && done < i; done++)
+            unlink(files[done].target);
+        if (!o->overwrite)
+            unlink(frame->output);
+        return false;
+    }
+    return true;
+}
+
+bool output_write(const struct options *options, const struct plan_frame *frame,
+                  const struct frame_source *source, const struct rendered_view *views,
+                  const char *device, struct tool_error *err)
+{
+    if (!frame->preview)
+        return write_exr(options, frame, source, views, device, err);
+    struct atomic_file *files = calloc(source->view_count, sizeof *files);
+    if (!files)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", frame->preview);
+    bool ok = prepare_previews(options, frame, source, views, files, err) &&
+              write_exr(options, frame, source, views, device, err) &&
+              commit_previews(options, frame, files, source->view_count, err);
+    for (size_t i = 0; i < source->view_count; i++)
+        atomic_file_abort(&files[i]);
+    free(files);
+    return ok;
+}

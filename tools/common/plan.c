@@ -1,0 +1,263 @@
+/* SPDX-License-Identifier: MIT */
+#include "plan.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum path_kind { PATH_INPUT, PATH_OUTPUT, PATH_CAMERA, PATH_LIKE, PATH_PREVIEW, PATH_KINDS };
+
+struct patterns {
+    struct frame_pattern of[PATH_KINDS];
+    bool given[PATH_KINDS];
+};
+
+static const char *const path_names[PATH_KINDS] = {"INPUT", "--output", "--camera", "--like",
+                                                   "--preview"};
+
+static char **path_of(struct plan_frame *frame, enum path_kind kind)
+{
+    char **paths[PATH_KINDS] = {&frame->input, &frame->output, &frame->camera, &frame->like,
+                                &frame->preview};
+    return paths[kind];
+}
+
+static bool exists(const char *path)
+{
+    struct stat s;
+    return lstat(path, &s) == 0;
+}
+
+/* A file that is really called 'x#1.exr' is no pattern. */
+static bool parse_pattern(const char *path, bool is_read, struct frame_pattern *pattern,
+                          struct tool_error *err)
+{
+    if (!is_read || !exists(path))
+        return frame_pattern_parse(path, pattern, err);
+    *pattern = (struct frame_pattern){.prefix = text_copy(path, strlen(path))};
+    return pattern->prefix || fail(err, EXIT_MEMORY, "%s: out of memory", path);
+}
+
+static bool parse_patterns(const struct options *o, struct patterns *patterns,
+                           struct tool_error *err)
+{
+    const char *paths[PATH_KINDS] = {o->input, o->output, o->camera_file, o->like, o->preview};
+    *patterns = (struct patterns){0};
+    for (int k = 0; k < PATH_KINDS; k++) {
+        patterns->given[k] = paths[k] != NULL;
+        bool is_read = k == PATH_INPUT || k == PATH_CAMERA || k == PATH_LIKE;
+        if (paths[k] && !parse_pattern(paths[k], is_read, &patterns->of[k], err))
+            return false;
+    }
+    bool sequence = frame_pattern_has_token(&patterns->of[PATH_INPUT]);
+    for (int k = PATH_OUTPUT; k < PATH_KINDS; k++)
+        if (!sequence && patterns->given[k] && frame_pattern_has_token(&patterns->of[k]))
+            return fail(err, EXIT_USAGE, "%s '%s' has a frame token, but INPUT '%s' has none",
+                        path_names[k], paths[k], o->input);
+    return true;
+}
+
+static void free_patterns(struct patterns *patterns)
+{
+    for (int k = 0; k < PATH_KINDS; k++)
+        frame_pattern_free(&patterns->of[k]);
+}
+
+/* Many frames written to one file would leave the last alone. */
+static bool check_tokens(const struct options *o, const struct patterns *patterns, size_t frames,
+                         struct tool_error *err)
+{
+    static const enum path_kind needed[] = {PATH_INPUT, PATH_OUTPUT, PATH_PREVIEW};
+    const char *paths[PATH_KINDS] = {o->input, o->output, o->camera_file, o->like, o->preview};
+    for (size_t i = 0; frames > 1 && i < sizeof needed / sizeof *needed; i++) {
+        enum path_kind k = needed[i];
+        if (!patterns->given[k] || frame_pattern_has_token(&patterns->of[k]))
+            continue;
+        fail_hint(err, "put #### where the frame number belongs");
+        return fail(err, EXIT_USAGE, "%s '%s' has no frame token, but there are %zu frames",
+                    path_names[k], paths[k], frames);
+    }
+    return true;
+}
+
+static const char *found_path(const struct frame_list *found, int64_t number)
+{
+    size_t low = 0, high = found->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (found->frames[middle].number < number)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low < found->count && found->frames[low].number == number ? found->frames[low].path
+                                                                     : NULL;
+}
+
+static bool add_frame(const struct patterns *patterns, const struct frame_list *found,
+                      int64_t number, struct plan *plan, struct tool_error *err)
+{
+    struct plan_frame *frame = &plan->frames[plan->count++];
+    frame->number = number;
+    for (int k = 0; k < PATH_KINDS; k++) {
+        if (!patterns->given[k])
+            continue;
+        const char *path = k == PATH_INPUT ? found_path(found, number) : NULL;
+        char *copy =
+            path ? text_copy(path, strlen(path)) : frame_pattern_path(&patterns->of[k], number);
+        if (!copy)
+            return fail(err, EXIT_MEMORY, "out of memory for a list of frames");
+        *path_of(frame, (enum path_kind)k) = copy;
+    }
+    return true;
+}
+
+static bool add_frames(const struct options *o, const struct patterns *patterns,
+                       const struct frame_list *wanted, const struct frame_list *found,
+                       struct plan *plan, struct tool_error *err)
+{
+    if (!check_tokens(o, patterns, wanted->count, err))
+        return false;
+    plan->frames = calloc(wanted->count, sizeof *plan->frames);
+    if (!plan->frames)
+        return fail(err, EXIT_MEMORY, "out of memory for %zu frames", wanted->count);
+    for (size_t i = 0; i < wanted->count; i++)
+        if (!add_frame(patterns, found, wanted->frames[i].number, plan, err))
+            return false;
+    frame_list_describe(found, plan->found, sizeof plan->found);
+    return true;
+}
+
+static bool list_frames(const struct options *o, const struct patterns *patterns, struct plan *plan,
+                        struct tool_error *err)
+{
+    struct frame_list wanted = {0}, found = {0};
+    struct tool_error unseen = {0};
+    bool ok = true;
+    plan->is_sequence = frame_pattern_has_token(&patterns->of[PATH_INPUT]);
+    if (o->frames)
+        ok = frame_list_parse(o->frames, o->frame_syntax, &wanted, err);
+    if (ok && plan->is_sequence) {
+        /* Named frames may lie in a directory that cannot be listed. */
+        ok = frame_pattern_scan(&patterns->of[PATH_INPUT], &found, o->frames ? &unseen : err) ||
+             o->frames;
+        if (ok && !o->frames && found.count == 0)
+            ok = fail(err, EXIT_INPUT, "%s: no file matches", o->input);
+    }
+    struct frame one = {0};
+    const struct frame_list single = {&one, 1};
+    const struct frame_list *list = o->frames ? &wanted : plan->is_sequence ? &found : &single;
+    ok = ok && add_frames(o, patterns, list, &found, plan, err);
+    frame_list_free(&wanted);
+    frame_list_free(&found);
+    return ok;
+}
+
+static bool same_inode(const char *a, const char *b)
+{
+    struct stat x, y;
+    return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
+/* The directory of a path, malloc'ed; NULL if memory runs out. */
+static char *directory_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    if (!slash)
+        return text_copy(".", 1);
+    return text_copy(path, slash == path ? 1 : (size_t)(slash - path));
+}
+
+static const char *name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Also for files that are still to be written: the same name in the same directory. */
+static bool same_file(const char *a, const char *b)
+{
+    if (strcmp(a, b) == 0 || same_inode(a, b))
+        return true;
+    if (strcmp(name_of(a), name_of(b)) != 0)
+        return false;
+    char *x = directory_of(a), *y = directory_of(b);
+    bool same = x && y && same_inode(x, y);
+    free(x);
+    free(y);
+    return same;
+}
+
+static bool check_distinct(struct plan_frame *frame, struct tool_error *err)
+{
+    static const enum path_kind written[] = {PATH_OUTPUT, PATH_PREVIEW};
+    for (size_t w = 0; w < sizeof written / sizeof *written; w++) {
+        const char *path = *path_of(frame, written[w]);
+        for (int k = 0; path && k < PATH_KINDS; k++) {
+            const char *other = *path_of(frame, (enum path_kind)k);
+            if (k != (int)written[w] && other && same_file(path, other)) {
+                fail_hint(err, "write to another file; --mode append keeps all of the input in it");
+                return fail(err, EXIT_USAGE, "%s: %s and %s are the same file", path,
+                            path_names[written[w]], path_names[k]);
+            }
+        }
+    }
+    return true;
+}
+
+/* Where there is no directory, no AO needs to be computed. */
+static bool check_directory(const char *path, struct tool_error *err)
+{
+    struct stat s;
+    char *directory = directory_of(path);
+    if (!directory)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    bool ok = stat(directory, &s) == 0 && S_ISDIR(s.st_mode);
+    if (!ok) {
+        fail_hint(err, "make it first: mkdir -p '%s'", directory);
+        fail(err, EXIT_OUTPUT, "%s: cannot create: there is no directory %s", path, directory);
+    }
+    free(directory);
+    return ok;
+}
+
+bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,
+                        struct tool_error *err)
+{
+    const char *paths[] = {frame->output, frame->preview};
+    for (size_t i = 0; i < 2; i++) {
+        if (paths[i] && !check_directory(paths[i], err))
+            return false;
+        if (options->overwrite || !paths[i] || !exists(paths[i]))
+            continue;
+        fail_hint(err, "add --overwrite always");
+        return fail(err, EXIT_OUTPUT, "%s: exists, not overwritten", paths[i]);
+    }
+    return true;
+}
+
+bool plan_make(const struct options *options, struct plan *plan, struct tool_error *err)
+{
+    struct patterns patterns;
+    *plan = (struct plan){0};
+    bool ok = parse_patterns(options, &patterns, err) && list_frames(options, &patterns, plan, err);
+    for (size_t i = 0; ok && options->output && i < plan->count; i++)
+        ok = check_distinct(&plan->frames[i], err);
+    for (size_t i = 0; ok && options->output && !options->continue_on_error && i < plan->count; i++)
+        ok = plan_check_outputs(options, &plan->frames[i], err);
+    free_patterns(&patterns);
+    if (!ok)
+        plan_free(plan);
+    return ok;
+}
+
+void plan_free(struct plan *plan)
+{
+    for (size_t i = 0; i < plan->count; i++)
+        for (int k = 0; k < PATH_KINDS; k++)
+            free(*path_of(&plan->frames[i], (enum path_kind)k));
+    free(plan->frames);
+    plan->frames = NULL;
+    plan->count = 0;
+}

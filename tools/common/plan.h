@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Which files are read and written, settled and checked before any work starts. */
+#ifndef VKAO_TOOLS_PLAN_H_
+#define VKAO_TOOLS_PLAN_H_
+
+#include "error.h"
+#include "options.h"
+
+#include <stddef.h>
+#include <stdint.h>
+
+struct plan_frame {
+    int64_t number;
+    char *input, *output;
+    char *camera, *like, *preview; /* NULL if not asked for */
+};
+
+struct plan {
+    struct plan_frame *frames;
+    size_t count;
+    bool is_sequence;
+    char found[256]; /* "1-99, 102-240": the frames that exist, of a sequence */
+};
+
+/* Errors: EXIT_USAGE (patterns, an output that is an input), EXIT_OUTPUT (outputs that exist; left
+ * to the frames with
+ * --continue-on-error), EXIT_INPUT (no file matches). */
+bool plan_make(const struct options *options, struct plan *plan, struct tool_error *err);
+void plan_free(struct plan *plan);
+
+/* Whether an output of the frame is in the way. */
+bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,
+                        struct tool_error *err);
+
+#endif
