@@ -12,6 +12,7 @@ import glob
 import os
 import re
 import shutil
+import struct
 import subprocess
 import sys
 
@@ -271,6 +272,30 @@ def example_shades_the_box_in_silence(name, static):
     return name, case
 
 
+def write_npy(path, type_, value):
+    header = f"{{'descr': '{type_}', 'fortran_order': False, 'shape': (36, 64), }}".ljust(117) + "\n"
+    with open(path, "wb") as file:
+        file.write(b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header.encode())
+        file.write(value * 36 * 64)
+
+
+def engine_is_timed(name, compiler):
+    """What a stranger writes, on the numbers of vkao-bench's --dump: it says what --vs reads."""
+    def case():
+        build = folder(name)
+        output = os.path.join(build, "timed")
+        compile_with_pkg_config(compiler, os.path.join(HERE, "timed.c"), output, False, "-lvulkan")
+        write_npy(os.path.join(build, "wall_z32.npy"), "<f4", struct.pack("<f", 2))
+        write_npy(os.path.join(build, "wall_n8.npy"), "<u4", struct.pack("bbbb", 0, 0, -127, 0))
+        done = subprocess.run([output, os.path.join(build, "wall")], capture_output=True,
+                              text=True, env={**os.environ, **runtime(VALIDATION)})
+        if re.search(r"vkCreateInstance|no device", done.stderr):
+            raise Skip(done.stderr.strip())
+        assert done.returncode == 0 and re.fullmatch(r"readme med \d+\.\d+ ms\n", done.stdout) and \
+            not done.stderr, done.stdout + done.stderr
+    return name, case
+
+
 def layers_miss(name, hazard, *change):
     """The same program less one of its waits: were the layers asleep, silence would say nothing."""
     def case():
@@ -302,6 +327,8 @@ if __name__ == "__main__":
             static_consumers_get_their_define, meson_subproject_builds_the_library_alone,
             cmake_finds_the_package, cmake_builds_what_meson_builds, a_program_loads_the_library,
             python_takes_defaults_and_tables, rust_makes_an_effect_on_a_device_of_ash)),
+        engine_is_timed("c11_engine_is_timed", ["cc", "-std=c11"]),
+        engine_is_timed("cpp17_engine_is_timed", ["c++", "-xc++", "-std=c++17"]),
         example_shades_the_box_in_silence("example_with_the_shared_library", False),
         example_shades_the_box_in_silence("example_with_the_static_library", True),
         layers_miss("drawing_over_what_vkao_reads_is_noticed", "WRITE-AFTER-READ",
