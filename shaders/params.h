@@ -42,7 +42,7 @@
 #define VKAO_BINDING_ALBEDO 12
 #define VKAO_BINDING_SPECULAR 13
 #define VKAO_BINDING_OUTPUT 14
-#define VKAO_BINDING_CPU 15 /* the first of the CPU's */
+#define VKAO_BINDING_CPU 32 /* the first of the CPU's */
 
 /* What a pass is compiled for: specialization constants, the same for all passes of an effect but
  * for the last three. shaders/settings.glsl declares them. */

@@ -26,18 +26,18 @@
 
 /* The same memory as storage texel buffers, which a CPU reads with vector gathers and not lane by
  * lane, and as storage buffers, to which it writes faster. */
-#define VKAO_BINDING_Z 15  /* r32f */
-#define VKAO_BINDING_Z4 16 /* rgba32f */
-#define VKAO_BINDING_Z_WORDS 17
-#define VKAO_BINDING_PACKED_WRITE 18 /* r8ui: a code. r16ui: 2 codes */
-#define VKAO_BINDING_PACKED_READ4 19 /* r32ui: 4 codes */
-#define VKAO_BINDING_PACKED_WORDS 20
-#define VKAO_BINDING_HALFWAY_READ2 21 /* r32ui: 2 fine codes */
-#define VKAO_BINDING_HALFWAY_WORDS 22
-#define VKAO_BINDING_BLURRED_READ2 23 /* r32ui: the same */
-#define VKAO_BINDING_BLURRED_WORDS 24
-#define VKAO_BINDING_STAGED_WORDS 25
-#define VKAO_BINDING_TILES 26 /* vkao_tiles_head, tiles */
+#define VKAO_BINDING_Z 32  /* r32f */
+#define VKAO_BINDING_Z4 33 /* rgba32f */
+#define VKAO_BINDING_Z_WORDS 34
+#define VKAO_BINDING_PACKED_WRITE 35 /* r8ui: a code. r16ui: 2 codes */
+#define VKAO_BINDING_PACKED_READ4 36 /* r32ui: 4 codes */
+#define VKAO_BINDING_PACKED_WORDS 37
+#define VKAO_BINDING_HALFWAY_READ2 38 /* r32ui: 2 fine codes */
+#define VKAO_BINDING_HALFWAY_WORDS 39
+#define VKAO_BINDING_BLURRED_READ2 40 /* r32ui: the same */
+#define VKAO_BINDING_BLURRED_WORDS 41
+#define VKAO_BINDING_STAGED_WORDS 42
+#define VKAO_BINDING_TILES 43 /* vkao_tiles_head, tiles */
 
 /* VKAO_SETTING_PATH: noisy AO goes through the buffer, else through an image; and the format of
  * what is copied. */
