@@ -42,6 +42,7 @@ void hide(inout March march, Slice s, Masks m, float center_z, vec2 offset, vec2
     bvec2 seen = greaterThan(z, vec2(0.0));
     vec2 x, y, tangent = SIDES * (s.sin_n / max(s.cos_n, VKAO_STEEPEST));
     slice_points(s, offset, mix(vec2(center_z), z, seen), x, y);
+    seen = bvec2(seen.x && x.x > 0.0, seen.y && x.y > 0.0); /* see is_seen */
     vec2 gap = x - march.last_x, height = mix(vec2(0.0), y + x * tangent, seen);
     bvec2 joined = lessThan(abs(height - march.last_height), VKAO_VBAO_JOIN * abs(gap));
     vec2 inner_x = x - VKAO_VBAO_GAP_FRONT * gap;

@@ -46,7 +46,8 @@ void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
     memcpy(slice->p, p, sizeof slice->p);
     memcpy(slice->n, n, sizeof slice->n);
     ref_view_eye(&scene->view, p, slice->to_eye);
-    slice->guard = 2.0 * ref_view_depth_error(&scene->view, p[2]); /* both ends of v */
+    /* Of both ends of v, along the directions in which they are seen. */
+    slice->guard = 2.0 * ref_view_depth_error(&scene->view, p[2]) / fabs(slice->to_eye[2]);
     slice->noise = ref_noise(x, y, params->slice_count, params->noise_index);
     ref_slice_turn(slice, pi * (k + slice->noise.turn) / params->slice_count);
 }
@@ -87,7 +88,8 @@ bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, dou
     /* The depth may be off by a step of its format. */
     sample->up = ref_dot(sample->v, s->to_eye) + off * ref_dot(s->n, s->across) / facing - s->guard;
     sample->distance = hypot(sample->out, sample->up);
-    return known;
+    /* Far off the axis a texel beside the slice may lie behind the shaded point. */
+    return known && sample->out > 0.0;
 }
 
 double ref_thickness(const struct ao_ssao *params, double lateral)
