@@ -16,15 +16,15 @@ struct vkao_rect {
 
 struct view_constants {
     bool orthographic;
-    float unproject
-        /* view xy = texel * [0..1] + [2..3], times z in perspective; texel centres are integers */
-        [4];
+    /* view xy = texel * [0..1] + [2..3], times z in perspective; texel centres are integers */
+    float unproject[4];
     float inverse_unproject[2]; /* 1 / unproject[0..1] */
     float linearize[2];         /* see vkao_constants */
     float far_depth;            /* device depth of the far plane */
     float far_z;             /* view z of the far plane, FLT_MAX if infinite or not to be tested */
     float depth_error[2];    /* uncertainty of z: [0] + [1] * z, times z in perspective */
     float normal_rows[3][3]; /* normal_to_view with +z turned away from the eye */
+    float height;            /* of the viewport in scene units, times z in perspective */
     float reference_z;       /* width of the viewport in scene units if orthographic, else 0 */
     struct vkao_rect valid, rect;
 };

@@ -7,6 +7,8 @@
 #include "cpu/layout.h"
 
 #include "vkao_blur_cpu.h"
+#include "vkao_breaks_cpu.h"
+#include "vkao_width_cpu.h"
 #include "vkao_blur_last_cpu.h"
 #include "vkao_debug_cpu.h"
 #include "vkao_packed_blur_x_cpu.h"
@@ -36,6 +38,8 @@ enum {
     PART_BLURRED,
     PART_COPIED,
     PART_TILES,
+    PART_BREAKS_X,
+    PART_BREAKS_Y,
     PART_END
 };
 static_assert(PART_END == (int)VKAO_RESOURCE_COUNT, "as passes.h counts");
@@ -213,6 +217,29 @@ static const struct vkao_pass prepare = {
     .record = record_prepare,
 };
 
+#define BREAKS(part, width, height, is_vertical)                                                   \
+    {                                                                                              \
+        .name = "vkao breaks", .label = "prepare", .stage = VKAO_STAGE_PREPARE,                    \
+        VKAO_CODE(vkao_breaks_cpu), .uses = {READS_Z, WRITES_WORDS(BREAKS_WORDS, part)},           \
+        .area = VKAO_AREA_VALID, .texels = {width, height}, GROUP, .vertical = is_vertical,        \
+        .forms = 1,                                                                                \
+    }
+static const struct vkao_pass breaks_x = BREAKS(BREAKS_X, 32, 1, false),
+                              breaks_y = BREAKS(BREAKS_Y, 1, 32, true);
+
+static const struct vkao_pass width = {
+    .name = "vkao width",
+    .label = "prepare",
+    .stage = VKAO_STAGE_PREPARE,
+    VKAO_CODE(vkao_width_cpu),
+    .uses = {READS_TEXELS(BREAKS_X_READ, BREAKS_X, R32_UINT),
+             READS_TEXELS(BREAKS_Y_READ, BREAKS_Y, R32_UINT), WRITES_WORDS(Z_WORDS, Z)},
+    .area = VKAO_AREA_VALID,
+    .texels = {1, 1},
+    GROUP,
+    .forms = 1,
+};
+
 static const struct vkao_pass tiles = {
     .name = "vkao tiles",
     .label = "ssao",
@@ -387,6 +414,11 @@ void vkao_cpu_plan(struct vkao_program *program)
     program->is_packed = (e->stages & both) == both && !e->bent_normals && !e->noisy_ao;
     if (e->stages & both)
         vkao_program_add(program, &prepare);
+    if (vkao_has_width(e)) {
+        vkao_program_add(program, &breaks_x);
+        vkao_program_add(program, &breaks_y);
+        vkao_program_add(program, &width);
+    }
     if (e->stages & VKAO_STAGE_SSAO) {
         vkao_program_add(program, &tiles);
         vkao_program_add(program, pairs && program->ctx->has_16bit_storage
@@ -441,6 +473,10 @@ void vkao_cpu_parts(const struct vkao_program *program, VkExtent2D extent, bool 
     rows->stride = (grid.width + window - 1) / window * window + 2 * VKAO_BUFFER_PAD;
     const VkDeviceSize stride = rows->stride;
     parts[PART_Z] = stride * (grid.height + 2 * VKAO_VIEW_Z_BORDER) * 4;
+    if (vkao_has_width(&program->settings)) {
+        parts[PART_BREAKS_X] = (VkDeviceSize)VKAO_BREAKS_STRIDE_OF(stride) * grid.height * 4;
+        parts[PART_BREAKS_Y] = stride * ((grid.height + 31) / 32) * 4;
+    }
     /* A rect may begin within a tile of this many at most. */
     const VkDeviceSize columns = (grid.width + 3) / VKAO_ROW_GROUP_WIDTH + 1,
                        tile_rows = (grid.height + VKAO_TILE_HEIGHT - 1) / VKAO_TILE_HEIGHT;

@@ -26,18 +26,21 @@
 
 /* The same memory as storage texel buffers, which a CPU reads with vector gathers and not lane by
  * lane, and as storage buffers, to which it writes faster. */
-#define VKAO_BINDING_Z 15  /* r32f */
-#define VKAO_BINDING_Z4 16 /* rgba32f */
-#define VKAO_BINDING_Z_WORDS 17
-#define VKAO_BINDING_PACKED_WRITE 18 /* r8ui: a code. r16ui: 2 codes */
-#define VKAO_BINDING_PACKED_READ4 19 /* r32ui: 4 codes */
-#define VKAO_BINDING_PACKED_WORDS 20
-#define VKAO_BINDING_HALFWAY_READ2 21 /* r32ui: 2 fine codes */
-#define VKAO_BINDING_HALFWAY_WORDS 22
-#define VKAO_BINDING_BLURRED_READ2 23 /* r32ui: the same */
-#define VKAO_BINDING_BLURRED_WORDS 24
-#define VKAO_BINDING_STAGED_WORDS 25
-#define VKAO_BINDING_TILES 26 /* vkao_tiles_head, tiles */
+#define VKAO_BINDING_Z 18  /* r32f */
+#define VKAO_BINDING_Z4 19 /* rgba32f */
+#define VKAO_BINDING_Z_WORDS 20
+#define VKAO_BINDING_PACKED_WRITE 21 /* r8ui: a code. r16ui: 2 codes */
+#define VKAO_BINDING_PACKED_READ4 22 /* r32ui: 4 codes */
+#define VKAO_BINDING_PACKED_WORDS 23
+#define VKAO_BINDING_HALFWAY_READ2 24 /* r32ui: 2 fine codes */
+#define VKAO_BINDING_HALFWAY_WORDS 25
+#define VKAO_BINDING_BLURRED_READ2 26 /* r32ui: the same */
+#define VKAO_BINDING_BLURRED_WORDS 27
+#define VKAO_BINDING_STAGED_WORDS 28
+#define VKAO_BINDING_TILES 29 /* vkao_tiles_head, tiles */
+#define VKAO_BINDING_BREAKS_WORDS 30
+#define VKAO_BINDING_BREAKS_X_READ 31 /* r32ui */
+#define VKAO_BINDING_BREAKS_Y_READ 32
 
 /* VKAO_SETTING_PATH: noisy AO goes through the buffer, else through an image; and the format of
  * what is copied. */
@@ -70,8 +73,10 @@
 #define VKAO_UPSAMPLE_HEIGHT 2
 
 /* vkao_constants.path: texels in a row of buffers, and in a row of what is copied. */
+#define VKAO_BREAKS_STRIDE_OF(stride) ((stride) / 32 + 1) /* words of breaks in a row */
 #ifdef VKAO_GLSL
 #define VKAO_STRIDE int(params.path.x)
+#define VKAO_BREAKS_STRIDE VKAO_BREAKS_STRIDE_OF(VKAO_STRIDE)
 #define VKAO_STAGED_STRIDE int(params.path.y)
 #endif
 
