@@ -135,7 +135,7 @@
  * from the sample before, for whose gap it stands, and at most BASE + SLOPE of its lateral
  * distance. */
 #define VKAO_VBAO_THICKNESS_WIDTH 0.9
-#define VKAO_VBAO_THICKNESS_WIDE 0.6 /* of what goes on on all sides */
+#define VKAO_VBAO_THICKNESS_WIDE 0.5 /* of what goes on on all sides */
 #define VKAO_VBAO_THICKNESS_GAP 2.5
 #define VKAO_VBAO_THICKNESS_BASE 0.40
 #define VKAO_VBAO_THICKNESS_SLOPE 0.80
@@ -150,11 +150,11 @@
 /* Times all of these with the threshold: what is far away counts alike, and hides more. */
 #define VKAO_THICKNESS_THRESHOLD 1.1
 
-/* View z has that thickness in its last bits: a float of 2^-8 to 2^-1 whose mantissa has 2 bits. */
-#define VKAO_THICKNESS_MASK 31
-#define VKAO_THICKNESS_SHIFT 21
+/* View z has that thickness in its last 4 bits, as 2^-8, 1.5 * 2^-8, 2^-7 ... 1.5 * 2^-1. */
+#define VKAO_THICKNESS_MASK 15
+#define VKAO_THICKNESS_SHIFT 22
 #define VKAO_THICKNESS_LEAST_BITS 0x3b800000
-#define VKAO_THICKNESS_DEPTH_ERROR 1.9e-6 /* what that takes from view z, relative to it */
+#define VKAO_THICKNESS_DEPTH_ERROR 0.95e-6 /* what that takes from view z, relative to it */
 
 /* Cosine to the eye of the depth image's plane, at which it stops getting steeper where the shading
  * normal is of another surface: things a texel wide have no plane in the depth image. */

@@ -36,6 +36,7 @@ void ref_slice_turn(struct ref_slice *slice, double angle)
         in_slice[i] = slice->n[i] - off * a[i];
     slice->length = sqrt(ref_dot(in_slice, in_slice));
     slice->angle = atan2(ref_dot(in_slice, o), ref_dot(in_slice, v));
+    slice->fall = ref_dot(slice->plane, o) / fmax(ref_dot(slice->plane, v), VKAO_STEEPEST);
 }
 
 void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
@@ -45,26 +46,34 @@ void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
     *slice = (struct ref_slice){.scene = scene, .params = params, .x = x, .y = y};
     memcpy(slice->p, p, sizeof slice->p);
     memcpy(slice->n, n, sizeof slice->n);
+    memcpy(slice->plane, &scene->planes[((size_t)y * scene->width + (size_t)x) * 3],
+           sizeof slice->plane);
     ref_view_eye(&scene->view, p, slice->to_eye);
-    slice->guard = 2.0 * ref_view_depth_error(&scene->view, p[2]); /* both ends of v */
+    double error = ref_view_depth_error(&scene->view, p[2]);
+    if (params->method == VKAO_SSAO_VBAO)
+        error += VKAO_THICKNESS_DEPTH_ERROR * p[2];
+    slice->guard = 2.0 * error; /* both ends of v */
     slice->noise = ref_noise(x, y, params->slice_count, params->noise_index);
     ref_slice_turn(slice, pi * (k + slice->noise.turn) / params->slice_count);
 }
 
-/* Distances crowd towards the point, but lie at least 1 + t/2 texels out. Where the point at that
+/* Distances crowd towards the point, but lie at least 1 + least t texels out. Where the point at that
  * distance along the slice's direction on screen lies is for the projection to say. */
 static void step_texel(const struct ref_slice *s, double side, uint32_t step, double reach,
                        int at[2])
 {
+    bool is_vbao = s->params->method == VKAO_SSAO_VBAO;
+    double linear = is_vbao ? VKAO_VBAO_STEP_LINEAR : VKAO_STEP_LINEAR;
+    double least = is_vbao ? VKAO_VBAO_STEP_LEAST : VKAO_STEP_LEAST;
     double q = (step + s->noise.jitter) / s->params->step_count;
-    double distance = reach * q * (VKAO_STEP_LINEAR + (1.0 - VKAO_STEP_LINEAR) * q);
+    double distance = reach * q * (linear + (1.0 - linear) * q);
     double from[2], to[2];
     const double unit[3] = {s->p[0] + s->direction[0], s->p[1] + s->direction[1], s->p[2]};
     ref_view_project(&s->scene->view, s->p, from);
     ref_view_project(&s->scene->view, unit, to);
     double per_unit[2] = {to[0] - from[0], to[1] - from[1]};
     double texels = distance * hypot(per_unit[0], per_unit[1]);
-    double scale = fmax(1.0, (1.0 + 0.5 * step) / texels) * distance * side;
+    double scale = fmax(1.0, (1.0 + least * step) / texels) * distance * side;
     at[0] = (int)floor(fmax(-1e6, fmin(1e6, s->x + per_unit[0] * scale)) + 0.5);
     at[1] = (int)floor(fmax(-1e6, fmin(1e6, s->y + per_unit[1] * scale)) + 0.5);
 }
@@ -80,21 +89,25 @@ bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, dou
     ref_view_position(&s->scene->view, at[0], at[1], known ? z : s->p[2], q);
     for (int i = 0; i < 3; ++i)
         sample->v[i] = q[i] - s->p[i];
-    /* Into the slice along the tangent plane: the height over that plane, n.v, stays what it is. */
+    sample->x = at[0];
+    sample->y = at[1];
+    /* Into the slice along the depth image's plane: the height over that plane stays what it is. */
     double off = ref_dot(sample->v, s->across);
-    double facing = fmax(ref_dot(s->n, s->to_eye), VKAO_STEEPEST);
+    double steepest =
+        ref_dot(s->plane, s->n) > VKAO_PLANE_AGREES ? VKAO_STEEPEST : VKAO_PLANE_STEEPEST;
+    double facing = fmax(ref_dot(s->plane, s->to_eye), steepest);
     sample->out = side * ref_dot(sample->v, s->outward);
     /* The depth may be off by a step of its format. */
-    sample->up = ref_dot(sample->v, s->to_eye) + off * ref_dot(s->n, s->across) / facing - s->guard;
+    sample->up =
+        ref_dot(sample->v, s->to_eye) + off * ref_dot(s->plane, s->across) / facing - s->guard;
     sample->distance = hypot(sample->out, sample->up);
     return known;
 }
 
-double ref_thickness(const struct ao_ssao *params, double lateral)
+double ref_thickness_scale(const struct ao_ssao *params)
 {
     double scale = params->falloff == VKAO_FALLOFF_THRESHOLD ? VKAO_THICKNESS_THRESHOLD : 1.0;
-    return scale * (double)params->thickness *
-           (VKAO_THICKNESS_BASE * (double)params->radius + VKAO_THICKNESS_SLOPE * lateral);
+    return scale * (double)params->thickness;
 }
 
 double ref_falloff(const struct ao_ssao *params, double distance)
