@@ -29,12 +29,6 @@ void vkao_add_required_features(VkPhysicalDeviceFeatures *features)
     features->shaderStorageImageWriteWithoutFormat = VK_TRUE;
 }
 
-vkao_context_info vkao_context_info_default(void)
-{
-    return (vkao_context_info){.struct_size = sizeof(vkao_context_info),
-                               .log_level = VKAO_LOG_WARNING};
-}
-
 void vkao_set_name(const vkao_context *ctx, VkObjectType type, uint64_t handle, const char *name)
 {
     if (!ctx->vk.SetDebugUtilsObjectNameEXT)

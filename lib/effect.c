@@ -19,8 +19,9 @@ static void set_constants(struct vkao_program *program)
 {
     const vkao_effect_info *e = &program->settings;
     uint32_t *c = program->constants;
-    const bool has_samples = e->method == VKAO_SSAO_SPHERE || e->method == VKAO_SSAO_HEMISPHERE;
-    const bool has_slices = !has_samples && e->method != VKAO_SSAO_RAYMARCH;
+    const bool has_slices = vkao_method_reads(e->method, "slice_count");
+    const bool has_samples =
+        vkao_method_reads(e->method, "sample_count") && !vkao_method_reads(e->method, "step_count");
     c[VKAO_SETTING_DEPTH_ENCODING] = (uint32_t)e->depth_encoding;
     c[VKAO_SETTING_NORMAL_ENCODING] = (uint32_t)e->normal_encoding;
     c[VKAO_SETTING_BENT_ENCODING] = (uint32_t)e->bent_encoding;
@@ -70,9 +71,9 @@ static uint32_t needs_of(const struct vkao_program *program)
          VKAO_RESOURCE_ALBEDO},
         {lit && e->specular != VKAO_SPECULAR_NONE, VKAO_RESOURCE_SPECULAR},
     };
-    uint32_t needs = ~0u << VKAO_SLOT_COUNT;
+    uint32_t needs = ~0u;
     for (size_t i = 0; i < sizeof facts / sizeof facts[0]; ++i)
-        needs |= facts[i].is ? VKAO_BIT(facts[i].resource) : 0u;
+        needs &= facts[i].is ? ~0u : ~VKAO_BIT(facts[i].resource);
     return needs;
 }
 
@@ -81,15 +82,11 @@ void vkao_program_plan(struct vkao_program *program, const vkao_context *ctx,
 {
     const vkao_stage_flags stages = vkao_stages_of(settings);
     *program = (struct vkao_program){.ctx = ctx, .settings = *settings, .is_cpu = is_cpu};
-    if (is_cpu) {
-        vkao_cpu_plan(program);
-    } else {
 #define PLAN(NAME, name)                                                                           \
-    if (stages & VKAO_STAGE_##NAME)                                                                \
+    if (stages & VKAO_STAGE_##NAME && !(is_cpu && vkao_cpu_plan(program, VKAO_STAGE_##NAME)))      \
         vkao_##name##_plan(program);
-        VKAO_STAGES(PLAN)
+    VKAO_STAGES(PLAN)
 #undef PLAN
-    }
     program->needs = needs_of(program);
     set_constants(program);
 }
@@ -112,7 +109,7 @@ vkao_result vkao_effect_create(const vkao_context *ctx, const vkao_effect_info *
     if (!effect)
         return vkao_refuse(&ctx->log, VKAO_ERROR_OUT_OF_HOST_MEMORY,
                            "no host memory for the effect");
-    vkao_program_plan(&effect->program, ctx, &settings, ctx->is_cpu);
+    vkao_program_plan(&effect->program, ctx, &settings, ctx->is_cpu && vkao_cpu_has(&settings));
     atomic_fetch_add(ctx->live, 1);
     result = vkao_program_compile(&effect->program);
     if (result != VKAO_SUCCESS) {
@@ -127,9 +124,10 @@ vkao_result vkao_effect_create(const vkao_context *ctx, const vkao_effect_info *
     return VKAO_SUCCESS;
 }
 
-vkao_effect_info vkao_effect_settings(const vkao_effect *effect)
+void vkao_effect_settings(const vkao_effect *effect, vkao_effect_info *out, uint32_t size)
 {
-    return effect ? effect->program.settings : (vkao_effect_info){0};
+    static const vkao_effect_info none;
+    vkao_export(effect ? &effect->program.settings : &none, sizeof none, out, size);
 }
 
 void vkao_effect_destroy(vkao_effect *effect)

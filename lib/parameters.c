@@ -161,36 +161,62 @@ static void put_all(void *structure, VkBool32 is_compiled)
     }
 }
 
-vkao_effect_info vkao_effect_info_default(void)
+bool vkao_method_reads(vkao_ssao_method method, const char *name)
 {
-    vkao_effect_info info = {
-        .struct_size = sizeof info, .stages = MAKES_AO, .ao_format = VK_FORMAT_R8_UNORM};
-    put_all(&info, VK_TRUE);
-    return info;
+    for (int i = 0; i < PARAMETER_COUNT; ++i) {
+        const vkao_parameter *p = &parameters[i];
+        if (strcmp(p->name, name) == 0)
+            return !p->methods || p->methods & 1u << method;
+    }
+    return false;
 }
 
-vkao_params vkao_params_default(void)
+void vkao_export(const void *own, size_t own_size, void *out, uint32_t size)
 {
-    vkao_params params = {.struct_size = sizeof params};
-    put_all(&params, VK_FALSE);
-    return params;
+    if (!out || size < sizeof(uint32_t))
+        return;
+    memset(out, 0, size);
+    memcpy(out, own, own_size < size ? own_size : size);
+    memcpy(out, &size, sizeof size);
 }
 
-vkao_images vkao_images_default(void)
+void vkao_context_info_init(vkao_context_info *out, uint32_t size)
 {
-    return (vkao_images){.struct_size = sizeof(vkao_images)};
+    const vkao_context_info own = {.log_level = VKAO_LOG_WARNING};
+    vkao_export(&own, sizeof own, out, size);
 }
 
-vkao_frame_info vkao_frame_info_default(void)
+void vkao_effect_info_init(vkao_effect_info *out, uint32_t size)
 {
-    return (vkao_frame_info){.struct_size = sizeof(vkao_frame_info)};
+    vkao_effect_info own = {.stages = MAKES_AO, .ao_format = VK_FORMAT_R8_UNORM};
+    put_all(&own, VK_TRUE);
+    vkao_export(&own, sizeof own, out, size);
 }
 
-vkao_view vkao_view_default(void)
+void vkao_params_init(vkao_params *out, uint32_t size)
 {
-    vkao_view view = {.struct_size = sizeof view};
-    view.normal_to_view[0] = view.normal_to_view[4] = view.normal_to_view[8] = 1.0f;
-    return view;
+    vkao_params own = {0};
+    put_all(&own, VK_FALSE);
+    vkao_export(&own, sizeof own, out, size);
+}
+
+void vkao_images_init(vkao_images *out, uint32_t size)
+{
+    const vkao_images own = {0};
+    vkao_export(&own, sizeof own, out, size);
+}
+
+void vkao_frame_info_init(vkao_frame_info *out, uint32_t size)
+{
+    const vkao_frame_info own = {0};
+    vkao_export(&own, sizeof own, out, size);
+}
+
+void vkao_view_init(vkao_view *out, uint32_t size)
+{
+    vkao_view own = {0};
+    own.normal_to_view[0] = own.normal_to_view[4] = own.normal_to_view[8] = 1.0f;
+    vkao_export(&own, sizeof own, out, size);
 }
 
 /* --- Presets: chosen on solid and thin scenes together --- */

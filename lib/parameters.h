@@ -6,6 +6,7 @@
 
 #include "log.h"
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Those that have a struct_size. */
@@ -25,6 +26,12 @@ vkao_result vkao_import_sized(const struct vkao_logger *log, const char *name, c
                               void *dst, size_t least, size_t known);
 vkao_result vkao_import(const struct vkao_logger *log, enum vkao_struct which, const char *name,
                         const void *src, void *dst);
+
+/* The other way round: as many bytes of own as the caller's struct has, with its size. */
+void vkao_export(const void *own, size_t own_size, void *out, uint32_t size);
+
+/* Does the method read that member of vkao_effect_info or vkao_params? */
+bool vkao_method_reads(vkao_ssao_method method, const char *name);
 
 /* Import, check every range of the table, and put in defaults for zeros that stand for them. */
 vkao_result vkao_effect_info_check(const struct vkao_logger *log, const vkao_effect_info *in,

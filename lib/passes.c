@@ -23,9 +23,11 @@ vkao_stage_flags vkao_stages_of(const vkao_effect_info *effect)
 
 void vkao_program_add(struct vkao_program *program, const struct vkao_pass *row)
 {
+    assert(program->count < VKAO_MOST_PASSES);
     struct vkao_step *step = &program->steps[program->count++];
     step->row = row;
     for (const struct vkao_use *use = row->uses; use->binding; ++use) {
+        assert(step->use_count < VKAO_MOST_USES);
         struct vkao_use *own = &step->uses[step->use_count++];
         *own = *use;
         /* Without BLUR, SSAO writes the final image itself. */

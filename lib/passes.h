@@ -69,7 +69,7 @@ enum vkao_area {
     VKAO_AREA_IMAGE_RECT   /* on the image's grid */
 };
 
-enum { VKAO_MOST_USES = 9, VKAO_MOST_PASSES = 12, VKAO_MOST_FORMS = 4 };
+enum { VKAO_MOST_USES = 12, VKAO_MOST_PASSES = 12, VKAO_MOST_FORMS = 4 };
 
 /* Bits of a form's index. */
 enum { VKAO_FORM_TONED = 1, VKAO_FORM_COPIED = 2 };

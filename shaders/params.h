@@ -45,7 +45,7 @@
 #define VKAO_BINDING_BREAKS_X 15 /* where depth breaks, in words along rows, and along columns */
 #define VKAO_BINDING_BREAKS_Y 16
 #define VKAO_BINDING_BREAKS_WRITE 17
-#define VKAO_BINDING_CPU 18 /* the first of the CPU's */
+#define VKAO_BINDING_CPU 32 /* the first of the CPU's */
 
 /* What a pass is compiled for: specialization constants, the same for all passes of an effect but
  * for the last three. shaders/settings.glsl declares them. */

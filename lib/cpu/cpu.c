@@ -30,6 +30,8 @@
 
 #include <assert.h>
 
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
 /* Parts of the scratch buffer. */
 enum {
     PART_Z = VKAO_RESOURCE_CPU,
@@ -406,31 +408,48 @@ static void plan_blur(struct vkao_program *program)
         vkao_program_add(program, program->is_packed ? &packed_upsample : &upsample);
 }
 
-void vkao_cpu_plan(struct vkao_program *program)
+bool vkao_cpu_has(const vkao_effect_info *settings)
+{
+    return !(settings->stages & VKAO_STAGE_SSAO) ||
+           ((size_t)settings->method < COUNT(methods) && methods[settings->method].code);
+}
+
+static const struct vkao_pass *method_row(const struct vkao_program *program)
+{
+    const size_t method = (size_t)program->settings.method;
+    const bool is_16bit = program->ctx->has_16bit_storage && method < COUNT(methods_16bit) &&
+                          methods_16bit[method].code;
+    return is_16bit ? &methods_16bit[method] : &methods[method];
+}
+
+bool vkao_cpu_plan(struct vkao_program *program, vkao_stage_flags stage)
 {
     const vkao_effect_info *e = &program->settings;
     const vkao_stage_flags both = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
-    const bool pairs = e->method != VKAO_SSAO_SPHERE && e->method != VKAO_SSAO_RAYMARCH;
     program->is_packed = (e->stages & both) == both && !e->bent_normals && !e->noisy_ao;
-    if (e->stages & both)
+    switch (stage) {
+    case VKAO_STAGE_PREPARE:
         vkao_program_add(program, &prepare);
-    if (vkao_has_width(e)) {
-        vkao_program_add(program, &breaks_x);
-        vkao_program_add(program, &breaks_y);
-        vkao_program_add(program, &width);
-    }
-    if (e->stages & VKAO_STAGE_SSAO) {
+        if (vkao_has_width(e)) {
+            vkao_program_add(program, &breaks_x);
+            vkao_program_add(program, &breaks_y);
+            vkao_program_add(program, &width);
+        }
+        return true;
+    case VKAO_STAGE_SSAO:
         vkao_program_add(program, &tiles);
-        vkao_program_add(program, pairs && program->ctx->has_16bit_storage
-                                      ? &methods_16bit[e->method]
-                                      : &methods[e->method]);
-    }
-    if (e->stages & VKAO_STAGE_BLUR)
+        vkao_program_add(program, method_row(program));
+        return true;
+    case VKAO_STAGE_BLUR:
         plan_blur(program);
-    if ((e->stages & VKAO_STAGE_COMPOSITE) && e->composite_mode > VKAO_COMPOSITE_AO_ONLY)
-        vkao_program_add(program, &debug);
-    else if (e->stages & VKAO_STAGE_COMPOSITE)
-        vkao_composite_plan(program); /* reads nothing of the CPU's */
+        return true;
+    case VKAO_STAGE_COMPOSITE:
+        if (e->composite_mode > VKAO_COMPOSITE_AO_ONLY)
+            vkao_program_add(program, &debug);
+        return e->composite_mode > VKAO_COMPOSITE_AO_ONLY;
+    default:
+        return false;
+    }
 }
 
 /* --- Memory --- */
@@ -450,7 +469,7 @@ static const struct format {
 static const struct format *find_format(VkFormat format)
 {
     size_t i = 0;
-    while (i + 1 < sizeof formats / sizeof formats[0] && formats[i].format != format)
+    while (i + 1 < COUNT(formats) && formats[i].format != format)
         ++i;
     return &formats[i];
 }

@@ -9,7 +9,11 @@
 
 #include "frame.h"
 
-void vkao_cpu_plan(struct vkao_program *program);
+/* Has it passes for these settings? Without, those of the image path run. */
+bool vkao_cpu_has(const vkao_effect_info *settings);
+/* Adds its passes of a stage. False where the stage has none of its own: those of the image path
+ * touch nothing of the CPU's. */
+bool vkao_cpu_plan(struct vkao_program *program, vkao_stage_flags stage);
 /* VKAO_SETTING_PATH. */
 uint32_t vkao_cpu_setting(const struct vkao_program *program);
 

@@ -41,7 +41,8 @@
  *    changes.
  *  - Record outside a render pass, in any command buffer whose queue family supports compute.
  *
- * Struct rule: set struct_size = sizeof (the *_default() functions do). A smaller struct of an
+ * Struct rule: set struct_size = sizeof (the *_default() functions do; other languages call the
+ * exported *_init(), which write no more bytes than they are given). A smaller struct of an
  * earlier 0.2 is accepted: its missing bytes read as zero, and zero always means the behaviour from
  * before the field existed. A larger struct is accepted only if the bytes that the library does not
  * know are zero. A size that no version can have is refused and nothing is read beyond it; so is a
@@ -72,6 +73,18 @@
 #else
 #define VKAO_MUST_CHECK
 #endif
+
+/* NAME_init: the default of each member that lies within size bytes, sizeof of the caller's struct,
+ * to which it sets struct_size; what is unknown to the library is zero. NAME_default: the same,
+ * inline, so that programs keep working with a library whose structs have grown. */
+#define VKAO_DEFAULT(name)                                                                         \
+    VKAO_API void name##_init(name *out, uint32_t size);                                           \
+    static inline name name##_default(void)                                                        \
+    {                                                                                              \
+        name out;                                                                                  \
+        name##_init(&out, (uint32_t)sizeof out);                                                   \
+        return out;                                                                                \
+    }
 
 #ifdef __cplusplus
 extern "C" {
@@ -179,7 +192,7 @@ typedef struct vkao_context_info {
     uint32_t padding; /* zero */
 } vkao_context_info;
 
-VKAO_API vkao_context_info vkao_context_info_default(void);
+VKAO_DEFAULT(vkao_context_info)
 
 /* Sets the members that vkao needs to VK_TRUE, leaves the others alone. Call before
  * vkCreateDevice. */
@@ -346,7 +359,7 @@ typedef struct vkao_effect_info {
     void *parallel_user_data;
 } vkao_effect_info;
 
-VKAO_API vkao_effect_info vkao_effect_info_default(void);
+VKAO_DEFAULT(vkao_effect_info)
 
 /* Immutable once created; owns no device memory. Thread-safety: any number of threads may create
  * effects and use one at once; destroying it is the exception. */
@@ -360,8 +373,9 @@ VKAO_API VKAO_MUST_CHECK vkao_result vkao_effect_create(const vkao_context *ctx,
                                                         vkao_effect **out);
 
 /* What the effect was compiled for, with every 0 that stands for a default replaced by it. The
- * members for compilation are zero. */
-VKAO_API vkao_effect_info vkao_effect_settings(const vkao_effect *effect);
+ * members for compilation are zero. Writes the members that lie within size bytes, sizeof *out; all
+ * zero without an effect. */
+VKAO_API void vkao_effect_settings(const vkao_effect *effect, vkao_effect_info *out, uint32_t size);
 
 /* All frames of the effect must be destroyed first. NULL is ignored. Legal after device loss. */
 VKAO_API void vkao_effect_destroy(vkao_effect *effect);
@@ -412,7 +426,7 @@ typedef struct vkao_images {
     vkao_image specular;
 } vkao_images;
 
-VKAO_API vkao_images vkao_images_default(void);
+VKAO_DEFAULT(vkao_images)
 
 /* Descriptor sets plus scratch memory. Recording does not modify it. Thread-safety: recording one
  * frame from several threads is fine; update and destroy need exclusive access. */
@@ -430,7 +444,7 @@ typedef struct vkao_frame_info {
     VkDeviceSize scratch_offset;   /* bytes; multiple of the queried alignment */
 } vkao_frame_info;
 
-VKAO_API vkao_frame_info vkao_frame_info_default(void);
+VKAO_DEFAULT(vkao_frame_info)
 
 /* Exact device memory for this info: the one allocation that vkao_frame_create would make. Views
  * may still be null; only extent, formats, used slots and whether ao has an image matter. Errors as
@@ -499,7 +513,7 @@ typedef struct vkao_view {
 } vkao_view;
 
 /* projection stays zero, which is refused: the caller must set it. */
-VKAO_API vkao_view vkao_view_default(void);
+VKAO_DEFAULT(vkao_view)
 
 typedef struct vkao_params {
     uint32_t struct_size;
@@ -528,7 +542,7 @@ typedef struct vkao_params {
     float debug_distance;
 } vkao_params;
 
-VKAO_API vkao_params vkao_params_default(void);
+VKAO_DEFAULT(vkao_params)
 
 /* Record every stage of the frame's effect, in order. All arguments are checked before the first
  * command is recorded, and read before the call returns. ao and output are written in view->rect

@@ -26,21 +26,21 @@
 
 /* The same memory as storage texel buffers, which a CPU reads with vector gathers and not lane by
  * lane, and as storage buffers, to which it writes faster. */
-#define VKAO_BINDING_Z 18  /* r32f */
-#define VKAO_BINDING_Z4 19 /* rgba32f */
-#define VKAO_BINDING_Z_WORDS 20
-#define VKAO_BINDING_PACKED_WRITE 21 /* r8ui: a code. r16ui: 2 codes */
-#define VKAO_BINDING_PACKED_READ4 22 /* r32ui: 4 codes */
-#define VKAO_BINDING_PACKED_WORDS 23
-#define VKAO_BINDING_HALFWAY_READ2 24 /* r32ui: 2 fine codes */
-#define VKAO_BINDING_HALFWAY_WORDS 25
-#define VKAO_BINDING_BLURRED_READ2 26 /* r32ui: the same */
-#define VKAO_BINDING_BLURRED_WORDS 27
-#define VKAO_BINDING_STAGED_WORDS 28
-#define VKAO_BINDING_TILES 29 /* vkao_tiles_head, tiles */
-#define VKAO_BINDING_BREAKS_WORDS 30
-#define VKAO_BINDING_BREAKS_X_READ 31 /* r32ui */
-#define VKAO_BINDING_BREAKS_Y_READ 32
+#define VKAO_BINDING_Z 32  /* r32f */
+#define VKAO_BINDING_Z4 33 /* rgba32f */
+#define VKAO_BINDING_Z_WORDS 34
+#define VKAO_BINDING_PACKED_WRITE 35 /* r8ui: a code. r16ui: 2 codes */
+#define VKAO_BINDING_PACKED_READ4 36 /* r32ui: 4 codes */
+#define VKAO_BINDING_PACKED_WORDS 37
+#define VKAO_BINDING_HALFWAY_READ2 38 /* r32ui: 2 fine codes */
+#define VKAO_BINDING_HALFWAY_WORDS 39
+#define VKAO_BINDING_BLURRED_READ2 40 /* r32ui: the same */
+#define VKAO_BINDING_BLURRED_WORDS 41
+#define VKAO_BINDING_STAGED_WORDS 42
+#define VKAO_BINDING_TILES 43 /* vkao_tiles_head, tiles */
+#define VKAO_BINDING_BREAKS_WORDS 44
+#define VKAO_BINDING_BREAKS_X_READ 45 /* r32ui */
+#define VKAO_BINDING_BREAKS_Y_READ 46
 
 /* VKAO_SETTING_PATH: noisy AO goes through the buffer, else through an image; and the format of
  * what is copied. */

@@ -36,10 +36,11 @@ def main():
     vkao = ctypes.CDLL(sys.argv[1])
     vkao.vkao_parameters.restype = POINTER(Parameter)
     structs = []
-    for function, kind in ((vkao.vkao_params_default, Params),
-                           (vkao.vkao_effect_info_default, EffectInfo)):
-        function.restype = kind
-        structs.append(bytes(function()))
+    for function, kind in ((vkao.vkao_params_init, Params),
+                           (vkao.vkao_effect_info_init, EffectInfo)):
+        struct_ = kind()
+        function(ctypes.byref(struct_), ctypes.sizeof(struct_))
+        structs.append(bytes(struct_))
         size = struct.unpack_from("I", structs[-1])[0]
         assert size == ctypes.sizeof(kind), f"{kind.__name__}: struct_size {size}"
     count = c_uint32()

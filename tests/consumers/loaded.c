@@ -28,10 +28,11 @@ int main(int argc, char **argv)
         }
     }
     uint32_t (*version)(void);
-    vkao_params (*defaults)(void);
+    void (*defaults)(vkao_params *, uint32_t);
+    vkao_params params;
     FUNCTION(version, "vkao_version");
-    FUNCTION(defaults, "vkao_params_default");
-    const vkao_params params = defaults();
+    FUNCTION(defaults, "vkao_params_init");
+    defaults(&params, sizeof params);
     const int ok = VK_API_VERSION_MINOR(version()) == VKAO_VERSION_MINOR &&
                    params.struct_size == sizeof params && params.radius == 0.5f;
     return dlclose(library) || !ok;

@@ -188,9 +188,10 @@ def a_program_loads_the_library():
     execute(["cc", "-std=c11", "-Wall", "-Wextra", "-Werror", "-D_DEFAULT_SOURCE",
              os.path.join(HERE, "loaded.c"), *pkg_config("--cflags"), "-ldl", "-o", output])
     with open(installed("include/vkao.h"), encoding="utf-8") as file:
-        text = re.sub(r"^\s*#.*$", "", without_comments(file.read()), flags=re.M)
+        text = re.sub(r"^\s*#(?:.*\\\n)*.*$", "", without_comments(file.read()), flags=re.M)
     names = sorted(set(re.findall(r"\bVKAO_API\b[^;{]*?\b(vkao_\w+)\s*\(", text)))
-    assert len(names) >= 20, names
+    names += [f"{name}_init" for name in re.findall(r"^VKAO_DEFAULT\((vkao_\w+)\)", text, re.M)]
+    assert len(names) >= 24, names
     execute([output, shared_library(), *names])
 
 

@@ -516,7 +516,8 @@ static void create_effect(struct world *w)
     end(w, "vkao_effect_create", &before, result, w->effect);
     FUZZ_CHECK(result != VKAO_SUCCESS || w->effect, "no effect");
     if (w->effect) {
-        const vkao_effect_info settings = vkao_effect_settings(w->effect);
+        vkao_effect_info settings;
+        vkao_effect_settings(w->effect, &settings, sizeof settings);
         w->stages = settings.stages;
         w->orthographic = settings.projection == VKAO_PROJECTION_ORTHOGRAPHIC;
     }

@@ -42,7 +42,7 @@ def compiles(compiler, standard, source):
 
 
 def default_functions():
-    return re.findall(r"VKAO_API (vkao_\w+) \1_default\(void\);", HEADER)
+    return re.findall(r"^VKAO_DEFAULT\((vkao_\w+)\)", HEADER, re.M)
 
 
 def every_default_function_is_compiled_here():

@@ -30,8 +30,10 @@ def symbols(which):
 
 def declared():
     text = without_comments(open(HEADER, encoding="utf-8").read())
-    text = re.sub(r"^\s*#.*$", "", text, flags=re.M)
-    return set(re.findall(r"\bVKAO_API\b[^;{]*?\b(\w+)\s*\(", text))
+    text = re.sub(r"^\s*#(?:.*\\\n)*.*$", "", text, flags=re.M)
+    defaults = re.findall(r"^VKAO_DEFAULT\((\w+)\)", text, re.M)
+    return set(re.findall(r"\bVKAO_API\b[^;{]*?\b(\w+)\s*\(", text)) | \
+        {f"{name}_init" for name in defaults}
 
 
 def every_declared_function_is_exported_and_nothing_else():

@@ -32,6 +32,13 @@ vkao_image *world_slot(vkao_images *images, size_t index)
     return slots[index];
 }
 
+vkao_effect_info settings_of(const vkao_effect *effect)
+{
+    vkao_effect_info settings;
+    vkao_effect_settings(effect, &settings, sizeof settings);
+    return settings;
+}
+
 void world_init(struct world *w, bool with_callbacks)
 {
     static const VkFormat formats[SLOT_COUNT] = {

@@ -51,6 +51,7 @@ struct world {
 };
 
 /* Without a context yet. with_callbacks: through VkAllocationCallbacks. */
+vkao_effect_info settings_of(const vkao_effect *effect);
 void world_init(struct world *w, bool with_callbacks);
 /* world_init and a context. */
 void world_open(struct world *w);

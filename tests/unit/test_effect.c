@@ -223,7 +223,7 @@ static void pipeline_cache_reaches_the_driver(void **state)
     for (size_t i = 0; i < 6; ++i)
         assert_true(fake_nth(&w.fake, "vkCreateComputePipelines", i)->cache ==
                     w.effect_info.pipeline_cache);
-    assert_true(vkao_effect_settings(w.effect).pipeline_cache == VK_NULL_HANDLE);
+    assert_true(settings_of(w.effect).pipeline_cache == VK_NULL_HANDLE);
     world_close(&w);
 }
 

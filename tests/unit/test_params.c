@@ -187,7 +187,7 @@ static void zero_means_the_default(void **state)
     w.effect_info.slice_count = w.effect_info.step_count = w.effect_info.sample_count = 0;
     w.effect_info.ao_format = VK_FORMAT_UNDEFINED;
     world_create_effect(&w);
-    const vkao_effect_info settings = vkao_effect_settings(w.effect);
+    const vkao_effect_info settings = settings_of(w.effect);
     assert_int_equal(settings.slice_count, 1);
     assert_int_equal(settings.step_count, 8);
     assert_int_equal(settings.sample_count, 16);

@@ -80,7 +80,7 @@ static void presets_are_effects(void **state)
         world_create_frame(&w);
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
         /* A caller can learn what a preset became. */
-        assert_int_equal(vkao_effect_settings(w.effect).step_count, want[q].steps);
+        assert_int_equal(settings_of(w.effect).step_count, want[q].steps);
         world_close(&w);
     }
 }

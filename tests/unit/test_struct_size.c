@@ -246,6 +246,43 @@ static void defaults_set_their_size(void **state)
     assert_int_equal(vkao_params_default().struct_size, sizeof(vkao_params));
 }
 
+/* A program of another version of 0.2 has less of the struct, or more, and that many bytes to
+ * spare. */
+static void defaults_fit_the_callers_struct(void **state)
+{
+    (void)state;
+    static const struct {
+        void (*init)(void *out, uint32_t size);
+        uint32_t size;
+    } rows[] = {
+#define ROW(name) {(void (*)(void *, uint32_t))(void (*)(void))name##_init, sizeof(name)}
+        ROW(vkao_context_info), ROW(vkao_effect_info), ROW(vkao_frame_info),
+        ROW(vkao_images),       ROW(vkao_view),        ROW(vkao_params),
+#undef ROW
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        unsigned char whole[LARGEST], given[LARGEST];
+        rows[i].init(whole, rows[i].size);
+        for (uint32_t size = 0; size <= rows[i].size + 8; size += 4) {
+            const uint32_t known = size < rows[i].size ? size : rows[i].size;
+            memset(given, 0xa5, sizeof given);
+            rows[i].init(given, size);
+            if (size)
+                assert_memory_equal(given, &size, sizeof size);
+            if (size > 4)
+                assert_memory_equal(given + 4, whole + 4, known - 4);
+            for (uint32_t k = known; k < sizeof given; ++k)
+                assert_int_equal(given[k], k < size ? 0 : 0xa5);
+        }
+    }
+    vkao_effect_info settings;
+    memset(&settings, 0xa5, sizeof settings);
+    vkao_effect_settings(NULL, &settings, 8);
+    assert_int_equal(settings.struct_size, 8);
+    assert_int_equal(settings.stages, 0);
+    assert_int_equal(((const unsigned char *)&settings)[8], 0xa5);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -256,6 +293,7 @@ int main(void)
         cmocka_unit_test(garbage_sizes_are_refused_without_reading_on),
         cmocka_unit_test(missing_bytes_of_an_earlier_version_are_zero),
         cmocka_unit_test(defaults_set_their_size),
+        cmocka_unit_test(defaults_fit_the_callers_struct),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,8 +32,8 @@ struct EffectInfo([u64; 14]);
 
 #[link(name = "vkao")]
 extern "C" {
-    fn vkao_context_info_default() -> ContextInfo;
-    fn vkao_effect_info_default() -> EffectInfo;
+    fn vkao_context_info_init(out: *mut ContextInfo, size: u32);
+    fn vkao_effect_info_init(out: *mut EffectInfo, size: u32);
     fn vkao_add_required_features(features: *mut vk::PhysicalDeviceFeatures);
     fn vkao_context_create(info: *const ContextInfo, out: *mut *mut c_void) -> i32;
     fn vkao_context_destroy(context: *mut c_void);
@@ -68,7 +68,8 @@ unsafe fn run(entry: &ash::Entry) -> Result<(), vk::Result> {
         None,
     )?;
 
-    let mut info = vkao_context_info_default();
+    let mut info: ContextInfo = std::mem::zeroed();
+    vkao_context_info_init(&mut info, std::mem::size_of::<ContextInfo>() as u32);
     assert_eq!(info.struct_size as usize, std::mem::size_of::<ContextInfo>());
     info.instance = instance.handle();
     info.physical_device = physical_device;
@@ -80,7 +81,8 @@ unsafe fn run(entry: &ash::Entry) -> Result<(), vk::Result> {
     let mut context = null_mut();
     assert_eq!(vkao_context_create(&info, &mut context), 0);
 
-    let settings = vkao_effect_info_default();
+    let mut settings: EffectInfo = std::mem::zeroed();
+    vkao_effect_info_init(&mut settings, std::mem::size_of::<EffectInfo>() as u32);
     assert_eq!(settings.0[0] as u32 as usize, std::mem::size_of::<EffectInfo>());
     let mut effect = null_mut();
     assert_eq!(vkao_effect_create(context, &settings, &mut effect), 0);
