@@ -28,8 +28,8 @@ struct Slice {
     float cos_n, sin_n;  /* of the projected normal's angle from V, towards O */
 };
 
-/* turn in [0,1) is half the circle. plane: normal of the depth image. to_eye is V. */
-Slice make_slice(float turn, vec3 position, vec3 normal, vec3 plane, vec3 to_eye)
+/* turn in [0,1) is half the circle. to_eye is V. */
+Slice make_slice(float turn, vec3 position, vec3 normal, Plane plane, vec3 to_eye)
 {
     Slice s;
     vec3 d = vec3(half_turn_x(turn), half_turn_y(turn), 0.0);
@@ -46,9 +46,9 @@ Slice make_slice(float turn, vec3 position, vec3 normal, vec3 plane, vec3 to_eye
     /* A sample's texel lies off the slice by rounding. It is moved into it along the plane that the
      * depth image has here, which keeps its height over that plane, so that a tilted wall still
      * lies flat in the slice, whatever its shading normals. */
-    float steepest = dot(plane, normal) > VKAO_PLANE_AGREES ? VKAO_STEEPEST : VKAO_PLANE_STEEPEST;
-    float moved = dot(plane, across) / max(dot(plane, to_eye), steepest);
-    s.fall = dot(plane, s.outward) / max(dot(plane, to_eye), VKAO_STEEPEST);
+    float plane_facing = dot(plane.normal, to_eye);
+    float moved = dot(plane.normal, across) / max(plane_facing, plane.steepest);
+    s.fall = dot(plane.normal, s.outward) / max(plane_facing, VKAO_STEEPEST);
     vec2 radii = params.unproject.xy * params.inverse_radius;
     s.to_x = radii * s.outward.xy;
     s.to_y = radii * (to_eye.xy + across.xy * moved);

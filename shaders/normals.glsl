@@ -12,6 +12,14 @@ struct Neighbour {
     float z, side; /* side is -1 or 1: before or after */
 };
 
+/* Does depth go on in a straight line from one neighbour to the other? In perspective it bends by
+ * its rise per texel. */
+bool is_straight(vec2 near_z, float z)
+{
+    float bend = abs(near_z.x + near_z.y - 2.0 * z);
+    return bend <= VKAO_PLANE_BEND * abs(near_z.y - near_z.x) + 4.0e-6 * z;
+}
+
 /* Of the two pairs of neighbours, the one whose straight continuation meets the centre better. 1/z
  * is what continues straight on screen in perspective; both misses are fractions there, compared
  * without dividing. Without a second neighbour the first one alone decides, by how far it is off;
@@ -47,21 +55,25 @@ Neighbour nearest_neighbour(vec2 near_z, float center_z)
 
 /* careful is what a depth image without normals takes; where a stored normal fails now and then,
  * quick will do. */
-Neighbour neighbour_in(ivec2 texel, ivec2 axis, float center_z, bool careful)
+Neighbour neighbour_in(ivec2 texel, ivec2 axis, float center_z, bool careful, out bool straight)
 {
     vec2 near_z = vec2(load_view_z(texel - axis), load_view_z(texel + axis));
+    straight = is_straight(near_z, center_z);
     if (!careful)
         return nearest_neighbour(near_z, center_z);
     vec2 far_z = vec2(load_view_z(texel - 2 * axis), load_view_z(texel + 2 * axis));
     return straight_neighbour(near_z, far_z, center_z);
 }
 
-/* Unit vector towards the eye. Those to the neighbours span the tangent plane. */
-vec3 normal_from_depth(ivec2 texel, float center_z)
+/* Unit vector towards the eye. Those to the neighbours span the tangent plane. straight: and depth
+ * goes on so in both directions. */
+vec3 normal_from_depth(ivec2 texel, float center_z, out bool straight)
 {
     const bool careful = NORMAL_ENCODING == VKAO_GLSL_NORMALS_FROM_DEPTH;
-    Neighbour beside = neighbour_in(texel, ivec2(1, 0), center_z, careful);
-    Neighbour below = neighbour_in(texel, ivec2(0, 1), center_z, careful);
+    bool straight_x, straight_y;
+    Neighbour beside = neighbour_in(texel, ivec2(1, 0), center_z, careful, straight_x);
+    Neighbour below = neighbour_in(texel, ivec2(0, 1), center_z, careful, straight_y);
+    straight = straight_x && straight_y;
     /* Slopes of depth over what a texel is wide there: the cross product without its length, whose
      * square leaves the range of floats in scenes that are small or large or seen through a
      * keyhole. */
@@ -73,6 +85,29 @@ vec3 normal_from_depth(ivec2 texel, float center_z)
     if (!ORTHOGRAPHIC)
         n.z -= dot(view_position(vec2(texel), 1.0).xy, n.xy);
     return normalize(n);
+}
+
+/* The plane of the depth image at a texel. */
+struct Plane {
+    vec3 normal;
+    /* cosine to the eye at which it stops getting steeper */
+    float steepest;
+};
+
+/* Things a texel wide have no plane in the depth image: there it is steep only if the shading normal
+ * agrees. */
+float steepest_plane(vec3 plane, vec3 normal, bool straight)
+{
+    bool holds = straight || dot(plane, normal) > VKAO_PLANE_AGREES;
+    return holds ? VKAO_STEEPEST : VKAO_PLANE_STEEPEST;
+}
+
+/* normal: the shading normal. */
+Plane depth_plane(ivec2 texel, vec3 position, vec3 normal)
+{
+    bool straight;
+    vec3 plane = normal_from_depth(texel, position.z, straight);
+    return Plane(plane, steepest_plane(plane, normal, straight));
 }
 
 /* The stored normal, or the surface's own. One that points away is turned if the back of its
@@ -93,7 +128,8 @@ vec3 view_normal(ivec2 texel, vec3 center)
     bool away = (ORTHOGRAPHIC ? stored.z : dot(stored, center)) > 0.0;
     if (!away && stored != vec3(0.0))
         return stored;
-    return trusted_normal(stored, normal_from_depth(texel, center.z), center);
+    bool straight;
+    return trusted_normal(stored, normal_from_depth(texel, center.z, straight), center);
 }
 
 #endif

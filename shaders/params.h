@@ -135,7 +135,7 @@
  * from the sample before, for whose gap it stands, and at most BASE + SLOPE of its lateral
  * distance. */
 #define VKAO_VBAO_THICKNESS_WIDTH 0.9
-#define VKAO_VBAO_THICKNESS_WIDE 0.5 /* of what goes on on all sides */
+#define VKAO_VBAO_THICKNESS_WIDE 1.5 /* of what goes on on all sides */
 #define VKAO_VBAO_THICKNESS_GAP 2.5
 #define VKAO_VBAO_THICKNESS_BASE 0.40
 #define VKAO_VBAO_THICKNESS_SLOPE 0.80
@@ -150,16 +150,18 @@
 /* Times all of these with the threshold: what is far away counts alike, and hides more. */
 #define VKAO_THICKNESS_THRESHOLD 1.1
 
-/* View z has that thickness in its last 4 bits, as 2^-8, 1.5 * 2^-8, 2^-7 ... 1.5 * 2^-1. */
+/* View z has that thickness in its last 4 bits, as 2^-7, 1.5 * 2^-7, 2^-6 ... 1, 1.5. */
 #define VKAO_THICKNESS_MASK 15
 #define VKAO_THICKNESS_SHIFT 22
-#define VKAO_THICKNESS_LEAST_BITS 0x3b800000
+#define VKAO_THICKNESS_LEAST_BITS 0x3c000000
 #define VKAO_THICKNESS_DEPTH_ERROR 0.95e-6 /* what that takes from view z, relative to it */
 
-/* Cosine to the eye of the depth image's plane, at which it stops getting steeper where the shading
- * normal is of another surface: things a texel wide have no plane in the depth image. */
+/* Cosine to the eye at which the depth image's plane stops getting steeper where it is none: where
+ * depth bends by more than BEND of its rise, and the plane's cosine to the shading normal is below
+ * AGREES. */
 #define VKAO_PLANE_STEEPEST 0.2
-#define VKAO_PLANE_AGREES 0.7 /* cosine between the two from which on it is the same surface */
+#define VKAO_PLANE_BEND 0.25
+#define VKAO_PLANE_AGREES 0.7
 
 /* Cosine to the eye at which tangent planes stop getting steeper in slices: less than that of the
  * last texels that a wall of 80 degrees has before its horizon. */

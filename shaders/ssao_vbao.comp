@@ -109,7 +109,7 @@ vec3 hidden(Slice s, ivec2 texel, float center_z, float jitter)
 Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
 {
     vec3 to_eye = direction_to_eye(position);
-    vec3 plane = normal_from_depth(texel, position.z);
+    Plane plane = depth_plane(texel, position, normal);
     Noise noise = texel_noise(texel, slice_count());
     float share = 1.0 / float(slice_count());
     /* The mean direction of an open hemisphere is 2/3 of its normal. */

@@ -80,7 +80,7 @@ void main()
     float along = float(run_of(true, texel, size, most.y, goes_on.y)) / radius.y;
     float thickness = all(goes_on) ? VKAO_VBAO_THICKNESS_WIDE
                                    : VKAO_VBAO_THICKNESS_WIDTH * min(across, along);
-    int code = floatBitsToInt(min(thickness, 1.0)) - VKAO_THICKNESS_LEAST_BITS;
+    int code = floatBitsToInt(min(thickness, 2.0)) - VKAO_THICKNESS_LEAST_BITS;
     code = clamp((code + (1 << (VKAO_THICKNESS_SHIFT - 1))) >> VKAO_THICKNESS_SHIFT, 0,
                  VKAO_THICKNESS_MASK);
     int bits = floatBitsToInt(z) & ~VKAO_THICKNESS_MASK;

@@ -31,8 +31,8 @@ Real3 eye_direction(ivec2 texel)
     return times(away, -inversesqrt(dot3(away, away)));
 }
 
-/* turn in [0,1) is half the circle. plane: normal of the depth image. */
-Slice make_slice(real turn, Real3 position, Real3 normal, Real3 plane, Real3 to_eye)
+/* turn in [0,1) is half the circle. */
+Slice make_slice(real turn, Real3 position, Real3 normal, Planes plane, Real3 to_eye)
 {
     Slice s;
     Real2 d = Real2(half_turn_x(turn), half_turn_y(turn));
@@ -52,11 +52,9 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 plane, Real3 to_
     /* A sample's texel lies off the slice by rounding. It is moved into it along the plane that the
      * depth image has here, which keeps its height over that plane, so that a tilted wall still
      * lies flat in the slice, whatever its shading normals. */
-    real plane_facing = dot3(plane, to_eye);
-    real steepest = choose(real(VKAO_PLANE_STEEPEST), real(VKAO_STEEPEST),
-                           above(dot3(plane, normal), real(VKAO_PLANE_AGREES)));
-    real moved = dot3(plane, across) / max(plane_facing, steepest);
-    s.fall = dot3(plane, s.outward) / max(plane_facing, real(VKAO_STEEPEST));
+    real plane_facing = dot3(plane.normal, to_eye);
+    real moved = dot3(plane.normal, across) / max(plane_facing, plane.steepest);
+    s.fall = dot3(plane.normal, s.outward) / max(plane_facing, real(VKAO_STEEPEST));
     vec2 radii = params.unproject.xy * params.inverse_radius;
     s.to_x = Real2(radii.x * s.outward.x, radii.y * s.outward.y);
     s.to_y =

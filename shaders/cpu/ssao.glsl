@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * ../ssao.glsl for two texels side by side. The includer defines
- *     Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Real3 plane)
- * for them, texel being the first; plane is the normal of the depth image. An invocation has texels of a tile from the list, and writes
+ *     Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
+ * for them, texel being the first; plane is that of the depth image. An invocation has texels of a tile from the list, and writes
  * codes into the buffer or texels into an image. With VKAO_STORAGE_16BIT two codes are one store to
  * a storage buffer, which costs less than a texel buffer. */
 #ifndef VKAO_PAIRED_SSAO_GLSL_
@@ -77,29 +77,38 @@ reals border_view_zs(ints x, ints y)
     return z;
 }
 
-/* Depth's own normals, plane, are always computed and seldom taken: that costs less than the
- * branch. */
-Real3 view_normals(ivec2 texel, Real3 position, out Real3 plane)
+/* Of the depth image; see Plane. */
+struct Planes {
+    Real3 normal;
+    real steepest;
+};
+
+/* Depth's own normals are always computed and seldom taken: that costs less than the branch. */
+Real3 view_normals(ivec2 texel, Real3 position, out Planes plane)
 {
     vec3 n[TEXELS], own[TEXELS];
+    float steepest[TEXELS];
     [[unroll]] for (int i = 0; i < TEXELS; ++i) {
+        bool straight;
         ivec2 at = texel + ivec2(i, 0);
         vec3 center = lane3(position, i), stored = to_view(decode_normal(at << GRID_SHIFT));
-        own[i] = normal_from_depth(at, center.z);
+        own[i] = normal_from_depth(at, center.z, straight);
         n[i] = trusted_normal(stored, own[i], center);
+        steepest[i] = steepest_plane(own[i], n[i], straight);
     }
-    plane = join3(own);
+    plane = Planes(join3(own), join(steepest));
     return join3(n);
 }
 
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Real3 plane);
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane);
 
 /* What is not seen, background, is open. */
 Visibility shade(ivec2 texel)
 {
     real z = load_view_zs(texel);
     Real3 position = view_positions(texel, z);
-    Real3 plane, normal = view_normals(texel, position, plane);
+    Planes plane;
+    Real3 normal = view_normals(texel, position, plane);
     Visibility v = visibility(texel, position, normal, plane);
     /* Where numbers fail, by a radius of 1e-9 of the distance for one, nothing is known to
      * occlude. */

@@ -38,7 +38,7 @@ reals horizon_cosines(Slice s, ivec2 texel, real jitter)
     return clamp(horizon, reals(-1.0), reals(1.0));
 }
 
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Real3 plane)
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
 {
     Real3 to_eye = eye_direction(texel), bent = Real3(real(0.0), real(0.0), real(0.0));
     Noise noise = texel_noise(texel, slice_count());

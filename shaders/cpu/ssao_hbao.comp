@@ -34,7 +34,7 @@ real occlusion(Slice s, ivec2 texel, real jitter)
     return first_side(occluded) + other_side(occluded);
 }
 
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Real3 plane)
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
 {
     Real3 to_eye = eye_direction(texel);
     Noise noise = texel_noise(texel, slice_count());

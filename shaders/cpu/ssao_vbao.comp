@@ -130,7 +130,7 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter, bool unrolled)
                   both_sides(march.eye_moment));
 }
 
-void add_slice(inout Visibility v, uint k, ivec2 texel, Real3 position, Real3 normal, Real3 plane,
+void add_slice(inout Visibility v, uint k, ivec2 texel, Real3 position, Real3 normal, Planes plane,
                Real3 to_eye, real turn, real jitter, bool unrolled)
 {
     float share = 1.0 / float(slice_count());
@@ -141,7 +141,7 @@ void add_slice(inout Visibility v, uint k, ivec2 texel, Real3 position, Real3 no
     v.bent = plus(v.bent, times(moment, -share * s.normal_length));
 }
 
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Real3 plane)
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
 {
     Real3 to_eye = eye_direction(texel);
     Noise noise = texel_noise(texel, slice_count());

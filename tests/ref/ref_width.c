@@ -65,7 +65,7 @@ static int run(const struct ref_scene *scene, int axis, int x, int y, int most)
 /* As few bits as view z has for it. */
 static double coded(double thickness)
 {
-    float value = (float)fmin(thickness, 1.0);
+    float value = (float)fmin(thickness, 2.0);
     int32_t bits;
     memcpy(&bits, &value, sizeof bits);
     bits = (bits - VKAO_THICKNESS_LEAST_BITS + (1 << (VKAO_THICKNESS_SHIFT - 1))) >>
