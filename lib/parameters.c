@@ -233,10 +233,10 @@ struct preset {
 };
 
 static const struct preset presets[] = {
-    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f, 1.0f},
-    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f, 1.0f},
-    [VKAO_QUALITY_HIGH] = {VK_FALSE, 1, 14, 3, 8.0f, 0.9f},
-    [VKAO_QUALITY_BEST] = {VK_FALSE, 4, 24, 1, 8.0f, 0.88f},
+    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 10, 3, 0.0f, 1.0f},
+    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 10, 3, 2.0f, 1.0f},
+    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 10, 2, 4.0f, 1.0f},
+    [VKAO_QUALITY_BEST] = {VK_FALSE, 4, 20, 1, 8.0f, 1.0f},
 };
 
 vkao_result vkao_preset(vkao_quality quality, vkao_effect_info *effect, vkao_params *params)

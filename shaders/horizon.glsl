@@ -55,7 +55,7 @@ Slice make_slice(float turn, vec3 position, vec3 normal, Plane plane, vec3 to_ey
     s.eye = params.inverse_radius * (ORTHOGRAPHIC ? 1.0 : -1.0 / to_eye.z);
     /* It is taken to lie as deep as its depth may be wrong: a wall must not occlude itself by the
      * steps of a format. */
-    s.origin = s.eye * position.z - 2.0 * params.inverse_radius * depth_error(position.z);
+    s.origin = s.eye * (position.z - 2.0 * depth_error(position.z));
     s.normal_length = sqrt(max(1.0 - off * off, 1.0e-12));
     s.cos_n = clamp(facing / s.normal_length, 0.0, 1.0);
     s.sin_n = dot(normal, s.outward) / s.normal_length;
@@ -97,6 +97,13 @@ void slice_points(Slice s, vec2 offset, vec2 z, out vec2 x, out vec2 y)
     vec2 dx = vec2(dot(s.to_x, offset)), dy = SIDES * dot(s.to_y, offset);
     x = ORTHOGRAPHIC ? dx : z * dx;
     y = s.origin + (ORTHOGRAPHIC ? dy - z * params.inverse_radius : z * (dy - s.eye));
+}
+
+/* Is anything seen there, and before the shaded point, outwards? Far off the axis the slice leans so
+ * much that a texel beside it lies behind. Without depth x is 0 in perspective. */
+bvec2 is_seen(vec2 x, vec2 z)
+{
+    return greaterThan(ORTHOGRAPHIC ? z : x, vec2(0.0));
 }
 
 #endif

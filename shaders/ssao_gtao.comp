@@ -27,7 +27,7 @@ vec2 horizon_cosines(Slice s, ivec2 texel, float jitter)
         vec2 offset = step_offset(s, steps, t, VKAO_STEP_LEAST), z = load_sides(texel, offset), x, y;
         slice_points(s, offset, z, x, y);
         vec2 d2 = x * x + y * y;
-        vec2 weight = mix(vec2(0.0), falloff_weight(d2), greaterThan(z, vec2(0.0)));
+        vec2 weight = mix(vec2(0.0), falloff_weight(d2), is_seen(x, z));
         vec2 cosine = low + weight * (y * inversesqrt(d2) - low - params.bias_cosine);
         /* What is no number must not stay: a comparison with it is false. */
         horizon = mix(horizon, cosine, greaterThan(cosine, horizon));

@@ -26,7 +26,7 @@ float occlusion(Slice s, ivec2 texel, float jitter)
         vec2 offset = step_offset(s, steps, t, VKAO_STEP_LEAST), z = load_sides(texel, offset), x, y;
         slice_points(s, offset, z, x, y);
         vec2 d2 = x * x + y * y;
-        vec2 weight = mix(vec2(0.0), falloff_weight(d2), greaterThan(z, vec2(0.0)));
+        vec2 weight = mix(vec2(0.0), falloff_weight(d2), is_seen(x, z));
         vec2 elevation = (along * x + s.normal_length * s.cos_n * y) * inversesqrt(d2);
         vec2 higher = mix(sine, max(sine, elevation), greaterThan(weight, vec2(0.0)));
         occluded += weight * (higher - sine);

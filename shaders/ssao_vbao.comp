@@ -53,6 +53,7 @@ void hide(inout March march, Slice s, Masks m, float center_z, vec2 offset, vec2
     bvec2 seen = greaterThan(z, vec2(0.0));
     vec2 x, y;
     slice_points(s, offset, mix(vec2(center_z), z, seen), x, y);
+    seen = bvec2(seen.x && x.x > 0.0, seen.y && x.y > 0.0); /* see is_seen */
     vec2 gap = x - march.last_x, height = mix(vec2(0.0), y + x * (SIDES * s.fall), seen);
     bvec2 joined = lessThan(abs(height - march.last_height), VKAO_VBAO_JOIN * abs(gap));
     vec2 inner_x = x - VKAO_VBAO_GAP_FRONT * gap;

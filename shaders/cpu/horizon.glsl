@@ -62,7 +62,7 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Planes plane, Real3 to
     s.eye = params.inverse_radius * (ORTHOGRAPHIC ? real(1.0) : -1.0 / to_eye.z);
     /* It is taken to lie as deep as its depth may be wrong: a wall must not occlude itself by the
      * steps of a format. */
-    s.origin = s.eye * position.z - (2.0 * params.inverse_radius) * depth_error(position.z);
+    s.origin = s.eye * (position.z - 2.0 * depth_error(position.z));
     real length2 = max(1.0 - off * off, real(1.0e-12)), inverse = inversesqrt(length2);
     s.normal_length = length2 * inverse;
     s.cos_n = clamp(facing * inverse, real(0.0), real(1.0));
@@ -116,6 +116,13 @@ void slice_points(Slice s, Offset offset, reals z, out reals x, out reals y)
     x = ORTHOGRAPHIC ? dx : z * dx;
     y = ORTHOGRAPHIC ? both(s.origin) + dy - z * params.inverse_radius
                      : both(s.origin) + z * (dy - both(s.eye));
+}
+
+/* Is anything seen there, and before the shaded point, outwards? Far off the axis the slice leans so
+ * much that a texel beside it lies behind. Without depth x is 0 in perspective. */
+bools is_seen(reals x, reals z)
+{
+    return greaterThan(ORTHOGRAPHIC ? z : x, reals(0.0));
 }
 
 #endif

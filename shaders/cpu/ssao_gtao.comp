@@ -29,7 +29,7 @@ reals horizon_cosines(Slice s, ivec2 texel, real jitter)
             next_z = load_sides(texel, next);
         slice_points(s, offset, z, x, y);
         reals d2 = x * x + y * y;
-        reals weight = mix(reals(0.0), falloff_weight(d2), greaterThan(z, reals(0.0)));
+        reals weight = mix(reals(0.0), falloff_weight(d2), is_seen(x, z));
         /* In this order, as what is no number must not stay: greater() then gives the second. */
         horizon = greater(low + weight * (y * inversesqrt(d2) - open), horizon);
         if (++t >= step_count())

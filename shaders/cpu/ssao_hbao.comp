@@ -23,7 +23,7 @@ real occlusion(Slice s, ivec2 texel, real jitter)
         reals z = load_sides(texel, offset), x, y;
         slice_points(s, offset, z, x, y);
         reals d2 = x * x + y * y;
-        reals weight = mix(reals(0.0), falloff_weight(d2), greaterThan(z, reals(0.0)));
+        reals weight = mix(reals(0.0), falloff_weight(d2), is_seen(x, z));
         reals elevation = (along * x + facing * y) * inversesqrt(d2);
         reals higher = mix(sine, max(sine, elevation), greaterThan(weight, reals(0.0)));
         occluded += weight * (higher - sine);

@@ -49,6 +49,8 @@ void hide(inout March march, Slice s, Masks m, reals fall, Offset offset, reals 
     bools seen = greaterThan(z, reals(0.0));
     reals x, y;
     slice_points(s, offset, mix(both(s.center_z), z, seen), x, y);
+    if (!ORTHOGRAPHIC) /* see is_seen */
+        seen = bools(ivec4(seen) * ivec4(greaterThan(x, reals(0.0))));
     reals gap = x - march.last_x, height = mix(reals(0.0), y + x * fall, seen);
     bools joined = lessThan(abs(height - march.last_height), VKAO_VBAO_JOIN * abs(gap));
     reals inner_x = x - VKAO_VBAO_GAP_FRONT * gap;

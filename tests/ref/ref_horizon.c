@@ -39,6 +39,20 @@ void ref_slice_turn(struct ref_slice *slice, double angle)
     slice->fall = ref_dot(slice->plane, o) / fmax(ref_dot(slice->plane, v), VKAO_STEEPEST);
 }
 
+/* Depth that goes on in a straight line in rows and columns has a plane. */
+static bool is_straight(const struct ref_scene *scene, int x, int y)
+{
+    double z = ref_scene_z(scene, x, y);
+    for (int axis = 0; axis < 2; ++axis) {
+        int dx = axis == 0, dy = axis == 1;
+        double before = ref_scene_z(scene, x - dx, y - dy);
+        double after = ref_scene_z(scene, x + dx, y + dy);
+        if (!(fabs(before + after - 2.0 * z) <= VKAO_PLANE_BEND * fabs(after - before) + 4e-6 * z))
+            return false;
+    }
+    return true;
+}
+
 void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
                     const struct ao_ssao *params, int x, int y, const double p[3],
                     const double n[3], uint32_t k)
@@ -49,10 +63,13 @@ void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
     memcpy(slice->plane, &scene->planes[((size_t)y * scene->width + (size_t)x) * 3],
            sizeof slice->plane);
     ref_view_eye(&scene->view, p, slice->to_eye);
+    bool holds = is_straight(scene, x, y) || ref_dot(slice->plane, n) > VKAO_PLANE_AGREES;
+    slice->steepest = holds ? VKAO_STEEPEST : VKAO_PLANE_STEEPEST;
     double error = ref_view_depth_error(&scene->view, p[2]);
     if (params->method == VKAO_SSAO_VBAO)
         error += VKAO_THICKNESS_DEPTH_ERROR * p[2];
-    slice->guard = 2.0 * error; /* both ends of v */
+    /* Of both ends of v, along the directions in which they are seen. */
+    slice->guard = 2.0 * error / fabs(slice->to_eye[2]);
     slice->noise = ref_noise(x, y, params->slice_count, params->noise_index);
     ref_slice_turn(slice, pi * (k + slice->noise.turn) / params->slice_count);
 }
@@ -93,15 +110,14 @@ bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, dou
     sample->y = at[1];
     /* Into the slice along the depth image's plane: the height over that plane stays what it is. */
     double off = ref_dot(sample->v, s->across);
-    double steepest =
-        ref_dot(s->plane, s->n) > VKAO_PLANE_AGREES ? VKAO_STEEPEST : VKAO_PLANE_STEEPEST;
-    double facing = fmax(ref_dot(s->plane, s->to_eye), steepest);
+    double facing = fmax(ref_dot(s->plane, s->to_eye), s->steepest);
     sample->out = side * ref_dot(sample->v, s->outward);
     /* The depth may be off by a step of its format. */
     sample->up =
         ref_dot(sample->v, s->to_eye) + off * ref_dot(s->plane, s->across) / facing - s->guard;
     sample->distance = hypot(sample->out, sample->up);
-    return known;
+    /* Far off the axis a texel beside the slice may lie behind the shaded point. */
+    return known && sample->out > 0.0;
 }
 
 double ref_thickness_scale(const struct ao_ssao *params)
