@@ -99,7 +99,7 @@ static const vkao_parameter parameters[] = {
     {FREE(noise_index, UINT, ""), .help = "which noise pattern; 0: the static one",
      .most = UINT32_MAX, .stages = VKAO_STAGE_SSAO},
     {FREE(radius, FLOAT, "scene units"), .help = "how far occluders reach", .above_least = VK_TRUE,
-     .most = FLT_MAX, .standard = 0.5, .stages = VKAO_STAGE_SSAO},
+     .most = FLT_MAX, .standard = 0.5, .stages = VKAO_STAGE_PREPARE | VKAO_STAGE_SSAO},
     {FREE(bias, FLOAT, "radii"),
      .help = "how far the scene must stand in front to block", .most = 1,
      .standard = 0.005, .stages = VKAO_STAGE_SSAO},
