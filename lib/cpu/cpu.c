@@ -7,13 +7,14 @@
 #include "cpu/layout.h"
 
 #include "vkao_blur_cpu.h"
-#include "vkao_breaks_cpu.h"
-#include "vkao_width_cpu.h"
 #include "vkao_blur_last_cpu.h"
 #include "vkao_debug_cpu.h"
 #include "vkao_packed_blur_x_cpu.h"
 #include "vkao_packed_blur_y_cpu.h"
+#include "vkao_packed_breaks_x_cpu.h"
+#include "vkao_packed_breaks_y_cpu.h"
 #include "vkao_packed_prepare_cpu.h"
+#include "vkao_packed_width_cpu.h"
 #include "vkao_packed_ssao_gtao_16bit_cpu.h"
 #include "vkao_packed_ssao_gtao_cpu.h"
 #include "vkao_packed_ssao_hbao_16bit_cpu.h"
@@ -219,27 +220,27 @@ static const struct vkao_pass prepare = {
     .record = record_prepare,
 };
 
-#define BREAKS(part, width, height, is_vertical)                                                   \
+#define BREAKS(axis, part, width, height)                                                          \
     {                                                                                              \
-        .name = "vkao breaks", .label = "prepare", .stage = VKAO_STAGE_PREPARE,                    \
-        VKAO_CODE(vkao_breaks_cpu), .uses = {READS_Z, WRITES_WORDS(BREAKS_WORDS, part)},           \
-        .area = VKAO_AREA_VALID, .texels = {width, height}, GROUP, .vertical = is_vertical,        \
-        .forms = 1,                                                                                \
+        .name = "vkao breaks " #axis, .label = "prepare", .stage = VKAO_STAGE_PREPARE,             \
+        VKAO_CODE(vkao_packed_breaks_##axis##_cpu),                                                \
+        .uses = {READS_Z4, WRITES_WORDS(BREAKS_WORDS, part)}, .texels = {width, height}, GROUP,    \
+        .forms = 1, .record = record_prepare,                                                      \
     }
-static const struct vkao_pass breaks_x = BREAKS(BREAKS_X, 32, 1, false),
-                              breaks_y = BREAKS(BREAKS_Y, 1, 32, true);
+static const struct vkao_pass breaks_x = BREAKS(x, BREAKS_X, 32, 1),
+                              breaks_y = BREAKS(y, BREAKS_Y, VKAO_PREPARE_WIDTH, 32);
 
 static const struct vkao_pass width = {
     .name = "vkao width",
     .label = "prepare",
     .stage = VKAO_STAGE_PREPARE,
-    VKAO_CODE(vkao_width_cpu),
+    VKAO_CODE(vkao_packed_width_cpu),
     .uses = {READS_TEXELS(BREAKS_X_READ, BREAKS_X, R32_UINT),
-             READS_TEXELS(BREAKS_Y_READ, BREAKS_Y, R32_UINT), WRITES_WORDS(Z_WORDS, Z)},
-    .area = VKAO_AREA_VALID,
-    .texels = {1, 1},
+             READS_TEXELS(BREAKS_Y_READ4, BREAKS_Y, R32G32B32A32_UINT), WRITES_WORDS(Z_WORDS, Z)},
+    .texels = {VKAO_PREPARE_WIDTH, 1},
     GROUP,
     .forms = 1,
+    .record = record_prepare,
 };
 
 static const struct vkao_pass tiles = {
