@@ -19,20 +19,28 @@ real break_between(real before, real z, real next, real behind)
     return max(abs(next - z) - (VKAO_VBAO_BREAK_RISE * beside + least), next - 0.5 * NOTHING);
 }
 
-/* How far a surface is followed to each side, in texels of a row and of a column. */
-ivec2 width_reach()
+/* How far a surface is followed to each side, in a row and in a column: in steps of texels, of which
+ * a word of breaks has 32. In large images a step is several texels, 1 << shift. */
+struct Reach {
+    ivec2 shift, steps;
+};
+
+Reach width_reach()
 {
-    return ivec2(max(vec2(1.0), params.width_reach * abs(params.inverse_unproject) + 0.5));
+    ivec2 texels = ivec2(max(vec2(1.0), params.width_reach * abs(params.inverse_unproject) + 0.5));
+    ivec2 shift = findMSB((texels - 1) >> 5) + 1;
+    return Reach(shift, texels >> shift);
 }
 
-/* View z with the thickness in its last bits. along_x, along_y: texels of the surface to both sides
- * in the row and in the column; where all reach most, it goes on. */
-real with_thickness(real z, whole along_x, whole along_y, ivec2 most)
+/* View z with the thickness in its last bits. along_x, along_y: steps of the surface to both sides
+ * in the row and in the column; where they end nowhere, it goes on. */
+real with_thickness(real z, whole along_x, whole along_y, Reach reach)
 {
     vec2 texel = params.inverse_radius * abs(params.unproject.xy);
-    real width = min(texel.x * (real(along_x) + 1.0), texel.y * (real(along_y) + 1.0));
+    real width = min(texel.x * (real(along_x << reach.shift.x) + 1.0),
+                     texel.y * (real(along_y << reach.shift.y) + 1.0));
     width *= VKAO_VBAO_THICKNESS_WIDTH * (ORTHOGRAPHIC ? real(1.0) : z);
-    real left = real(2 * most.x - along_x) + real(2 * most.y - along_y);
+    real left = real(2 * (reach.steps.x + reach.steps.y) - along_x - along_y);
     real thickness =
         min(width + NOTHING * max(real(0.0), 1.0 - left), real(VKAO_VBAO_THICKNESS_WIDE));
     whole code = floatBitsToInt(thickness) - VKAO_THICKNESS_LEAST_BITS;

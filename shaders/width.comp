@@ -28,62 +28,41 @@ void store_prepared_z(ivec2 texel, float z)
     imageStore(view_z_image, texel + VKAO_VIEW_Z_BORDER, vec4(z));
 }
 
-/* Words of a row, or column; beyond the image nothing breaks. */
-uint breaks_at(bool vertical, ivec2 texel, ivec2 size, int word)
+/* Words of a row, or column; beyond the image nothing breaks. texel is counted from the first
+ * column of words. */
+uint breaks_at(bool vertical, ivec2 texel, int word, int words)
 {
-    int words = ((vertical ? size.y : size.x) + 31) >> 5;
     if (word < 0 || word >= words)
         return 0u;
     return vertical ? texelFetch(breaks_y_image, ivec2(texel.x, word), 0).x
                     : texelFetch(breaks_x_image, ivec2(word, texel.y), 0).x;
 }
 
-/* Texels that follow before the first break, at most so many. */
-int run_ahead(bool vertical, ivec2 texel, ivec2 size, int most)
+/* Steps of the surface to both sides, at most so many to each. */
+int run_of(bool vertical, ivec2 texel, ivec2 size, int shift, int most)
 {
-    int at = vertical ? texel.y : texel.x, shift = at & 31, word = at >> 5, run = 0;
-    uint here = breaks_at(vertical, texel, size, word);
-    for (;;) {
-        uint next = breaks_at(vertical, texel, size, ++word);
-        uint bits = here >> shift | next << 1 << (31 - shift);
-        run += bits != 0u ? findLSB(bits) : 32;
-        if (bits != 0u || run >= most)
-            return min(run, most);
-        here = next;
-    }
-}
-
-/* And those before, back to the last break. */
-int run_back(bool vertical, ivec2 texel, ivec2 size, int most)
-{
-    int at = vertical ? texel.y : texel.x, shift = at & 31, word = at >> 5, run = 0;
-    uint here = breaks_at(vertical, texel, size, word);
-    for (;;) {
-        uint before = breaks_at(vertical, texel, size, --word);
-        uint bits = here << (31 - shift) << 1 | before >> shift;
-        run += bits != 0u ? 31 - findMSB(bits) : 32;
-        if (bits != 0u || run >= most)
-            return min(run, most);
-        here = before;
-    }
-}
-
-/* Texels of the surface to both sides. */
-int run_of(bool vertical, ivec2 texel, ivec2 size, int most)
-{
-    return run_ahead(vertical, texel, size, most) + run_back(vertical, texel, size, most);
+    int at = (vertical ? texel.y : texel.x) >> shift, k = at & 31, word = at >> 5;
+    int words = (((vertical ? size.y : size.x) - 1) >> (5 + shift)) + 1;
+    uint here = breaks_at(vertical, texel, word, words);
+    uint ahead = here >> k | breaks_at(vertical, texel, word + 1, words) << 1 << (31 - k);
+    uint behind = here << (31 - k) << 1 | breaks_at(vertical, texel, word - 1, words) >> k;
+    return min(ahead != 0u ? findLSB(ahead) : 32, most) +
+           min(behind != 0u ? 31 - findMSB(behind) : 32, most);
 }
 
 void main()
 {
-    ivec2 low = ivec2(params.valid.x & 0xffffu, params.valid.x >> 16);
-    ivec2 size = ivec2(params.valid.y & 0xffffu, params.valid.y >> 16) - low;
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy), most = width_reach();
-    if (any(greaterThanEqual(texel, size)))
+    ivec2 low = ivec2(params.valid.x & 0xffffu, params.valid.x >> 16), first = low & ivec2(~3, ~0);
+    ivec2 size = ivec2(params.valid.y & 0xffffu, params.valid.y >> 16) - first;
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(texel, size)) || first.x + texel.x < low.x)
         return;
-    float z = load_prepared_z(low + texel);
+    float z = load_prepared_z(first + texel);
+    Reach reach = width_reach();
     if (z > 0.0)
-        store_prepared_z(low + texel,
-                         with_thickness(z, run_of(false, texel, size, most.x),
-                                        run_of(true, texel, size, most.y), most));
+        store_prepared_z(first + texel,
+                         with_thickness(z,
+                                        run_of(false, texel, size, reach.shift.x, reach.steps.x),
+                                        run_of(true, texel, size, reach.shift.y, reach.steps.y),
+                                        reach));
 }

@@ -3,7 +3,6 @@
  * ../breaks.comp along rows: a word, 4 texels at once. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "layout.h"
 
@@ -30,25 +29,28 @@ void main()
     ivec2 high = ivec2(params.valid.y & 0xffffu, params.valid.y >> 16);
     ivec2 first = ivec2(round_down(low.x, VKAO_PREPARE_WIDTH), low.y), size = high - first;
     ivec2 word = ivec2(gl_GlobalInvocationID.xy);
-    if (32 * word.x >= size.x || word.y >= size.y)
+    int shift = width_reach().shift.x, begin = (32 << shift) * word.x, left = size.x - begin;
+    if (left <= 0 || word.y >= size.y)
         return;
-    /* What lies in the padding, on both sides, is 0. */
-    int at = (z_row(first.y + word.y) + first.x + 32 * word.x) >> 2;
+    /* Of the padding, which is 0 on both sides, and of vectors. */
+    int at = (z_row(first.y + word.y) + first.x + begin) >> 2, most = (left >> 2) + 1;
+    /* Between the first valid texel and what is left of it nothing breaks, nor behind the last. */
+    ivec4 texel = ivec4(0, 1, 2, 3);
+    int valid = low.x - first.x - begin;
     vec4 before = depths_at(at - 1), z = depths_at(at), next = depths_at(at + 1);
-    uint bits = 0u;
-    [[unroll]] for (int i = 0; i < 8; ++i) {
-        vec4 behind = i < 7 ? depths_at(at + min(i + 2, ((size.x - 32 * word.x) >> 2) + 1)) : vec4(0.0);
+    uvec4 bits = uvec4(0u);
+    int count = min(8 << shift, (left + 3) >> 2);
+    for (int i = 0; i < count; ++i) {
+        vec4 behind = depths_at(at + min(i + 2, most));
         vec4 excess = break_between(vec4(before.w, z.xyz), z, vec4(z.yzw, next.x),
                                     vec4(z.zw, next.xy));
-        uvec4 found = mix(uvec4(0u), uvec4(1u, 2u, 4u, 8u), greaterThan(excess, vec4(0.0)));
-        bits |= (found.x | found.y | found.z | found.w) << 4 * i;
+        excess = mix(vec4(0.0), excess, greaterThanEqual(texel, ivec4(valid)));
+        excess = mix(vec4(0.0), excess, lessThan(texel, ivec4(left - 1)));
+        bits |= mix(uvec4(0u), uvec4(1u) << uvec4(texel >> shift), greaterThan(excess, vec4(0.0)));
+        texel += 4;
         before = z;
         z = next;
         next = behind;
     }
-    /* Between the first texel and what is left of it nothing breaks, nor behind the last. */
-    int begin = max(low.x - first.x - 32 * word.x, 0), end = size.x - 1 - 32 * word.x;
-    bits &= 0xffffffffu << begin;
-    bits &= end < 32 ? (1u << end) - 1u : 0xffffffffu;
-    breaks[word.y * VKAO_BREAKS_STRIDE + word.x] = bits;
+    breaks[word.y * VKAO_BREAKS_STRIDE + word.x] = bits.x | bits.y | bits.z | bits.w;
 }

@@ -28,22 +28,23 @@ void main()
     ivec2 low = ivec2(params.valid.x & 0xffffu, params.valid.x >> 16);
     ivec2 high = ivec2(params.valid.y & 0xffffu, params.valid.y >> 16);
     ivec2 first = ivec2(round_down(low.x, VKAO_PREPARE_WIDTH), low.y), size = high - first;
-    ivec2 word = ivec2(gl_GlobalInvocationID.xy), texel = word * ivec2(VKAO_PREPARE_WIDTH, 32);
+    ivec2 word = ivec2(gl_GlobalInvocationID.xy);
+    int shift = width_reach().shift.y;
+    ivec2 texel = word * ivec2(VKAO_PREPARE_WIDTH, 32 << shift);
     if (any(greaterThanEqual(texel, size)))
         return;
-    /* Rows of zeros lie above and below. */
+    /* Rows of zeros lie above and below. Behind the last valid texel nothing breaks. */
     int at = (z_row(first.y + texel.y) + first.x + texel.x) >> 2, row = VKAO_STRIDE >> 2;
-    int left = size.y - texel.y;
+    int left = size.y - texel.y, count = min(32 << shift, left - 1);
     vec4 before = depths_at(at - row), z = depths_at(at), next = depths_at(at + row);
     uvec4 bits = uvec4(0u);
-    for (int i = 0; i < 32; ++i) {
+    for (int i = 0; i < count; ++i) {
         vec4 behind = depths_at(at + min(i + 2, left) * row);
         vec4 excess = break_between(before, z, next, behind);
-        bits |= mix(uvec4(0u), uvec4(1u << i), greaterThan(excess, vec4(0.0)));
+        bits |= mix(uvec4(0u), uvec4(1u << (i >> shift)), greaterThan(excess, vec4(0.0)));
         before = z;
         z = next;
         next = behind;
     }
-    bits &= left - 1 < 32 ? (1u << (left - 1)) - 1u : 0xffffffffu;
     breaks[(word.y * VKAO_STRIDE + texel.x) >> 2] = bits;
 }

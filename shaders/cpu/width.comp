@@ -13,20 +13,25 @@ layout(push_constant) uniform Block { vkao_dispatch here; };
 
 layout(binding = VKAO_BINDING_BREAKS_X_READ, r32ui) uniform readonly uimageBuffer breaks_x;
 layout(binding = VKAO_BINDING_BREAKS_Y_READ4, rgba32ui) uniform readonly uimageBuffer breaks_y;
-layout(binding = VKAO_BINDING_Z_WORDS) buffer ViewZ { vec4 view_z[]; };
+layout(binding = VKAO_BINDING_Z4, rgba32f) uniform readonly imageBuffer view_z4;
+layout(binding = VKAO_BINDING_Z_WORDS) writeonly buffer ViewZ { vec4 view_z[]; };
 #define real vec4
 #define whole ivec4
 #include "thickness.glsl"
 
-/* Words of breaks of the texels; beyond the image nothing breaks. texel and size are counted from
- * the first column that breaks_x has. */
-uvec4 breaks_at(bool vertical, ivec2 texel, ivec2 size, int word)
+/* Texels of a row, and where their words are: of one axis. */
+struct Line {
+    bool vertical;
+    int base, step; /* of word 0, and to the next */
+    int words;
+};
+
+/* Beyond the image nothing breaks. */
+uvec4 breaks_at(Line line, int word)
 {
-    int words = ((vertical ? size.y : size.x) + 31) >> 5;
-    if (word < 0 || word >= words)
-        return uvec4(0u);
-    return vertical ? imageLoad(breaks_y, (word * VKAO_STRIDE + texel.x) >> 2)
-                    : imageLoad(breaks_x, texel.y * VKAO_BREAKS_STRIDE + word).xxxx;
+    int inside = clamp(word, 0, line.words - 1), at = line.base + inside * line.step;
+    uvec4 bits = line.vertical ? imageLoad(breaks_y, at) : imageLoad(breaks_x, at).xxxx;
+    return inside == word ? bits : uvec4(0u);
 }
 
 /* Of the highest bit, where no two neighbours are set: what findMSB takes a dozen instructions
@@ -36,38 +41,29 @@ ivec4 position_of(uvec4 bits)
     return (floatBitsToInt(vec4(ivec4(bits))) >> 23 & 255) - 127;
 }
 
-/* Texels before the first break ahead or behind, at most so many. */
-ivec4 run_along(bool vertical, bool back, ivec2 texel, ivec2 size, int most)
+/* Steps before the first break in 32 ahead, and behind. */
+ivec4 free_ahead(uvec4 bits)
 {
-    ivec4 at = vertical ? ivec4(texel.y) : texel.x + ivec4(0, 1, 2, 3), run = ivec4(0);
-    uvec4 shift = uvec4(at & 31), ends = uvec4(0u);
-    int word = at.x >> 5;
-    uvec4 nearer = breaks_at(vertical, texel, size, word);
-    for (;;) {
-        word += back ? -1 : 1;
-        uvec4 farther = breaks_at(vertical, texel, size, word), bits;
-        ivec4 free;
-        if (back) {
-            bits = nearer << (31u - shift) << 1u | farther >> shift;
-            uvec4 high = bits >> 1u;
-            free = 30 - position_of(high & ~(high >> 1u));
-            free = mix(free, 31 + ivec4(~bits & 1u), equal(high, uvec4(0u)));
-        } else {
-            bits = nearer >> shift | farther << 1u << (31u - shift);
-            free = mix(position_of(bits & (~bits + 1u)), ivec4(32), equal(bits, uvec4(0u)));
-        }
-        run += mix(free, ivec4(0), notEqual(ends, uvec4(0u)));
-        ends |= bits;
-        if (all(bvec4(ivec4(notEqual(ends, uvec4(0u))) | ivec4(greaterThanEqual(run, ivec4(most))))))
-            return min(run, ivec4(most));
-        nearer = farther;
-    }
+    return mix(position_of(bits & (~bits + 1u)), ivec4(32), equal(bits, uvec4(0u)));
 }
 
-ivec4 run_of(bool vertical, ivec2 texel, ivec2 size, int most)
+ivec4 free_behind(uvec4 bits)
 {
-    return run_along(vertical, false, texel, size, most) +
-           run_along(vertical, true, texel, size, most);
+    uvec4 high = bits >> 1u;
+    return mix(30 - position_of(high & ~(high >> 1u)), 31 + ivec4(~bits & 1u),
+               equal(high, uvec4(0u)));
+}
+
+/* Steps of the surface to both sides, at most so many to each. at: of the texels, along the line;
+ * they lie in one word. */
+ivec4 run_of(Line line, ivec4 at, int most)
+{
+    uvec4 shift = uvec4(at & 31);
+    int word = at.x >> 5;
+    uvec4 here = breaks_at(line, word);
+    uvec4 ahead = here >> shift | breaks_at(line, word + 1) << 1u << (31u - shift);
+    uvec4 behind = here << (31u - shift) << 1u | breaks_at(line, word - 1) >> shift;
+    return min(free_ahead(ahead), ivec4(most)) + min(free_behind(behind), ivec4(most));
 }
 
 void main()
@@ -79,8 +75,13 @@ void main()
     if (any(greaterThanEqual(texel, size)))
         return;
     int at = (z_row(first.y + texel.y) + first.x + texel.x) >> 2;
-    vec4 z = view_z[at];
-    ivec2 most = width_reach();
-    ivec4 along_x = run_of(false, texel, size, most.x), along_y = run_of(true, texel, size, most.y);
-    view_z[at] = with_thickness(z, along_x, along_y, most);
+    vec4 z = imageLoad(view_z4, at);
+    Reach reach = width_reach();
+    ivec2 words = ((size - 1) >> (5 + reach.shift)) + 1;
+    Line row = Line(false, texel.y * VKAO_BREAKS_STRIDE, 1, words.x);
+    Line column = Line(true, texel.x >> 2, VKAO_STRIDE >> 2, words.y);
+    ivec4 along_x =
+        run_of(row, (texel.x + ivec4(0, 1, 2, 3)) >> reach.shift.x, reach.steps.x);
+    ivec4 along_y = run_of(column, ivec4(texel.y >> reach.shift.y), reach.steps.y);
+    view_z[at] = with_thickness(z, along_x, along_y, reach);
 }
