@@ -227,16 +227,13 @@ struct preset {
     /* Normals keep the blur off edges that depth does not show, thin slats in front of a wall; on a
      * CPU they cost as much as the rest of the blur. */
     float normal_power;
-    /* Few steps miss some of the scene, for which thickness makes up a little; more steps need less
-     * of it. */
-    float thickness;
 };
 
 static const struct preset presets[] = {
-    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 10, 3, 0.0f, 1.0f},
-    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 10, 3, 2.0f, 1.0f},
-    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 10, 2, 4.0f, 1.0f},
-    [VKAO_QUALITY_BEST] = {VK_FALSE, 4, 20, 1, 8.0f, 1.0f},
+    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 9, 3, 0.0f},
+    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f},
+    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 2, 4.0f},
+    [VKAO_QUALITY_BEST] = {VK_FALSE, 4, 18, 1, 8.0f},
 };
 
 vkao_result vkao_preset(vkao_quality quality, vkao_effect_info *effect, vkao_params *params)
@@ -255,7 +252,7 @@ vkao_result vkao_preset(vkao_quality quality, vkao_effect_info *effect, vkao_par
     if (params) {
         const vkao_params standard = vkao_params_default();
         params->bias = standard.bias;
-        params->thickness = p->thickness;
+        params->thickness = standard.thickness;
         params->sharpness = standard.sharpness;
     }
     return VKAO_SUCCESS;
