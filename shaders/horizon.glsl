@@ -99,8 +99,8 @@ void slice_points(Slice s, vec2 offset, vec2 z, out vec2 x, out vec2 y)
     y = s.origin + (ORTHOGRAPHIC ? dy - z * params.inverse_radius : z * (dy - s.eye));
 }
 
-/* Is anything seen there, and before the shaded point, outwards? Far off the axis the slice leans so
- * much that a texel beside it lies behind. Without depth x is 0 in perspective. */
+/* Is anything seen there, and before the shaded point, outwards? Far off the axis the slice leans
+ * so much that a texel beside it lies behind. Without depth x is 0 in perspective. */
 bvec2 is_seen(vec2 x, vec2 z)
 {
     return greaterThan(ORTHOGRAPHIC ? z : x, vec2(0.0));

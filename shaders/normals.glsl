@@ -94,8 +94,8 @@ struct Plane {
     float steepest;
 };
 
-/* Things a texel wide have no plane in the depth image: there it is steep only if the shading normal
- * agrees. */
+/* Things a texel wide have no plane in the depth image: there it is steep only if the shading
+ * normal agrees. */
 float steepest_plane(vec3 plane, vec3 normal, bool straight)
 {
     bool holds = straight || dot(plane, normal) > VKAO_PLANE_AGREES;

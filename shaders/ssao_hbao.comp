@@ -23,7 +23,8 @@ float occlusion(Slice s, ivec2 texel, float jitter)
     vec2 along = SIDES * (s.normal_length * s.sin_n);
     uint t = 0u;
     [[unroll]] for (;;) {
-        vec2 offset = step_offset(s, steps, t, VKAO_STEP_LEAST), z = load_sides(texel, offset), x, y;
+        vec2 offset = step_offset(s, steps, t, VKAO_STEP_LEAST), z = load_sides(texel, offset), x,
+             y;
         slice_points(s, offset, z, x, y);
         vec2 d2 = x * x + y * y;
         vec2 weight = mix(vec2(0.0), falloff_weight(d2), is_seen(x, z));

@@ -94,7 +94,8 @@ vec3 hidden(Slice s, ivec2 texel, float center_z, float jitter)
                                  (THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH),
                              VKAO_VBAO_STEP_LINEAR);
     const vec2 none = vec2(0.0);
-    March march = March(ivec2(0), none, none, vec2(-2.0), vec2(VKAO_VBAO_ROUND_LESS), none, none, none);
+    March march =
+        March(ivec2(0), none, none, vec2(-2.0), vec2(VKAO_VBAO_ROUND_LESS), none, none, none);
     uint t = 0u;
     [[unroll]] for (;;) {
         vec2 offset = step_offset(s, steps, t, VKAO_VBAO_STEP_LEAST);

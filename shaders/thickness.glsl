@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * Thickness from the width of a surface, and where that ends. Lengths are fractions of the radius or
- * of the view, so that the same scene at another resolution has the same. */
+ * Thickness from the width of a surface, and where that ends. Lengths are fractions of the radius
+ * or of the view, so that the same scene at another resolution has the same. */
 #ifndef VKAO_THICKNESS_GLSL_
 #define VKAO_THICKNESS_GLSL_
 
@@ -10,8 +10,8 @@
 /* Of background, and of what lies outside: no smaller change is beside that. */
 const float NOTHING = 1.0e30;
 
-/* Above 0 where depth breaks between z and the next of four texels in a row: where it changes by far
- * more than by the smaller change beside, which a plane at any tilt does not. */
+/* Above 0 where depth breaks between z and the next of four texels in a row: where it changes by
+ * far more than by the smaller change beside, which a plane at any tilt does not. */
 real break_between(real before, real z, real next, real behind)
 {
     real beside = min(abs(z - before), abs(behind - next));
@@ -19,8 +19,8 @@ real break_between(real before, real z, real next, real behind)
     return max(abs(next - z) - (VKAO_VBAO_BREAK_RISE * beside + least), next - 0.5 * NOTHING);
 }
 
-/* How far a surface is followed to each side, in a row and in a column: in steps of texels, of which
- * a word of breaks has 32. In large images a step is several texels, 1 << shift. */
+/* How far a surface is followed to each side, in a row and in a column: in steps of texels, of
+ * which a word of breaks has 32. In large images a step is several texels, 1 << shift. */
 struct Reach {
     ivec2 shift, steps;
 };

@@ -554,10 +554,9 @@ VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_record(const vkao_frame *frame, Vk
                                                      const vkao_params *params);
 
 /* Record the named stages alone, which the effect must have; VKAO_STAGE_PREPARE is one of them
- * here. It reads depth over view->valid, for VBAO the radius as well, and writes the frame's scratch,
- * and comes first each time.
- * Stages share scratch memory: record them in order, each once, over the same rect; to split a
- * frame into rects, record all stages of one before the next. */
+ * here. It reads depth over view->valid, for VBAO the radius as well, and writes the frame's
+ * scratch, and comes first each time. Stages share scratch memory: record them in order, each once,
+ * over the same rect; to split a frame into rects, record all stages of one before the next. */
 VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_stage(const vkao_frame *frame, VkCommandBuffer cmd,
                                                     vkao_stage_flags stages, const vkao_view *view,
                                                     const vkao_params *params);

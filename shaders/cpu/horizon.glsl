@@ -118,8 +118,8 @@ void slice_points(Slice s, Offset offset, reals z, out reals x, out reals y)
                      : both(s.origin) + z * (dy - both(s.eye));
 }
 
-/* Is anything seen there, and before the shaded point, outwards? Far off the axis the slice leans so
- * much that a texel beside it lies behind. Without depth x is 0 in perspective. */
+/* Is anything seen there, and before the shaded point, outwards? Far off the axis the slice leans
+ * so much that a texel beside it lies behind. Without depth x is 0 in perspective. */
 bools is_seen(reals x, reals z)
 {
     return greaterThan(ORTHOGRAPHIC ? z : x, reals(0.0));

@@ -39,7 +39,7 @@
 #define VKAO_BINDING_STAGED_WORDS 42
 #define VKAO_BINDING_TILES 43 /* vkao_tiles_head, tiles */
 #define VKAO_BINDING_BREAKS_WORDS 44
-#define VKAO_BINDING_BREAKS_X_READ 45 /* r32ui */
+#define VKAO_BINDING_BREAKS_X_READ 45  /* r32ui */
 #define VKAO_BINDING_BREAKS_Y_READ4 46 /* rgba32ui: of 4 columns */
 
 /* VKAO_SETTING_PATH: noisy AO goes through the buffer, else through an image; and the format of

@@ -2,9 +2,10 @@
  *
  * ../ssao.glsl for two texels side by side. The includer defines
  *     Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
- * for them, texel being the first; plane is that of the depth image. An invocation has texels of a tile from the list, and writes
- * codes into the buffer or texels into an image. With VKAO_STORAGE_16BIT two codes are one store to
- * a storage buffer, which costs less than a texel buffer. */
+ * for them, texel being the first; plane is that of the depth image. An invocation has texels of a
+ * tile from the list, and writes codes into the buffer or texels into an image. With
+ * VKAO_STORAGE_16BIT two codes are one store to a storage buffer, which costs less than a texel
+ * buffer. */
 #ifndef VKAO_PAIRED_SSAO_GLSL_
 #define VKAO_PAIRED_SSAO_GLSL_
 

@@ -42,8 +42,9 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
     float share = 1.0 / float(slice_count());
     uint k = 0u;
     [[unroll]] for (;;) {
-        occluded += occlusion(make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye),
-                              texel, noise.jitter);
+        occluded +=
+            occlusion(make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye),
+                      texel, noise.jitter);
         if (++k >= slice_count())
             break;
     }

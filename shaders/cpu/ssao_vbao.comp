@@ -66,7 +66,8 @@ void hide(inout March march, Slice s, Masks m, reals fall, Offset offset, reals 
     reals front = y * (back_length * inverse), back = thick_y * (front_length * inverse);
     front = greater(front, mix(reals(-2.0), march.last_front, joined));
     march.rounding = mix(reals(0.0), march.rounding, joined);
-    ints high = min(sector(m, greater(front - params.bias_cosine, m.low), march.rounding), ints(31)),
+    ints high =
+             min(sector(m, greater(front - params.bias_cosine, m.low), march.rounding), ints(31)),
          low = min(sector(m, greater(back, m.low), reals(0.0)), high);
     ints bits = (ints(1) << high) - (ints(1) << low);
     bits = mix(ints(0), bits, seen);
@@ -114,7 +115,8 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter, bool unrolled)
     Masks m = make_masks(SIDES * both(s.sin_n), both(s.cos_n));
     const reals none = reals(0.0);
     Steps steps = make_steps(s, jitter, reach, VKAO_VBAO_STEP_LINEAR);
-    March march = March(ints(0), none, none, reals(-2.0), reals(VKAO_VBAO_ROUND_LESS), none, none, none);
+    March march =
+        March(ints(0), none, none, reals(-2.0), reals(VKAO_VBAO_ROUND_LESS), none, none, none);
     if (unrolled) {
         [[unroll]] for (uint t = 0u; t < STEPS; ++t)
             take_step(march, s, m, fall, texel, steps, t);
@@ -155,7 +157,8 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
     } else {
         uint k = 0u;
         [[dont_unroll]] for (;;) {
-            add_slice(v, k, texel, position, normal, plane, to_eye, noise.turn, noise.jitter, false);
+            add_slice(v, k, texel, position, normal, plane, to_eye, noise.turn, noise.jitter,
+                      false);
             if (++k >= slice_count())
                 break;
         }

@@ -274,7 +274,8 @@ def example_shades_the_box_in_silence(name, static):
 
 
 def write_npy(path, type_, value):
-    header = f"{{'descr': '{type_}', 'fortran_order': False, 'shape': (36, 64), }}".ljust(117) + "\n"
+    header = f"{{'descr': '{type_}', 'fortran_order': False, 'shape': (36, 64), }}"
+    header = header.ljust(117) + "\n"
     with open(path, "wb") as file:
         file.write(b"\x93NUMPY\1\0" + struct.pack("<H", len(header)) + header.encode())
         file.write(value * 36 * 64)

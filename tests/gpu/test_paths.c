@@ -12,8 +12,8 @@
 /* Noisy AO is a code of .01 in the CPU's buffer, and a 16-bit float below 2 in the image of a GPU:
  * each is off by half a step, which the blur's mean does not exceed. */
 static const double code_rounding = 0.005, float_rounding = 0x1p-11;
-/* vbao's bounds of sectors come of the same numbers in another order: in one texel of a thousand one
- * falls to the other side. */
+/* vbao's bounds of sectors come of the same numbers in another order: in one texel of a thousand
+ * one falls to the other side. */
 static const double sector = 1.0 / 31.0;
 
 enum { WIDTH = 139, HEIGHT = 101 };

@@ -74,8 +74,8 @@ void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
     ref_slice_turn(slice, pi * (k + slice->noise.turn) / params->slice_count);
 }
 
-/* Distances crowd towards the point, but lie at least 1 + least t texels out. Where the point at that
- * distance along the slice's direction on screen lies is for the projection to say. */
+/* Distances crowd towards the point, but lie at least 1 + least t texels out. Where the point at
+ * that distance along the slice's direction on screen lies is for the projection to say. */
 static void step_texel(const struct ref_slice *s, double side, uint32_t step, double reach,
                        int at[2])
 {

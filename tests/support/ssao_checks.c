@@ -16,8 +16,8 @@
 static const struct {
     double mean, p99, max;
 } tolerances[] = {
-    [VKAO_SSAO_SPHERE] = {1e-4, 1e-3, 0.07}, [VKAO_SSAO_HEMISPHERE] = {1e-4, 1e-3, 0.07},
-    [VKAO_SSAO_HBAO] = {1e-4, 1e-3, 0.07},   [VKAO_SSAO_GTAO] = {1e-4, 1e-3, 0.07},
+    [VKAO_SSAO_SPHERE] = {1e-4, 1e-3, 0.07},   [VKAO_SSAO_HEMISPHERE] = {1e-4, 1e-3, 0.07},
+    [VKAO_SSAO_HBAO] = {1e-4, 1e-3, 0.07},     [VKAO_SSAO_GTAO] = {1e-4, 1e-3, 0.07},
     [VKAO_SSAO_VBAO] = {1.3e-3, 2.2e-2, 0.15}, [VKAO_SSAO_RAYMARCH] = {1e-4, 1e-3, 0.07},
 };
 

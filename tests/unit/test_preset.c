@@ -10,9 +10,9 @@ static const struct {
     uint32_t slices, steps, radius;
     float normal_power, thickness;
 } want[] = {
-    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 9, 3, 0.0f, 1.0f},
+    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f, 1.0f},
     [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f, 1.0f},
-    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 2, 4.0f, 1.0f},
+    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 8, 2, 4.0f, 1.0f},
     [VKAO_QUALITY_BEST] = {VK_FALSE, 4, 18, 1, 8.0f, 1.0f},
 };
 

@@ -238,7 +238,8 @@ static void each_scratch_image_begins_anew_once(void **state)
     }
 }
 
-/* vbao takes thickness from the depth image: breaks of rows and of columns, and what lies between. */
+/* vbao takes thickness from the depth image: breaks of rows and of columns, and what lies
+ * between. */
 static void vbao_has_three_passes_more(void **state)
 {
     (void)state;
