@@ -92,9 +92,12 @@ void vkao_prepare_constants(const struct vkao_recording *r, const vkao_params *p
                             struct vkao_constants *out)
 {
     const struct view_constants *image = &r->image, *grid = &r->grid;
-    (void)params;
-    out->break_least = (float)VKAO_VBAO_BREAK_LEAST * image->height;
-    out->width_reach = (float)VKAO_VBAO_WIDTH_REACH * image->height;
+    const float radius =
+        fminf(fmaxf(params->radius, (float)VKAO_NEAREST_Z), (float)VKAO_FARTHEST_Z);
+    out->break_least = image->orthographic ? (float)VKAO_VBAO_BREAK_LEAST_RADII * radius
+                                           : (float)VKAO_VBAO_BREAK_LEAST;
+    out->width_reach = image->orthographic ? (float)VKAO_VBAO_WIDTH_REACH_RADII * radius
+                                           : (float)VKAO_VBAO_WIDTH_REACH;
     const bool far_is_one = image->far_depth > 0.5f;
     memcpy(out->image_unproject, image->unproject, sizeof out->image_unproject);
     memcpy(out->unproject, grid->unproject, sizeof out->unproject);

@@ -182,7 +182,6 @@ static void read_unproject(const struct projection *p, const vkao_view *view,
     out->unproject[3] = (float)(((0.5 - vy) * 2.0 / vh - 1.0 - y_offset) / p->y_scale);
     out->inverse_unproject[0] = (float)(p->x_scale * vw / 2.0);
     out->inverse_unproject[1] = (float)(p->y_scale * vh / 2.0);
-    out->height = (float)fabs(2.0 / p->y_scale);
     out->reference_z = p->orthographic ? (float)fabs(2.0 / p->x_scale) : 0.0f;
 }
 

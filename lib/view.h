@@ -24,7 +24,6 @@ struct view_constants {
     float far_z;             /* view z of the far plane, FLT_MAX if infinite or not to be tested */
     float depth_error[2];    /* uncertainty of z: [0] + [1] * z, times z in perspective */
     float normal_rows[3][3]; /* normal_to_view with +z turned away from the eye */
-    float height;            /* of the viewport in scene units, times z in perspective */
     float reference_z;       /* width of the viewport in scene units if orthographic, else 0 */
     struct vkao_rect valid, rect;
 };

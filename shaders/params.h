@@ -140,10 +140,13 @@
 #define VKAO_VBAO_THICKNESS_BASE 0.40
 #define VKAO_VBAO_THICKNESS_SLOPE 0.80
 /* Depth breaks between two texels if it changes by more than RISE of the smaller change beside them
- * plus LEAST. Surfaces are followed that far to each side. Both in heights of the view there. */
+ * plus LEAST. Surfaces are followed to REACH on each side. Both are tangents of angles that the eye
+ * sees, and radii in orthographic views: what is cropped or has more texels is the same. */
 #define VKAO_VBAO_BREAK_RISE 4.0
-#define VKAO_VBAO_BREAK_LEAST 0.022
-#define VKAO_VBAO_WIDTH_REACH 0.044
+#define VKAO_VBAO_BREAK_LEAST 0.015
+#define VKAO_VBAO_WIDTH_REACH 0.03
+#define VKAO_VBAO_BREAK_LEAST_RADII 0.15
+#define VKAO_VBAO_WIDTH_REACH_RADII 0.4
 /* Of raymarch, without that width. */
 #define VKAO_THICKNESS_BASE 0.19
 #define VKAO_THICKNESS_SLOPE 0.42

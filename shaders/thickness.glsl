@@ -27,7 +27,8 @@ struct Reach {
 
 Reach width_reach()
 {
-    ivec2 texels = ivec2(max(vec2(1.0), params.width_reach * abs(params.inverse_unproject) + 0.5));
+    vec2 reach = params.width_reach * abs(params.inverse_unproject) + 0.5;
+    ivec2 texels = ivec2(clamp(reach, vec2(1.0), vec2(65535.0)));
     ivec2 shift = findMSB((texels - 1) >> 5) + 1;
     return Reach(shift, texels >> shift);
 }

@@ -29,16 +29,7 @@ static double change(const struct ref_scene *scene, int axis, int x, int y, int 
     return isnan(a) || isnan(b) ? INFINITY : fabs(b - a);
 }
 
-/* The height of the view at unit distance, or of an orthographic one. */
-static double view_height(const struct ref_view *view)
-{
-    double top[3], bottom[3];
-    ref_view_position(view, 0.0, 0.0, 1.0, top);
-    ref_view_position(view, 0.0, view->viewport[3], 1.0, bottom);
-    return fabs(bottom[1] - top[1]);
-}
-
-static bool breaks(const struct ref_scene *scene, int axis, int x, int y, int k)
+static bool breaks(const struct ref_scene *scene, double radius, int axis, int x, int y, int k)
 {
     double here, next;
     if (!known(scene, axis, x, y, k, &here) || !known(scene, axis, x, y, k + 1, &next))
@@ -46,18 +37,18 @@ static bool breaks(const struct ref_scene *scene, int axis, int x, int y, int k)
     if (isnan(here) || isnan(next))
         return true;
     double beside = fmin(change(scene, axis, x, y, k - 1), change(scene, axis, x, y, k + 1));
-    double least = VKAO_VBAO_BREAK_LEAST * view_height(&scene->view) *
-                   (scene->view.orthographic ? 1.0 : fmin(here, next));
+    double least = scene->view.orthographic ? VKAO_VBAO_BREAK_LEAST_RADII * radius
+                                            : VKAO_VBAO_BREAK_LEAST * fmin(here, next);
     return fabs(next - here) > VKAO_VBAO_BREAK_RISE * beside + least;
 }
 
 /* Texels without a break, to both sides; 2 * most if it goes on. */
-static int run(const struct ref_scene *scene, int axis, int x, int y, int most)
+static int run(const struct ref_scene *scene, double radius, int axis, int x, int y, int most)
 {
     int ahead = 0, back = 0;
-    while (ahead < most && !breaks(scene, axis, x, y, ahead))
+    while (ahead < most && !breaks(scene, radius, axis, x, y, ahead))
         ++ahead;
-    while (back < most && !breaks(scene, axis, x, y, -back - 1))
+    while (back < most && !breaks(scene, radius, axis, x, y, -back - 1))
         ++back;
     return ahead + back;
 }
@@ -80,13 +71,14 @@ double ref_width_thickness(const struct ref_scene *scene, double radius, int x, 
 {
     double here[3], next[3], z = ref_scene_z(scene, x, y), least = INFINITY;
     double reach =
-        VKAO_VBAO_WIDTH_REACH * view_height(&scene->view) * (scene->view.orthographic ? 1.0 : z);
+        scene->view.orthographic ? VKAO_VBAO_WIDTH_REACH_RADII * radius : VKAO_VBAO_WIDTH_REACH * z;
     bool goes_on = true;
     ref_view_position(&scene->view, x, y, z, here);
     ref_view_position(&scene->view, x + 1.0, y + 1.0, z, next);
     for (int axis = 0; axis < 2; ++axis) {
         double texel = fabs(next[axis] - here[axis]);
-        int most = (int)fmax(1.0, reach / texel + 0.5), texels = run(scene, axis, x, y, most);
+        int most = (int)fmax(1.0, reach / texel + 0.5),
+            texels = run(scene, radius, axis, x, y, most);
         goes_on = goes_on && texels == 2 * most;
         least = fmin(least, (texels + 1) * texel);
     }
