@@ -66,6 +66,7 @@ struct viewer {
     struct placing placing;
     enum drag drag;
     double drag_x, drag_y;
+    bool drag_is_left; /* begun with that button */
     struct status status;
     struct tool_error failure; /* ends the run; EXIT_OK: none */
     uint64_t frames_drawn;

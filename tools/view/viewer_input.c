@@ -149,9 +149,9 @@ static void drag_on(struct viewer *v, const struct input *in)
     const double height = v->swapchain.extent.height;
     if (v->drag == DRAG_WIPE)
         place_wipe(v, in->x);
-    else if (v->drag == DRAG_ORBIT && in->left)
+    else if (v->drag == DRAG_ORBIT && v->drag_is_left)
         orbit_drag(&v->live->camera, dx / height, dy / height);
-    else if (v->drag == DRAG_ORBIT && in->right)
+    else if (v->drag == DRAG_ORBIT)
         orbit_pan(&v->live->camera, dx / height, dy / height);
     if (v->drag == DRAG_PAN && !(dx >= 0 && dx <= 0 && dy >= 0 && dy <= 0)) {
         v->placing.fit = false;
@@ -165,11 +165,13 @@ static void drag_on(struct viewer *v, const struct input *in)
 static void use_mouse(struct viewer *v, const struct input *in)
 {
     const bool ours = !widgets_want_mouse();
-    if (v->drag == DRAG_NONE && ours && (in->left_pressed || in->right)) {
+    if (v->drag == DRAG_NONE && ours && (in->left_pressed || in->right_pressed)) {
         const bool line = in->left_pressed && is_at_line(v, in->press_x);
         v->drag = line ? DRAG_WIPE : v->live ? DRAG_ORBIT : in->left_pressed ? DRAG_PAN : DRAG_NONE;
-        v->drag_x = in->left_pressed ? in->press_x : in->x;
-        v->drag_y = in->left_pressed ? in->press_y : in->y;
+        /* The button may be up again by now, and the mouse elsewhere. */
+        v->drag_is_left = in->left_pressed;
+        v->drag_x = in->press_x;
+        v->drag_y = in->press_y;
     }
     if (v->drag != DRAG_NONE)
         drag_on(v, in);

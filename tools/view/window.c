@@ -129,11 +129,12 @@ static void on_button(GLFWwindow *handle, int button, int action, int mods)
     input->changed = true;
     if (button == GLFW_MOUSE_BUTTON_RIGHT)
         input->right = action == GLFW_PRESS;
-    if (button != GLFW_MOUSE_BUTTON_LEFT)
-        return;
-    input->left = action == GLFW_PRESS;
-    if (action == GLFW_PRESS) {
-        input->left_pressed = true;
+    if (button == GLFW_MOUSE_BUTTON_LEFT)
+        input->left = action == GLFW_PRESS;
+    if (action == GLFW_PRESS &&
+        (button == GLFW_MOUSE_BUTTON_LEFT || button == GLFW_MOUSE_BUTTON_RIGHT)) {
+        input->left_pressed |= button == GLFW_MOUSE_BUTTON_LEFT;
+        input->right_pressed |= button == GLFW_MOUSE_BUTTON_RIGHT;
         input->press_x = input->x;
         input->press_y = input->y;
     }
@@ -293,7 +294,7 @@ void window_poll(struct window *window, bool wait, double seconds)
     struct input *input = &window->input;
     forget_dropped(input);
     input->key_count = 0;
-    input->left_pressed = false;
+    input->left_pressed = input->right_pressed = false;
     input->scroll = 0;
     input->changed = false;
     if (wait && seconds > 0)

@@ -34,10 +34,10 @@ enum { MAX_KEYS = 64 };
 struct input {
     enum key_action keys[MAX_KEYS]; /* pressed, in order */
     size_t key_count;
-    double x, y;       /* the mouse, now */
-    bool inside;       /* the mouse is over the window */
-    bool left, right;  /* buttons held now */
-    bool left_pressed; /* since the last look; press_x, press_y: where */
+    double x, y;                      /* the mouse, now */
+    bool inside;                      /* the mouse is over the window */
+    bool left, right;                 /* buttons held now */
+    bool left_pressed, right_pressed; /* since the last look; press_x, press_y: where */
     double press_x, press_y;
     double scroll;  /* notches, + = away from the user */
     char **dropped; /* paths, malloc'ed; NULL if nothing was dropped */
