@@ -606,7 +606,7 @@ typedef struct vkao_parameter {
     uint32_t methods;           /* bits 1 << vkao_ssao_method of those that read it; 0 = any */
 } vkao_parameter;
 
-/* Static; *count: how many there are. */
+/* Static; *count: how many there are. Rows keep their size within 0.2. */
 VKAO_API const vkao_parameter *vkao_parameters(uint32_t *count);
 
 typedef struct vkao_method {
@@ -616,7 +616,7 @@ typedef struct vkao_method {
     uint32_t padding; /* zero */
 } vkao_method;
 
-/* Static, by vkao_ssao_method; *count: how many there are. */
+/* Static, by vkao_ssao_method; *count: how many there are. Rows keep their size within 0.2. */
 VKAO_API const vkao_method *vkao_methods(uint32_t *count);
 
 #ifdef __cplusplus

@@ -2,6 +2,7 @@
  *
  * An engine that has nothing but the README's lines, timed on the room of vkao-bench:
  *
+ *   cc timed.c $(pkg-config --cflags --libs vkao vulkan) -o timed
  *   timed room [16bit]
  *
  * reads room_z32.npy and room_n8.npy, which vkao-bench speed --dump room writes, and prints the
