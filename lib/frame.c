@@ -39,6 +39,8 @@ static void plan_images(const vkao_frame *frame, struct vkao_scratch_plan *plan)
         {VKAO_RESOURCE_VIEW_Z, VK_FORMAT_R32_SFLOAT, {grid.width + border, grid.height + border}},
         {VKAO_RESOURCE_HALFWAY, noisy, grid},
         {VKAO_RESOURCE_BLURRED, noisy, grid},
+        {VKAO_RESOURCE_BREAKS_X, VK_FORMAT_R32_UINT, {(grid.width + 31) / 32, grid.height}},
+        {VKAO_RESOURCE_BREAKS_Y, VK_FORMAT_R32_UINT, {grid.width, (grid.height + 31) / 32}},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
         const enum vkao_resource r = rows[i].resource;

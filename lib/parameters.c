@@ -99,7 +99,7 @@ static const vkao_parameter parameters[] = {
     {FREE(noise_index, UINT, ""), .help = "which noise pattern; 0: the static one",
      .most = UINT32_MAX, .stages = VKAO_STAGE_SSAO},
     {FREE(radius, FLOAT, "scene units"), .help = "how far occluders reach", .above_least = VK_TRUE,
-     .most = FLT_MAX, .standard = 0.5, .stages = VKAO_STAGE_SSAO},
+     .most = FLT_MAX, .standard = 0.5, .stages = VKAO_STAGE_PREPARE | VKAO_STAGE_SSAO},
     {FREE(bias, FLOAT, "radii"),
      .help = "how far the scene must stand in front to block", .most = 1,
      .standard = 0.005, .stages = VKAO_STAGE_SSAO},
@@ -227,16 +227,13 @@ struct preset {
     /* Normals keep the blur off edges that depth does not show, thin slats in front of a wall; on a
      * CPU they cost as much as the rest of the blur. */
     float normal_power;
-    /* Few steps miss some of the scene, for which thickness makes up a little; more steps need less
-     * of it. */
-    float thickness;
 };
 
 static const struct preset presets[] = {
-    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f, 1.0f},
-    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f, 1.0f},
-    [VKAO_QUALITY_HIGH] = {VK_FALSE, 1, 14, 3, 8.0f, 0.9f},
-    [VKAO_QUALITY_BEST] = {VK_FALSE, 4, 24, 1, 8.0f, 0.88f},
+    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f},
+    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f},
+    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 8, 3, 2.0f},
+    [VKAO_QUALITY_BEST] = {VK_FALSE, 4, 18, 1, 2.0f},
 };
 
 vkao_result vkao_preset(vkao_quality quality, vkao_effect_info *effect, vkao_params *params)
@@ -255,7 +252,7 @@ vkao_result vkao_preset(vkao_quality quality, vkao_effect_info *effect, vkao_par
     if (params) {
         const vkao_params standard = vkao_params_default();
         params->bias = standard.bias;
-        params->thickness = p->thickness;
+        params->thickness = standard.thickness;
         params->sharpness = standard.sharpness;
     }
     return VKAO_SUCCESS;

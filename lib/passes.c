@@ -11,6 +11,11 @@ bool vkao_makes_ao(const vkao_effect_info *effect)
     return effect->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
 }
 
+bool vkao_has_width(const vkao_effect_info *effect)
+{
+    return effect->stages & VKAO_STAGE_SSAO && effect->method == VKAO_SSAO_VBAO;
+}
+
 vkao_stage_flags vkao_stages_of(const vkao_effect_info *effect)
 {
     return effect->stages | (vkao_makes_ao(effect) ? VKAO_STAGE_PREPARE : 0u);

@@ -31,13 +31,15 @@ enum vkao_resource {
     VKAO_SLOTS(VKAO_SLOT_RESOURCE) VKAO_SLOT_COUNT,
     /* Scratch images. */
     VKAO_RESOURCE_VIEW_Z = VKAO_SLOT_COUNT,
-    VKAO_RESOURCE_HALFWAY, /* AO between the two directions of the blur */
-    VKAO_RESOURCE_BLURRED, /* at half resolution, for upsampling */
+    VKAO_RESOURCE_HALFWAY,  /* AO between the two directions of the blur */
+    VKAO_RESOURCE_BLURRED,  /* at half resolution, for upsampling */
+    VKAO_RESOURCE_BREAKS_X, /* words of where depth breaks along rows, and along columns */
+    VKAO_RESOURCE_BREAKS_Y,
     VKAO_IMAGE_COUNT,
     /* Parts of the scratch buffer: the constants, and those of the CPU's passes (cpu/cpu.h). */
     VKAO_RESOURCE_CONSTANTS = VKAO_IMAGE_COUNT,
     VKAO_RESOURCE_CPU,
-    VKAO_RESOURCE_COUNT = VKAO_RESOURCE_CPU + 6
+    VKAO_RESOURCE_COUNT = VKAO_RESOURCE_CPU + 8
 };
 
 #define VKAO_BIT(resource) (1u << (resource))
@@ -121,6 +123,8 @@ struct vkao_program {
 /* Those of an effect, and PREPARE if others make AO. */
 vkao_stage_flags vkao_stages_of(const vkao_effect_info *effect);
 bool vkao_makes_ao(const vkao_effect_info *effect);
+/* Has view z the thickness of what is seen in its last bits? */
+bool vkao_has_width(const vkao_effect_info *effect);
 
 /* Adds a row, yet to be compiled. */
 void vkao_program_add(struct vkao_program *program, const struct vkao_pass *row);

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "stages.h"
 
+#include "vkao_breaks.h"
 #include "vkao_prepare.h"
+#include "vkao_width.h"
 
 #include <assert.h>
 #include <math.h>
@@ -30,9 +32,37 @@ static const struct vkao_pass prepare = {
     .forms = 1,
 };
 
+#define BREAKS(resource, width, height, is_vertical)                                               \
+    {                                                                                              \
+        .name = "vkao breaks", .label = "prepare", .stage = VKAO_STAGE_PREPARE,                    \
+        VKAO_CODE(vkao_breaks),                                                                    \
+        .uses = {VKAO_READS(VIEW_Z, VIEW_Z), VKAO_WRITES(BREAKS_WRITE, resource)},                 \
+        .area = VKAO_AREA_VALID, .texels = {width, height},                                        \
+        .group = {VKAO_GROUP_WIDTH, VKAO_GROUP_HEIGHT}, .vertical = is_vertical, .forms = 1,       \
+    }
+static const struct vkao_pass breaks_x = BREAKS(BREAKS_X, 32, 1, false),
+                              breaks_y = BREAKS(BREAKS_Y, 1, 32, true);
+
+static const struct vkao_pass width = {
+    .name = "vkao width",
+    .label = "prepare",
+    .stage = VKAO_STAGE_PREPARE,
+    VKAO_CODE(vkao_width),
+    .uses = {VKAO_READS(BREAKS_X, BREAKS_X), VKAO_READS(BREAKS_Y, BREAKS_Y),
+             VKAO_WRITES(VIEW_Z_WRITE, VIEW_Z)},
+    .area = VKAO_AREA_VALID,
+    VKAO_ONE_TEXEL,
+    .forms = 1,
+};
+
 void vkao_prepare_plan(struct vkao_program *program)
 {
     vkao_program_add(program, &prepare);
+    if (!vkao_has_width(&program->settings))
+        return;
+    vkao_program_add(program, &breaks_x);
+    vkao_program_add(program, &breaks_y);
+    vkao_program_add(program, &width);
 }
 
 /* What to divide by so that the matrix makes unit vectors of unit vectors: 1 for what floats make
@@ -62,7 +92,12 @@ void vkao_prepare_constants(const struct vkao_recording *r, const vkao_params *p
                             struct vkao_constants *out)
 {
     const struct view_constants *image = &r->image, *grid = &r->grid;
-    (void)params;
+    const float radius =
+        fminf(fmaxf(params->radius, (float)VKAO_NEAREST_Z), (float)VKAO_FARTHEST_Z);
+    out->break_least = image->orthographic ? (float)VKAO_VBAO_BREAK_LEAST_RADII * radius
+                                           : (float)VKAO_VBAO_BREAK_LEAST;
+    out->width_reach = image->orthographic ? (float)VKAO_VBAO_WIDTH_REACH_RADII * radius
+                                           : (float)VKAO_VBAO_WIDTH_REACH;
     const bool far_is_one = image->far_depth > 0.5f;
     memcpy(out->image_unproject, image->unproject, sizeof out->image_unproject);
     memcpy(out->unproject, grid->unproject, sizeof out->unproject);

@@ -41,8 +41,16 @@ void vkao_ssao_constants(const struct vkao_recording *r, const vkao_params *para
     out->inverse_radius = 1.0f / out->radius;
     out->bias = params->bias * out->radius;
     out->bias_cosine = params->bias;
-    out->thickness_base = thickness * (float)VKAO_THICKNESS_BASE;
-    out->thickness_slope = thickness * (float)VKAO_THICKNESS_SLOPE;
+    const bool is_vbao = vkao_has_width(effect);
+    out->thickness = thickness;
+    out->thickness_gap = thickness * (float)VKAO_VBAO_THICKNESS_GAP;
+    out->thickness_base =
+        thickness * (float)(is_vbao ? VKAO_VBAO_THICKNESS_BASE : VKAO_THICKNESS_BASE);
+    out->thickness_slope =
+        thickness * (float)(is_vbao ? VKAO_VBAO_THICKNESS_SLOPE : VKAO_THICKNESS_SLOPE);
+    if (is_vbao) /* whose view z has it in its last bits */
+        out->depth_error[effect->projection == VKAO_PROJECTION_ORTHOGRAPHIC] +=
+            (float)VKAO_THICKNESS_DEPTH_ERROR;
     out->slices = effect->slice_count;
     out->steps = effect->step_count;
     out->samples = effect->sample_count;

@@ -16,9 +16,8 @@ struct vkao_rect {
 
 struct view_constants {
     bool orthographic;
-    float unproject
-        /* view xy = texel * [0..1] + [2..3], times z in perspective; texel centres are integers */
-        [4];
+    /* view xy = texel * [0..1] + [2..3], times z in perspective; texel centres are integers */
+    float unproject[4];
     float inverse_unproject[2]; /* 1 / unproject[0..1] */
     float linearize[2];         /* see vkao_constants */
     float far_depth;            /* device depth of the far plane */

@@ -23,12 +23,13 @@ struct Slice {
     vec2 to_x, to_y;
     float eye, origin;   /* y is origin - eye * view z, and what to_y adds */
     vec3 outward;        /* O: unit, in the slice, at right angles to V */
+    float fall;          /* of the depth image's plane, against V, per x */
     float normal_length; /* L */
     float cos_n, sin_n;  /* of the projected normal's angle from V, towards O */
 };
 
 /* turn in [0,1) is half the circle. to_eye is V. */
-Slice make_slice(float turn, vec3 position, vec3 normal, vec3 to_eye)
+Slice make_slice(float turn, vec3 position, vec3 normal, Plane plane, vec3 to_eye)
 {
     Slice s;
     vec3 d = vec3(half_turn_x(turn), half_turn_y(turn), 0.0);
@@ -42,10 +43,12 @@ Slice make_slice(float turn, vec3 position, vec3 normal, vec3 to_eye)
     s.outward = (d - dot(d, to_eye) * to_eye) * inverse_length;
     across *= inverse_length;
     float off = dot(normal, across), facing = dot(normal, to_eye);
-    /* A sample's texel lies off the slice by rounding. It is moved into it along the tangent plane,
-     * which keeps its height over that plane, so that a tilted wall still lies flat in the
-     * slice. */
-    float moved = off / max(facing, VKAO_STEEPEST);
+    /* A sample's texel lies off the slice by rounding. It is moved into it along the plane that the
+     * depth image has here, which keeps its height over that plane, so that a tilted wall still
+     * lies flat in the slice, whatever its shading normals. */
+    float plane_facing = dot(plane.normal, to_eye);
+    float moved = dot(plane.normal, across) / max(plane_facing, plane.steepest);
+    s.fall = dot(plane.normal, s.outward) / max(plane_facing, VKAO_STEEPEST);
     vec2 radii = params.unproject.xy * params.inverse_radius;
     s.to_x = radii * s.outward.xy;
     s.to_y = radii * (to_eye.xy + across.xy * moved);
@@ -59,26 +62,26 @@ Slice make_slice(float turn, vec3 position, vec3 normal, vec3 to_eye)
     return s;
 }
 
-/* Distance of step t along the slice, a polynomial of t: q (LINEAR + (1 - LINEAR) q) of the reach,
+/* Distance of step t along the slice, a polynomial of t: q (linear + (1 - linear) q) of the reach,
  * with q = (t + jitter) / steps. Steps crowd near the point. */
 struct Steps {
     float k0, k1, k2;
 };
 
-Steps make_steps(Slice s, float jitter, float reach)
+Steps make_steps(Slice s, float jitter, float reach, float linear)
 {
     /* Farther than any image is wide, but few enough texels for an integer. */
     float most = min(s.scale * reach, 1.0e9 * s.per_texel);
     float n = 1.0 / float(step_count());
-    float line = most * VKAO_STEP_LINEAR * n, square = most * (1.0 - VKAO_STEP_LINEAR) * n * n;
+    float line = most * linear * n, square = most * (1.0 - linear) * n * n;
     return Steps(jitter * (line + square * jitter), line + 2.0 * square * jitter, square);
 }
 
-/* Whole texels off the shaded point, on the first side; at least 1 + t/2. */
-vec2 step_offset(Slice s, Steps steps, uint t)
+/* Whole texels off the shaded point, on the first side; at least 1 + least t. */
+vec2 step_offset(Slice s, Steps steps, uint t, float least)
 {
     float far = steps.k0 + float(t) * (steps.k1 + float(t) * steps.k2);
-    return roundEven(s.step * max(far, s.per_texel * (1.0 + 0.5 * float(t))));
+    return roundEven(s.step * max(far, s.per_texel * (1.0 + least * float(t))));
 }
 
 /* View z of the texels at +offset and -offset. */

@@ -9,8 +9,16 @@
 
 /* The neighbour along one screen axis that lies on the texel's surface. */
 struct Neighbour {
-    float z, side; /* side is -1 or 1: before or after */
+    float z, side; /* side is -1 or 1: before or after; 0: there is none, and z is the texel's */
 };
+
+/* Does depth go on in a straight line from one neighbour to the other? In perspective it bends by
+ * its rise per texel. */
+bool is_straight(vec2 near_z, float z)
+{
+    float bend = abs(near_z.x + near_z.y - 2.0 * z);
+    return bend <= VKAO_PLANE_BEND * abs(near_z.y - near_z.x) + 4.0e-6 * z;
+}
 
 /* Of the two pairs of neighbours, the one whose straight continuation meets the centre better. 1/z
  * is what continues straight on screen in perspective; both misses are fractions there, compared
@@ -30,9 +38,9 @@ Neighbour straight_neighbour(vec2 near_z, vec2 far_z, float z)
     bvec2 curved = greaterThan(far_z, vec2(0.0)), there = greaterThan(near_z, vec2(0.0));
     vec2 miss = mix(vec2(1.0e30), abs(mix(line, curve, curved)), there);
     vec2 scale = mix(vec2(1.0), mix(line_scale, curve_scale, curved), there);
-    near_z = mix(vec2(z), near_z, there);
     bool before = miss.x * scale.y < miss.y * scale.x;
-    return Neighbour(before ? near_z.x : near_z.y, before ? -1.0 : 1.0);
+    return any(there) ? Neighbour(before ? near_z.x : near_z.y, before ? -1.0 : 1.0)
+                      : Neighbour(z, 0.0);
 }
 
 /* Of the nearest pair, the one whose view z differs less: quickly found, and seldom wrong beside an
@@ -42,26 +50,35 @@ Neighbour nearest_neighbour(vec2 near_z, float center_z)
     vec2 miss = abs(near_z - center_z);
     bool before = miss.x < miss.y;
     float z = before ? near_z.x : near_z.y;
-    return Neighbour(z > 0.0 ? z : center_z, before ? -1.0 : 1.0);
+    return z > 0.0 ? Neighbour(z, before ? -1.0 : 1.0) : Neighbour(center_z, 0.0);
 }
 
 /* careful is what a depth image without normals takes; where a stored normal fails now and then,
  * quick will do. */
-Neighbour neighbour_in(ivec2 texel, ivec2 axis, float center_z, bool careful)
+Neighbour neighbour_in(ivec2 texel, ivec2 axis, float center_z, bool careful, out bool straight)
 {
     vec2 near_z = vec2(load_view_z(texel - axis), load_view_z(texel + axis));
+    straight = is_straight(near_z, center_z);
     if (!careful)
         return nearest_neighbour(near_z, center_z);
     vec2 far_z = vec2(load_view_z(texel - 2 * axis), load_view_z(texel + 2 * axis));
     return straight_neighbour(near_z, far_z, center_z);
 }
 
-/* Unit vector towards the eye. Those to the neighbours span the tangent plane. */
-vec3 normal_from_depth(ivec2 texel, float center_z)
+/* What depth alone says of a texel's surface. */
+struct Facet {
+    vec3 normal;   /* unit, towards the eye */
+    bool straight; /* depth goes on so in row and column */
+    bool alone;    /* no neighbour in one of them: the normal is unknown */
+};
+
+/* Vectors to the neighbours span the tangent plane. */
+Facet facet_of(ivec2 texel, float center_z)
 {
     const bool careful = NORMAL_ENCODING == VKAO_GLSL_NORMALS_FROM_DEPTH;
-    Neighbour beside = neighbour_in(texel, ivec2(1, 0), center_z, careful);
-    Neighbour below = neighbour_in(texel, ivec2(0, 1), center_z, careful);
+    bool straight_x, straight_y;
+    Neighbour beside = neighbour_in(texel, ivec2(1, 0), center_z, careful, straight_x);
+    Neighbour below = neighbour_in(texel, ivec2(0, 1), center_z, careful, straight_y);
     /* Slopes of depth over what a texel is wide there: the cross product without its length, whose
      * square leaves the range of floats in scenes that are small or large or seen through a
      * keyhole. */
@@ -72,7 +89,29 @@ vec3 normal_from_depth(ivec2 texel, float center_z)
     vec3 n = vec3(clamp(slope, -VKAO_STEEPEST_FACET, VKAO_STEEPEST_FACET), -1.0);
     if (!ORTHOGRAPHIC)
         n.z -= dot(view_position(vec2(texel), 1.0).xy, n.xy);
-    return normalize(n);
+    return Facet(normalize(n), straight_x && straight_y, beside.side * below.side == 0.0);
+}
+
+/* The plane of the depth image at a texel. */
+struct Plane {
+    vec3 normal;
+    /* cosine to the eye at which it stops getting steeper */
+    float steepest;
+};
+
+/* normal: the shading normal. Things a texel wide have no plane in the depth image: there it is
+ * steep only if the shading normal agrees. */
+Plane plane_of(Facet own, vec3 normal)
+{
+    float agreement = own.alone ? 1.0 : dot(own.normal, normal);
+    bool holds = own.straight || agreement > VKAO_PLANE_AGREES;
+    return Plane(agreement > VKAO_PLANE_EQUALS ? normal : own.normal,
+                 holds ? VKAO_STEEPEST : VKAO_PLANE_STEEPEST);
+}
+
+Plane depth_plane(ivec2 texel, vec3 position, vec3 normal)
+{
+    return plane_of(facet_of(texel, position.z), normal);
 }
 
 /* The stored normal, or the surface's own. One that points away is turned if the back of its
@@ -93,7 +132,7 @@ vec3 view_normal(ivec2 texel, vec3 center)
     bool away = (ORTHOGRAPHIC ? stored.z : dot(stored, center)) > 0.0;
     if (!away && stored != vec3(0.0))
         return stored;
-    return trusted_normal(stored, normal_from_depth(texel, center.z), center);
+    return trusted_normal(stored, facet_of(texel, center.z).normal, center);
 }
 
 #endif

@@ -42,6 +42,9 @@
 #define VKAO_BINDING_ALBEDO 12
 #define VKAO_BINDING_SPECULAR 13
 #define VKAO_BINDING_OUTPUT 14
+#define VKAO_BINDING_BREAKS_X 15 /* where depth breaks, in words along rows, and along columns */
+#define VKAO_BINDING_BREAKS_Y 16
+#define VKAO_BINDING_BREAKS_WRITE 17
 #define VKAO_BINDING_CPU 32 /* the first of the CPU's */
 
 /* What a pass is compiled for: specialization constants, the same for all passes of an effect but
@@ -108,21 +111,62 @@
 #define VKAO_GLSL_SPECULAR_NONE 0
 #define VKAO_GLSL_SPECULAR_FROM_AO 1
 
+/* Distance of step t is q (LINEAR + (1 - LINEAR) q) of the reach, q = (t + jitter) / steps, and at
+ * least 1 + LEAST t texels. */
+#define VKAO_STEP_LINEAR 0.5 /* hbao, gtao */
+#define VKAO_STEP_LEAST 0.5
+#define VKAO_VBAO_STEP_LINEAR 0.2
+#define VKAO_VBAO_STEP_LEAST 0.375
+
 /* What vbao guesses of the scene between its samples and behind them, and where it samples. Lengths
  * are fractions of the radius, cosines those of the angle to the eye. Found by coordinate search,
  * as tools/bench/fit-vbao does it, on solid and thin scenes together. */
-#define VKAO_VBAO_REACH_SMOOTH 0.80    /* end of the last step: the smooth falloff hides the rest */
+#define VKAO_VBAO_REACH_SMOOTH 0.82    /* end of the last step: the smooth falloff hides the rest */
 #define VKAO_VBAO_REACH_THRESHOLD 1.08 /* samples beyond stand for what lies before them */
-/* Distance of step t is q (LINEAR + (1 - LINEAR) q), q = (t + jitter) / steps. */
-#define VKAO_STEP_LINEAR 0.50
-#define VKAO_THICKNESS_BASE 0.19  /* thickness of what is seen */
-#define VKAO_THICKNESS_SLOPE 0.42 /* and what it gains per distance to the side */
-/* Times that with the threshold: what is far away counts alike, and hides more */
-#define VKAO_THICKNESS_THRESHOLD 1.1
-#define VKAO_VBAO_JOIN 1.0 /* rise over the tangent plane, per run, up to which two samples join */
-#define VKAO_VBAO_GAP_FRONT 0.55 /* share of the gap by which a separate surface's front moves in */
-#define VKAO_VBAO_GAP_BACK 0.7   /* share of the gap by which its back moves out */
+/* Rise over the surface's plane, per run, up to which two samples join. */
+#define VKAO_VBAO_JOIN 0.7
+#define VKAO_VBAO_GAP_FRONT 0.35 /* share of the gap by which a separate surface's front moves in */
+#define VKAO_VBAO_GAP_BACK 0.6   /* share of the gap by which its back moves out */
 #define VKAO_VBAO_ROUND 0.9      /* added before a sector bound is cut to an integer */
+/* Taken off that at the upper edge of what all joins to the shaded point: its own plane. */
+#define VKAO_VBAO_ROUND_LESS 0.3
+
+/* What is seen is as thick as it is wide in the depth image, WIDTH of that, at least GAP of the way
+ * from the sample before, for whose gap it stands, and at most BASE + SLOPE of its lateral
+ * distance. */
+#define VKAO_VBAO_THICKNESS_WIDTH 0.9
+#define VKAO_VBAO_THICKNESS_WIDE 0.75 /* of what goes on on all sides */
+#define VKAO_VBAO_THICKNESS_GAP 2.5
+#define VKAO_VBAO_THICKNESS_BASE 0.40
+#define VKAO_VBAO_THICKNESS_SLOPE 0.80
+/* Depth breaks between two texels if it changes by more than RISE of the smaller change beside them
+ * plus LEAST. Surfaces are followed to REACH on each side. Both are tangents of angles that the eye
+ * sees, and radii in orthographic views: what is cropped or has more texels is the same. */
+#define VKAO_VBAO_BREAK_RISE 3.0
+#define VKAO_VBAO_BREAK_LEAST 0.015
+#define VKAO_VBAO_WIDTH_REACH 0.03
+#define VKAO_VBAO_BREAK_LEAST_RADII 0.15
+#define VKAO_VBAO_WIDTH_REACH_RADII 0.4
+/* Of raymarch, without that width. */
+#define VKAO_THICKNESS_BASE 0.19
+#define VKAO_THICKNESS_SLOPE 0.42
+/* Times all of these with the threshold: what is far away counts alike, and hides more. */
+#define VKAO_THICKNESS_THRESHOLD 1.1
+
+/* View z has that thickness in its last 4 bits, as 2^-7, 1.5 * 2^-7, 2^-6 ... 1, 1.5. */
+#define VKAO_THICKNESS_MASK 15
+#define VKAO_THICKNESS_SHIFT 22
+#define VKAO_THICKNESS_LEAST_BITS 0x3c000000
+#define VKAO_THICKNESS_DEPTH_ERROR 0.95e-6 /* what that takes from view z, relative to it */
+
+/* Cosine to the eye at which the depth image's plane stops getting steeper where it is none: where
+ * depth bends by more than BEND of its rise, and the plane's cosine to the shading normal is below
+ * AGREES. */
+#define VKAO_PLANE_STEEPEST 0.2
+#define VKAO_PLANE_BEND 0.25
+#define VKAO_PLANE_AGREES 0.7
+/* A shading normal closer to it than that is the plane, without the rounding of depth. */
+#define VKAO_PLANE_EQUALS 0.9999
 
 /* Cosine to the eye at which tangent planes stop getting steeper in slices: less than that of the
  * last texels that a wall of 80 degrees has before its horizon. */
@@ -164,9 +208,13 @@ struct vkao_constants {
     VKAO_FLOAT(reference_z);
     VKAO_FLOAT(radius);
     VKAO_FLOAT(inverse_radius);
-    VKAO_FLOAT(bias);           /* scene units */
-    VKAO_FLOAT(bias_cosine);    /* bias / radius */
-    VKAO_FLOAT(thickness_base); /* VBAO, RAYMARCH: radii */
+    VKAO_FLOAT(bias);        /* scene units */
+    VKAO_FLOAT(bias_cosine); /* bias / radius */
+    VKAO_FLOAT(break_least); /* scene units, times z in perspective */
+    VKAO_FLOAT(width_reach);
+    VKAO_FLOAT(thickness); /* VBAO, RAYMARCH: radii, and scale of the thickness in view z */
+    VKAO_FLOAT(thickness_gap);
+    VKAO_FLOAT(thickness_base);
     VKAO_FLOAT(thickness_slope);
     VKAO_FLOAT(power);
     VKAO_FLOAT(debug_distance);

@@ -19,12 +19,13 @@
 /* Cosines of the horizons. */
 vec2 horizon_cosines(Slice s, ivec2 texel, float jitter)
 {
-    Steps steps = make_steps(s, jitter, params.radius);
+    Steps steps = make_steps(s, jitter, params.radius, VKAO_STEP_LINEAR);
     vec2 low = -SIDES * s.sin_n; /* cos(n +- pi/2): the tangent plane */
     vec2 horizon = low;
     uint t = 0u;
     [[unroll]] for (;;) {
-        vec2 offset = step_offset(s, steps, t), z = load_sides(texel, offset), x, y;
+        vec2 offset = step_offset(s, steps, t, VKAO_STEP_LEAST), z = load_sides(texel, offset), x,
+             y;
         slice_points(s, offset, z, x, y);
         vec2 d2 = x * x + y * y;
         vec2 weight = mix(vec2(0.0), falloff_weight(d2), is_seen(x, z));
@@ -40,11 +41,12 @@ vec2 horizon_cosines(Slice s, ivec2 texel, float jitter)
 Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
 {
     vec3 to_eye = direction_to_eye(position), bent = vec3(0.0);
+    Plane plane = depth_plane(texel, position, normal);
     Noise noise = texel_noise(texel, slice_count());
     float lost = 0.0, share = 1.0 / float(slice_count());
     uint k = 0u;
     [[unroll]] for (;;) {
-        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, to_eye);
+        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye);
         vec2 h = acos(horizon_cosines(s, texel, noise.jitter));
         float n = s.sin_n > 0.0 ? acos(s.cos_n) : -acos(s.cos_n);
         float h1 = min(h.x, n + 0.5 * PI), h0 = max(-h.y, n - 0.5 * PI);

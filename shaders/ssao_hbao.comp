@@ -18,12 +18,13 @@
 /* Of both sides together. */
 float occlusion(Slice s, ivec2 texel, float jitter)
 {
-    Steps steps = make_steps(s, jitter, params.radius);
+    Steps steps = make_steps(s, jitter, params.radius, VKAO_STEP_LINEAR);
     vec2 sine = vec2(params.bias_cosine), occluded = vec2(0.0);
     vec2 along = SIDES * (s.normal_length * s.sin_n);
     uint t = 0u;
     [[unroll]] for (;;) {
-        vec2 offset = step_offset(s, steps, t), z = load_sides(texel, offset), x, y;
+        vec2 offset = step_offset(s, steps, t, VKAO_STEP_LEAST), z = load_sides(texel, offset), x,
+             y;
         slice_points(s, offset, z, x, y);
         vec2 d2 = x * x + y * y;
         vec2 weight = mix(vec2(0.0), falloff_weight(d2), is_seen(x, z));
@@ -40,11 +41,12 @@ float occlusion(Slice s, ivec2 texel, float jitter)
 Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
 {
     vec3 to_eye = direction_to_eye(position);
+    Plane plane = depth_plane(texel, position, normal);
     Noise noise = texel_noise(texel, slice_count());
     float occluded = 0.0, share = 1.0 / float(slice_count());
     uint k = 0u;
     [[unroll]] for (;;) {
-        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, to_eye);
+        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye);
         occluded += occlusion(s, texel, noise.jitter);
         if (++k >= slice_count())
             break;

@@ -8,16 +8,18 @@
  *
  * The depth image is sampled in few places; what lies between two samples of a side is guessed:
  *  - a sample is joined to the one before if the surface between them rises less than
- *    VKAO_VBAO_JOIN over the tangent plane, as any plane does; then all between is hidden;
+ *    VKAO_VBAO_JOIN over the plane that the depth image has at the shaded point, as any plane does;
+ *    then all between is hidden;
  *  - if not, and if it rises over that plane, its front edge moves in by VKAO_VBAO_GAP_FRONT of the
  *    gap, as an edge lies somewhere in it;
  *  - what it hides counts by the distance to there, joined or not: the nearest that it stands for
  *    hides first;
  *  - its back edge moves out by VKAO_VBAO_GAP_BACK of the gap, as the surface goes on to somewhere
  *    before the next sample;
- *  - sky hides nothing; what follows it is looked at as after a sample of the tangent plane;
- *  - what is seen is as thick as VKAO_THICKNESS_BASE of the radius plus VKAO_THICKNESS_SLOPE of its
- *    lateral distance. */
+ *  - sky hides nothing; what follows it is looked at as after a sample of the surface's plane;
+ *  - what is seen is as thick as it is wide, which view z holds (width.comp), at least as
+ *    VKAO_VBAO_THICKNESS_GAP of the gap, which it must hide as what lies there would, and at most
+ *    as VKAO_VBAO_THICKNESS_BASE of the radius and _SLOPE of its lateral distance. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -32,29 +34,40 @@
 struct March {
     ivec2 mask; /* sectors that are hidden */
     vec2 last_x, last_height, last_front;
-    vec2 hidden; /* sectors, weighted */
+    vec2 rounding; /* taken off upper bounds while all samples join the point's own surface */
+    vec2 hidden;   /* sectors, weighted */
     vec2 out_moment, eye_moment;
 };
+
+/* In radii, as the width of the surface says. */
+vec2 thickness_of(vec2 z)
+{
+    ivec2 code = floatBitsToInt(z) & VKAO_THICKNESS_MASK;
+    code = (code << VKAO_THICKNESS_SHIFT) + VKAO_THICKNESS_LEAST_BITS;
+    return params.thickness * intBitsToFloat(code);
+}
 
 /* Takes what a sample of both sides hides first. */
 void hide(inout March march, Slice s, Masks m, float center_z, vec2 offset, vec2 z)
 {
     bvec2 seen = greaterThan(z, vec2(0.0));
-    vec2 x, y, tangent = SIDES * (s.sin_n / max(s.cos_n, VKAO_STEEPEST));
+    vec2 x, y;
     slice_points(s, offset, mix(vec2(center_z), z, seen), x, y);
     seen = bvec2(seen.x && x.x > 0.0, seen.y && x.y > 0.0); /* see is_seen */
-    vec2 gap = x - march.last_x, height = mix(vec2(0.0), y + x * tangent, seen);
+    vec2 gap = x - march.last_x, height = mix(vec2(0.0), y + x * (SIDES * s.fall), seen);
     bvec2 joined = lessThan(abs(height - march.last_height), VKAO_VBAO_JOIN * abs(gap));
     vec2 inner_x = x - VKAO_VBAO_GAP_FRONT * gap;
     vec2 front_x = mix(x, inner_x, greaterThan(height, vec2(0.0)));
     front_x = mix(front_x, x, joined);
-    vec2 thick_y = y - (params.thickness_base + params.thickness_slope * x);
+    vec2 thick_y = y - min(max(thickness_of(z), params.thickness_gap * gap),
+                           params.thickness_base + params.thickness_slope * x);
     vec2 back_x = x + VKAO_VBAO_GAP_BACK * gap;
     vec2 front = y * inversesqrt(front_x * front_x + y * y);
     vec2 back = thick_y * inversesqrt(back_x * back_x + thick_y * thick_y);
     front = max(front, mix(vec2(-2.0), march.last_front, joined));
-    ivec2 high = min(sector(m, max(front - params.bias_cosine, m.low)), ivec2(31));
-    ivec2 low = min(sector(m, max(back, m.low)), high);
+    march.rounding = mix(vec2(0.0), march.rounding, joined);
+    ivec2 high = min(sector(m, max(front - params.bias_cosine, m.low), march.rounding), ivec2(31));
+    ivec2 low = min(sector(m, max(back, m.low), vec2(0.0)), high);
     ivec2 bits = mix(ivec2(0), (ivec2(1) << high) - (ivec2(1) << low), seen);
     ivec2 fresh = bits & ~march.mask;
     march.mask |= bits;
@@ -78,12 +91,14 @@ vec3 hidden(Slice s, ivec2 texel, float center_z, float jitter)
     Masks m = make_masks(SIDES * s.sin_n, vec2(s.cos_n));
     Steps steps = make_steps(s, jitter,
                              params.radius *
-                                 (THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH));
+                                 (THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH),
+                             VKAO_VBAO_STEP_LINEAR);
     const vec2 none = vec2(0.0);
-    March march = March(ivec2(0), none, none, vec2(-2.0), none, none, none);
+    March march =
+        March(ivec2(0), none, none, vec2(-2.0), vec2(VKAO_VBAO_ROUND_LESS), none, none, none);
     uint t = 0u;
     [[unroll]] for (;;) {
-        vec2 offset = step_offset(s, steps, t);
+        vec2 offset = step_offset(s, steps, t, VKAO_VBAO_STEP_LEAST);
         hide(march, s, m, center_z, offset, load_sides(texel, offset));
         if (++t >= step_count())
             break;
@@ -96,13 +111,14 @@ vec3 hidden(Slice s, ivec2 texel, float center_z, float jitter)
 Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
 {
     vec3 to_eye = direction_to_eye(position);
+    Plane plane = depth_plane(texel, position, normal);
     Noise noise = texel_noise(texel, slice_count());
     float share = 1.0 / float(slice_count());
     /* The mean direction of an open hemisphere is 2/3 of its normal. */
     Visibility v = Visibility(normal * (2.0 / 3.0), 1.0);
     uint k = 0u;
     for (;;) {
-        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, to_eye);
+        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye);
         vec3 lost = share * s.normal_length * hidden(s, texel, position.z, noise.jitter);
         v.open -= lost.x;
         v.bent -= s.outward * lost.y + to_eye * lost.z;

@@ -11,7 +11,10 @@
 #include "vkao_debug_cpu.h"
 #include "vkao_packed_blur_x_cpu.h"
 #include "vkao_packed_blur_y_cpu.h"
+#include "vkao_packed_breaks_x_cpu.h"
+#include "vkao_packed_breaks_y_cpu.h"
 #include "vkao_packed_prepare_cpu.h"
+#include "vkao_packed_width_cpu.h"
 #include "vkao_packed_ssao_gtao_16bit_cpu.h"
 #include "vkao_packed_ssao_gtao_cpu.h"
 #include "vkao_packed_ssao_hbao_16bit_cpu.h"
@@ -38,6 +41,8 @@ enum {
     PART_BLURRED,
     PART_COPIED,
     PART_TILES,
+    PART_BREAKS_X,
+    PART_BREAKS_Y,
     PART_END
 };
 static_assert(PART_END == (int)VKAO_RESOURCE_COUNT, "as passes.h counts");
@@ -209,6 +214,30 @@ static const struct vkao_pass prepare = {
     VKAO_CODE(vkao_packed_prepare_cpu),
     .uses = {VKAO_READS(DEPTH, DEPTH), WRITES_WORDS(Z_WORDS, Z)},
     .area = VKAO_AREA_VALID,
+    .texels = {VKAO_PREPARE_WIDTH, 1},
+    GROUP,
+    .forms = 1,
+    .record = record_prepare,
+};
+
+#define BREAKS(axis, part, width, height)                                                          \
+    {                                                                                              \
+        .name = "vkao breaks " #axis, .label = "prepare", .stage = VKAO_STAGE_PREPARE,             \
+        VKAO_CODE(vkao_packed_breaks_##axis##_cpu),                                                \
+        .uses = {READS_Z4, WRITES_WORDS(BREAKS_WORDS, part)}, .texels = {width, height}, GROUP,    \
+        .forms = 1, .record = record_prepare,                                                      \
+    }
+static const struct vkao_pass breaks_x = BREAKS(x, BREAKS_X, 32, 1),
+                              breaks_y = BREAKS(y, BREAKS_Y, VKAO_PREPARE_WIDTH, 32);
+
+static const struct vkao_pass width = {
+    .name = "vkao width",
+    .label = "prepare",
+    .stage = VKAO_STAGE_PREPARE,
+    VKAO_CODE(vkao_packed_width_cpu),
+    .uses = {READS_TEXELS(BREAKS_X_READ, BREAKS_X, R32_UINT),
+             READS_TEXELS(BREAKS_Y_READ4, BREAKS_Y, R32G32B32A32_UINT), READS_Z4,
+             WRITES_WORDS(Z_WORDS, Z)},
     .texels = {VKAO_PREPARE_WIDTH, 1},
     GROUP,
     .forms = 1,
@@ -403,6 +432,11 @@ bool vkao_cpu_plan(struct vkao_program *program, vkao_stage_flags stage)
     switch (stage) {
     case VKAO_STAGE_PREPARE:
         vkao_program_add(program, &prepare);
+        if (vkao_has_width(e)) {
+            vkao_program_add(program, &breaks_x);
+            vkao_program_add(program, &breaks_y);
+            vkao_program_add(program, &width);
+        }
         return true;
     case VKAO_STAGE_SSAO:
         vkao_program_add(program, &tiles);
@@ -460,6 +494,10 @@ void vkao_cpu_parts(const struct vkao_program *program, VkExtent2D extent, bool 
     rows->stride = (grid.width + window - 1) / window * window + 2 * VKAO_BUFFER_PAD;
     const VkDeviceSize stride = rows->stride;
     parts[PART_Z] = stride * (grid.height + 2 * VKAO_VIEW_Z_BORDER) * 4;
+    if (vkao_has_width(&program->settings)) {
+        parts[PART_BREAKS_X] = (VkDeviceSize)VKAO_BREAKS_STRIDE_OF(stride) * grid.height * 4;
+        parts[PART_BREAKS_Y] = stride * ((grid.height + 31) / 32) * 4;
+    }
     /* A rect may begin within a tile of this many at most. */
     const VkDeviceSize columns = (grid.width + 3) / VKAO_ROW_GROUP_WIDTH + 1,
                        tile_rows = (grid.height + VKAO_TILE_HEIGHT - 1) / VKAO_TILE_HEIGHT;

@@ -524,8 +524,9 @@ typedef struct vkao_params {
      * acne from coarse depth or interpolated normals. Default 0.005 */
     float bias;
     /* [0,8] VBAO, RAYMARCH: how thick the scene is behind what is seen, relative to the measured
-     * default, which grows from .19 radius by .42 of the distance to the side, and with THRESHOLD
-     * 1.1 times that. 0 = 1. Default 1 */
+     * default. VBAO: .9 of its width in the depth image, at most .4 radius and .8 of the distance
+     * to the side. RAYMARCH: .19 radius and .42 of that distance. With THRESHOLD 1.1 times these.
+     * 0 = 1. Default 1 */
     float thickness;
     /* (0,inf) 1 / scene units; the constant 50 of SPHERE_LITERAL. Default 50 */
     float blocking_scale;
@@ -553,9 +554,9 @@ VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_record(const vkao_frame *frame, Vk
                                                      const vkao_params *params);
 
 /* Record the named stages alone, which the effect must have; VKAO_STAGE_PREPARE is one of them
- * here. It reads depth over view->valid and writes the frame's scratch, and comes first each time.
- * Stages share scratch memory: record them in order, each once, over the same rect; to split a
- * frame into rects, record all stages of one before the next. */
+ * here. It reads depth over view->valid, for VBAO the radius as well, and writes the frame's
+ * scratch, and comes first each time. Stages share scratch memory: record them in order, each once,
+ * over the same rect; to split a frame into rects, record all stages of one before the next. */
 VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_stage(const vkao_frame *frame, VkCommandBuffer cmd,
                                                     vkao_stage_flags stages, const vkao_view *view,
                                                     const vkao_params *params);

@@ -16,6 +16,7 @@ struct Slice {
     real center_z;       /* view z of the shaded point */
     real eye, origin;    /* y is origin - eye * view z, and what to_y adds */
     Real3 outward;       /* O: unit, in the slice, at right angles to V */
+    real fall;           /* of the depth image's plane, against V, per x */
     real normal_length;  /* L */
     real cos_n, sin_n;   /* of the projected normal's angle from V, towards O */
 };
@@ -31,7 +32,7 @@ Real3 eye_direction(ivec2 texel)
 }
 
 /* turn in [0,1) is half the circle. */
-Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
+Slice make_slice(real turn, Real3 position, Real3 normal, Planes plane, Real3 to_eye)
 {
     Slice s;
     Real2 d = Real2(half_turn_x(turn), half_turn_y(turn));
@@ -48,10 +49,12 @@ Slice make_slice(real turn, Real3 position, Real3 normal, Real3 to_eye)
         times(Real3(d.x - along * to_eye.x, d.y - along * to_eye.y, -along * to_eye.z), inverse_o);
     across = times(across, inverse_o);
     real off = dot3(normal, across), facing = dot3(normal, to_eye), out_n = dot3(normal, s.outward);
-    /* A sample's texel lies off the slice by rounding. It is moved into it along the tangent plane,
-     * which keeps its height over that plane, so that a tilted wall still lies flat in the
-     * slice. */
-    real moved = off / max(facing, real(VKAO_STEEPEST));
+    /* A sample's texel lies off the slice by rounding. It is moved into it along the plane that the
+     * depth image has here, which keeps its height over that plane, so that a tilted wall still
+     * lies flat in the slice, whatever its shading normals. */
+    real plane_facing = dot3(plane.normal, to_eye);
+    real moved = dot3(plane.normal, across) / max(plane_facing, plane.steepest);
+    s.fall = dot3(plane.normal, s.outward) / max(plane_facing, real(VKAO_STEEPEST));
     vec2 radii = params.unproject.xy * params.inverse_radius;
     s.to_x = Real2(radii.x * s.outward.x, radii.y * s.outward.y);
     s.to_y =
@@ -77,20 +80,20 @@ struct Steps {
     real k0, k1, k2;
 };
 
-/* q (LINEAR + (1 - LINEAR) q) of the reach, q = (t + jitter) / steps */
-Steps make_steps(Slice s, real jitter, float reach)
+/* q (linear + (1 - linear) q) of the reach, q = (t + jitter) / steps */
+Steps make_steps(Slice s, real jitter, float reach, float linear)
 {
-    float n = 1.0 / float(step_count()), square = reach * (1.0 - VKAO_STEP_LINEAR) * n * n;
-    float line = reach * VKAO_STEP_LINEAR * n;
+    float n = 1.0 / float(step_count()), square = reach * (1.0 - linear) * n * n;
+    float line = reach * linear * n;
     return Steps(s.scale * (jitter * (line + square * jitter)),
                  s.scale * (line + 2.0 * square * jitter), s.scale * square);
 }
 
-/* At least 1 + t/2 texels. */
-Offset step_offset(Slice s, Steps steps, uint t)
+/* At least 1 + least_rise t texels. */
+Offset step_offset(Slice s, Steps steps, uint t, float least_rise)
 {
     real far = steps.k0 + float(t) * (steps.k1 + float(t) * steps.k2);
-    real least = s.per_texel * (1.0 + 0.5 * float(t));
+    real least = s.per_texel * (1.0 + least_rise * float(t));
     far = choose(least, far, above(far, least));
     return Offset(rounded(s.step.x * far), rounded(s.step.y * far));
 }

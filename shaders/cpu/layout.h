@@ -38,6 +38,9 @@
 #define VKAO_BINDING_BLURRED_WORDS 41
 #define VKAO_BINDING_STAGED_WORDS 42
 #define VKAO_BINDING_TILES 43 /* vkao_tiles_head, tiles */
+#define VKAO_BINDING_BREAKS_WORDS 44
+#define VKAO_BINDING_BREAKS_X_READ 45  /* r32ui */
+#define VKAO_BINDING_BREAKS_Y_READ4 46 /* rgba32ui: of 4 columns */
 
 /* VKAO_SETTING_PATH: noisy AO goes through the buffer, else through an image; and the format of
  * what is copied. */
@@ -70,8 +73,10 @@
 #define VKAO_UPSAMPLE_HEIGHT 2
 
 /* vkao_constants.path: texels in a row of buffers, and in a row of what is copied. */
+#define VKAO_BREAKS_STRIDE_OF(stride) ((stride) / 32 + 1) /* words of breaks in a row */
 #ifdef VKAO_GLSL
 #define VKAO_STRIDE int(params.path.x)
+#define VKAO_BREAKS_STRIDE VKAO_BREAKS_STRIDE_OF(VKAO_STRIDE)
 #define VKAO_STAGED_STRIDE int(params.path.y)
 #endif
 

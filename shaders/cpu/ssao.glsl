@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  *
  * ../ssao.glsl for two texels side by side. The includer defines
- *     Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
- * for them, texel being the first. An invocation has texels of a tile from the list, and writes
- * codes into the buffer or texels into an image. With VKAO_STORAGE_16BIT two codes are one store to
- * a storage buffer, which costs less than a texel buffer. */
+ *     Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
+ * for them, texel being the first; plane is that of the depth image. An invocation has texels of a
+ * tile from the list, and writes codes into the buffer or texels into an image. With
+ * VKAO_STORAGE_16BIT two codes are one store to a storage buffer, which costs less than a texel
+ * buffer. */
 #ifndef VKAO_PAIRED_SSAO_GLSL_
 #define VKAO_PAIRED_SSAO_GLSL_
 
@@ -77,26 +78,40 @@ reals border_view_zs(ints x, ints y)
     return z;
 }
 
+/* Of the depth image; see Plane. */
+struct Planes {
+    Real3 normal;
+    real steepest;
+};
+
 /* Depth's own normals are always computed and seldom taken: that costs less than the branch. */
-Real3 view_normals(ivec2 texel, Real3 position)
+Real3 view_normals(ivec2 texel, Real3 position, out Planes plane)
 {
-    vec3 n[TEXELS];
+    vec3 n[TEXELS], planes[TEXELS];
+    float steepest[TEXELS];
     [[unroll]] for (int i = 0; i < TEXELS; ++i) {
         ivec2 at = texel + ivec2(i, 0);
         vec3 center = lane3(position, i), stored = to_view(decode_normal(at << GRID_SHIFT));
-        n[i] = trusted_normal(stored, normal_from_depth(at, center.z), center);
+        Facet own = facet_of(at, center.z);
+        n[i] = trusted_normal(stored, own.normal, center);
+        Plane p = plane_of(own, n[i]);
+        planes[i] = p.normal;
+        steepest[i] = p.steepest;
     }
+    plane = Planes(join3(planes), join(steepest));
     return join3(n);
 }
 
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal);
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane);
 
 /* What is not seen, background, is open. */
 Visibility shade(ivec2 texel)
 {
     real z = load_view_zs(texel);
     Real3 position = view_positions(texel, z);
-    Visibility v = visibility(texel, position, view_normals(texel, position));
+    Planes plane;
+    Real3 normal = view_normals(texel, position, plane);
+    Visibility v = visibility(texel, position, normal, plane);
     /* Where numbers fail, by a radius of 1e-9 of the distance for one, nothing is known to
      * occlude. */
     v.open = sane(choose(real(1.0), v.open, above(z, real(0.0))), real(1.0));

@@ -15,16 +15,16 @@
 /* Cosines of the horizons. */
 reals horizon_cosines(Slice s, ivec2 texel, real jitter)
 {
-    Steps steps = make_steps(s, jitter, params.radius);
+    Steps steps = make_steps(s, jitter, params.radius, VKAO_STEP_LINEAR);
     reals low = -SIDES * both(s.sin_n); /* cos(n +- pi/2): the tangent plane */
     reals horizon = low, open = low + params.bias_cosine;
-    Offset next = step_offset(s, steps, 0u);
+    Offset next = step_offset(s, steps, 0u, VKAO_STEP_LEAST);
     reals next_z = load_sides(texel, next);
     uint t = 0u;
     [[unroll]] for (;;) {
         Offset offset = next;
         reals z = next_z, x, y;
-        next = step_offset(s, steps, t + 1u);
+        next = step_offset(s, steps, t + 1u, VKAO_STEP_LEAST);
         if (STEPS == 0u || t + 1u < STEPS)
             next_z = load_sides(texel, next);
         slice_points(s, offset, z, x, y);
@@ -38,7 +38,7 @@ reals horizon_cosines(Slice s, ivec2 texel, real jitter)
     return clamp(horizon, reals(-1.0), reals(1.0));
 }
 
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
 {
     Real3 to_eye = eye_direction(texel), bent = Real3(real(0.0), real(0.0), real(0.0));
     Noise noise = texel_noise(texel, slice_count());
@@ -46,7 +46,7 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
     float share = 1.0 / float(slice_count());
     uint k = 0u;
     [[unroll]] for (;;) {
-        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, to_eye);
+        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye);
         reals cosines = horizon_cosines(s, texel, noise.jitter);
         real n = acos(s.cos_n);
         n = choose(-n, n, above(s.sin_n, real(0.0)));

@@ -14,12 +14,12 @@
 /* Of both sides together. */
 real occlusion(Slice s, ivec2 texel, real jitter)
 {
-    Steps steps = make_steps(s, jitter, params.radius);
+    Steps steps = make_steps(s, jitter, params.radius, VKAO_STEP_LINEAR);
     reals sine = reals(params.bias_cosine), occluded = reals(0.0);
     reals along = SIDES * both(s.normal_length * s.sin_n), facing = both(s.normal_length * s.cos_n);
     uint t = 0u;
     [[unroll]] for (;;) {
-        Offset offset = step_offset(s, steps, t);
+        Offset offset = step_offset(s, steps, t, VKAO_STEP_LEAST);
         reals z = load_sides(texel, offset), x, y;
         slice_points(s, offset, z, x, y);
         reals d2 = x * x + y * y;
@@ -34,7 +34,7 @@ real occlusion(Slice s, ivec2 texel, real jitter)
     return first_side(occluded) + other_side(occluded);
 }
 
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
 {
     Real3 to_eye = eye_direction(texel);
     Noise noise = texel_noise(texel, slice_count());
@@ -42,8 +42,9 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
     float share = 1.0 / float(slice_count());
     uint k = 0u;
     [[unroll]] for (;;) {
-        occluded += occlusion(make_slice((float(k) + noise.turn) * share, position, normal, to_eye),
-                              texel, noise.jitter);
+        occluded +=
+            occlusion(make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye),
+                      texel, noise.jitter);
         if (++k >= slice_count())
             break;
     }

@@ -51,7 +51,7 @@ reals load_nearest(ivec2 texel, RoundedSides x, RoundedSides y)
     return border_view_zs(x.bits + ints(origin_x, origin_x), y.bits + origin.y);
 }
 
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
 {
     float radius = params.radius;
     Real3 sight = view_positions(texel, real(1.0));

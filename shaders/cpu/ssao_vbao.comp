@@ -30,24 +30,34 @@ uint chunk()
 struct March {
     ints mask; /* sectors that are hidden */
     reals last_x, last_height, last_front;
-    reals hidden; /* sectors, weighted */
+    reals rounding; /* taken off upper bounds while all samples join the point's own surface */
+    reals hidden;   /* sectors, weighted */
     reals out_moment, eye_moment;
 };
 
+/* In radii, as the width of the surface says. */
+reals thickness_of(reals z)
+{
+    ints code = floatBitsToInt(z) & VKAO_THICKNESS_MASK;
+    return params.thickness *
+           intBitsToFloat((code << VKAO_THICKNESS_SHIFT) + VKAO_THICKNESS_LEAST_BITS);
+}
+
 /* Takes what a sample of both sides hides first. */
-void hide(inout March march, Slice s, Masks m, reals tangent, Offset offset, reals z)
+void hide(inout March march, Slice s, Masks m, reals fall, Offset offset, reals z)
 {
     bools seen = greaterThan(z, reals(0.0));
     reals x, y;
     slice_points(s, offset, mix(both(s.center_z), z, seen), x, y);
     if (!ORTHOGRAPHIC) /* see is_seen */
         seen = bools(ivec4(seen) * ivec4(greaterThan(x, reals(0.0))));
-    reals gap = x - march.last_x, height = mix(reals(0.0), y + x * tangent, seen);
+    reals gap = x - march.last_x, height = mix(reals(0.0), y + x * fall, seen);
     bools joined = lessThan(abs(height - march.last_height), VKAO_VBAO_JOIN * abs(gap));
     reals inner_x = x - VKAO_VBAO_GAP_FRONT * gap;
     reals front_x = mix(x, inner_x, greaterThan(height, reals(0.0)));
     front_x = mix(front_x, x, joined);
-    reals thick_y = y - (params.thickness_base + params.thickness_slope * x);
+    reals thick_y = y - lesser(greater(thickness_of(z), params.thickness_gap * gap),
+                               params.thickness_base + params.thickness_slope * x);
     reals back_x = x + VKAO_VBAO_GAP_BACK * gap;
     /* Cosines of both edges by one division. */
     reals front_length = sqrt(front_x * front_x + y * y);
@@ -55,8 +65,10 @@ void hide(inout March march, Slice s, Masks m, reals tangent, Offset offset, rea
     reals inverse = 1.0 / (front_length * back_length);
     reals front = y * (back_length * inverse), back = thick_y * (front_length * inverse);
     front = greater(front, mix(reals(-2.0), march.last_front, joined));
-    ints high = min(sector(m, greater(front - params.bias_cosine, m.low)), ints(31)),
-         low = min(sector(m, greater(back, m.low)), high);
+    march.rounding = mix(reals(0.0), march.rounding, joined);
+    ints high =
+             min(sector(m, greater(front - params.bias_cosine, m.low), march.rounding), ints(31)),
+         low = min(sector(m, greater(back, m.low), reals(0.0)), high);
     ints bits = (ints(1) << high) - (ints(1) << low);
     bits = mix(ints(0), bits, seen);
     ints fresh = bits & ~march.mask;
@@ -86,32 +98,33 @@ real both_sides(reals sectors)
 }
 
 /* Steps beyond the last hide nothing. */
-void take_step(inout March march, Slice s, Masks m, reals tangent, ivec2 texel, Steps steps, uint t)
+void take_step(inout March march, Slice s, Masks m, reals fall, ivec2 texel, Steps steps, uint t)
 {
-    Offset offset = step_offset(s, steps, t);
+    Offset offset = step_offset(s, steps, t, VKAO_VBAO_STEP_LEAST);
     reals z = load_sides(texel, offset);
     if (STEPS % chunk() != 0u)
         z = t < STEPS ? z : reals(0.0);
-    hide(march, s, m, tangent, offset, z);
+    hide(march, s, m, fall, offset, z);
 }
 
 Hidden hidden_mass(Slice s, ivec2 texel, real jitter, bool unrolled)
 {
     float reach = params.radius;
     reach *= THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH;
-    reals tangent = SIDES * both(s.sin_n / max(s.cos_n, real(VKAO_STEEPEST)));
+    reals fall = SIDES * both(s.fall);
     Masks m = make_masks(SIDES * both(s.sin_n), both(s.cos_n));
     const reals none = reals(0.0);
-    Steps steps = make_steps(s, jitter, reach);
-    March march = March(ints(0), none, none, reals(-2.0), none, none, none);
+    Steps steps = make_steps(s, jitter, reach, VKAO_VBAO_STEP_LINEAR);
+    March march =
+        March(ints(0), none, none, reals(-2.0), reals(VKAO_VBAO_ROUND_LESS), none, none, none);
     if (unrolled) {
         [[unroll]] for (uint t = 0u; t < STEPS; ++t)
-            take_step(march, s, m, tangent, texel, steps, t);
+            take_step(march, s, m, fall, texel, steps, t);
     } else {
         uint t = 0u;
         [[dont_unroll]] for (;;) {
             [[unroll]] for (uint i = 0u; i < chunk(); ++i)
-                take_step(march, s, m, tangent, texel, steps, t + i);
+                take_step(march, s, m, fall, texel, steps, t + i);
             t += chunk();
             if (t >= step_count())
                 break;
@@ -121,18 +134,18 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter, bool unrolled)
                   both_sides(march.eye_moment));
 }
 
-void add_slice(inout Visibility v, uint k, ivec2 texel, Real3 position, Real3 normal, Real3 to_eye,
-               real turn, real jitter, bool unrolled)
+void add_slice(inout Visibility v, uint k, ivec2 texel, Real3 position, Real3 normal, Planes plane,
+               Real3 to_eye, real turn, real jitter, bool unrolled)
 {
     float share = 1.0 / float(slice_count());
-    Slice s = make_slice((float(k) + turn) * share, position, normal, to_eye);
+    Slice s = make_slice((float(k) + turn) * share, position, normal, plane, to_eye);
     Hidden hidden = hidden_mass(s, texel, jitter, unrolled);
     v.open -= s.normal_length * hidden.mass * share;
     Real3 moment = plus(times(s.outward, hidden.out_moment), times(to_eye, hidden.eye_moment));
     v.bent = plus(v.bent, times(moment, -share * s.normal_length));
 }
 
-Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
+Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
 {
     Real3 to_eye = eye_direction(texel);
     Noise noise = texel_noise(texel, slice_count());
@@ -140,11 +153,12 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal)
     Visibility v = Visibility(times(normal, real(2.0 / 3.0)), real(1.0));
     if (unrolls()) {
         [[unroll]] for (uint k = 0u; k < SLICES; ++k)
-            add_slice(v, k, texel, position, normal, to_eye, noise.turn, noise.jitter, true);
+            add_slice(v, k, texel, position, normal, plane, to_eye, noise.turn, noise.jitter, true);
     } else {
         uint k = 0u;
         [[dont_unroll]] for (;;) {
-            add_slice(v, k, texel, position, normal, to_eye, noise.turn, noise.jitter, false);
+            add_slice(v, k, texel, position, normal, plane, to_eye, noise.turn, noise.jitter,
+                      false);
             if (++k >= slice_count())
                 break;
         }

@@ -35,6 +35,7 @@ static void view_z_and_normals_are_those_of_the_grid(void **state)
         double *stored = NULL;
         bool is_half = i & 1, show_normals = i & 2;
         make(&p, is_half, i & 4, show_normals ? VKAO_COMPOSITE_NORMALS : VKAO_COMPOSITE_VIEW_Z);
+        p.ssao.method = VKAO_SSAO_GTAO; /* vbao leaves a thickness in the last bits of view z */
         double *want = test_alloc(picture_texels(&p) * 4, sizeof *want);
         picture_reference_scene(&p, &full);
         ref_scene_half(&full, &p.view, p.values[SLOT_NORMALS], &half, &stored);

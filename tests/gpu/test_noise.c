@@ -198,7 +198,8 @@ static void no_pattern_of_the_noise_is_left_on_a_tilted_wall(void **state)
                       noisy.own / step, left.mixed / step, noisy.mixed / step, left.ratio,
                       noisy.ratio);
         assert_true(mean_ao < 0.95);
-        assert_true(noisy.own > 50.0 * left.own); /* it is looked for in the right places */
+        /* It is looked for in the right places; two slices have less of it from the start. */
+        assert_true(noisy.own > (i % 4 == VKAO_QUALITY_HIGH ? 25.0 : 50.0) * left.own);
         assert_true(left.own <= 0.1 * step);
         assert_true(left.mixed <= 0.75 * step);
         /* Upsampling leaves peaks, of a fiftieth of a step. */

@@ -12,6 +12,9 @@
 /* Noisy AO is a code of .01 in the CPU's buffer, and a 16-bit float below 2 in the image of a GPU:
  * each is off by half a step, which the blur's mean does not exceed. */
 static const double code_rounding = 0.005, float_rounding = 0x1p-11;
+/* vbao's bounds of sectors come of the same numbers in another order: in one texel of a thousand
+ * one falls to the other side. */
+static const double sector = 1.0 / 31.0;
 
 enum { WIDTH = 139, HEIGHT = 101 };
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -161,8 +164,13 @@ static void both_paths_agree(void **state)
         const double most =
             (row->bent ? float_rounding : code_rounding + float_rounding) * tone + 1e-5;
         const double spread = mean_of(gpu[i], WIDTH * HEIGHT);
-        print_message("    %-28s max %.2e  mean %.2e of %.3f\n", row->name, d.max, d.mean, spread);
-        failed += !(d.max <= most) || !(spread < 0.98);
+        size_t flips = 0;
+        for (size_t t = 0; t < (size_t)WIDTH * HEIGHT; ++t)
+            flips += !(fabs(cpu[i][t] - gpu[i][t]) <= most);
+        print_message("    %-28s max %.2e  mean %.2e of %.3f, %zu flips\n", row->name, d.max,
+                      d.mean, spread, flips);
+        failed += !(spread < 0.98) || !(d.max <= most + sector * tone);
+        failed += flips > (row->method == VKAO_SSAO_VBAO ? WIDTH * HEIGHT / 1000 : 0);
         if (row->bent) {
             const struct difference b =
                 difference_of(cpu_bent[i], gpu_bent[i], (size_t)WIDTH * HEIGHT * 4);

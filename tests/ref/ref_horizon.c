@@ -36,6 +36,28 @@ void ref_slice_turn(struct ref_slice *slice, double angle)
         in_slice[i] = slice->n[i] - off * a[i];
     slice->length = sqrt(ref_dot(in_slice, in_slice));
     slice->angle = atan2(ref_dot(in_slice, o), ref_dot(in_slice, v));
+    slice->fall = ref_dot(slice->plane, o) / fmax(ref_dot(slice->plane, v), VKAO_STEEPEST);
+}
+
+/* Without a neighbour in its row, or in its column, a texel has no plane. */
+static bool is_alone(const struct ref_scene *scene, int x, int y)
+{
+    return (isnan(ref_scene_z(scene, x - 1, y)) && isnan(ref_scene_z(scene, x + 1, y))) ||
+           (isnan(ref_scene_z(scene, x, y - 1)) && isnan(ref_scene_z(scene, x, y + 1)));
+}
+
+/* Depth that goes on in a straight line in rows and columns has a plane. */
+static bool is_straight(const struct ref_scene *scene, int x, int y)
+{
+    double z = ref_scene_z(scene, x, y);
+    for (int axis = 0; axis < 2; ++axis) {
+        int dx = axis == 0, dy = axis == 1;
+        double before = ref_scene_z(scene, x - dx, y - dy);
+        double after = ref_scene_z(scene, x + dx, y + dy);
+        if (!(fabs(before + after - 2.0 * z) <= VKAO_PLANE_BEND * fabs(after - before) + 4e-6 * z))
+            return false;
+    }
+    return true;
 }
 
 void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
@@ -45,27 +67,38 @@ void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
     *slice = (struct ref_slice){.scene = scene, .params = params, .x = x, .y = y};
     memcpy(slice->p, p, sizeof slice->p);
     memcpy(slice->n, n, sizeof slice->n);
+    const double *own = &scene->planes[((size_t)y * scene->width + (size_t)x) * 3];
+    double agreement = is_alone(scene, x, y) ? 1.0 : ref_dot(own, n);
+    memcpy(slice->plane, agreement > VKAO_PLANE_EQUALS ? n : own, sizeof slice->plane);
     ref_view_eye(&scene->view, p, slice->to_eye);
+    bool holds = is_straight(scene, x, y) || agreement > VKAO_PLANE_AGREES;
+    slice->steepest = holds ? VKAO_STEEPEST : VKAO_PLANE_STEEPEST;
+    double error = ref_view_depth_error(&scene->view, p[2]);
+    if (params->method == VKAO_SSAO_VBAO)
+        error += VKAO_THICKNESS_DEPTH_ERROR * p[2];
     /* Of both ends of v, along the directions in which they are seen. */
-    slice->guard = 2.0 * ref_view_depth_error(&scene->view, p[2]) / fabs(slice->to_eye[2]);
+    slice->guard = 2.0 * error / fabs(slice->to_eye[2]);
     slice->noise = ref_noise(x, y, params->slice_count, params->noise_index);
     ref_slice_turn(slice, pi * (k + slice->noise.turn) / params->slice_count);
 }
 
-/* Distances crowd towards the point, but lie at least 1 + t/2 texels out. Where the point at that
- * distance along the slice's direction on screen lies is for the projection to say. */
+/* Distances crowd towards the point, but lie at least 1 + least t texels out. Where the point at
+ * that distance along the slice's direction on screen lies is for the projection to say. */
 static void step_texel(const struct ref_slice *s, double side, uint32_t step, double reach,
                        int at[2])
 {
+    bool is_vbao = s->params->method == VKAO_SSAO_VBAO;
+    double linear = is_vbao ? VKAO_VBAO_STEP_LINEAR : VKAO_STEP_LINEAR;
+    double least = is_vbao ? VKAO_VBAO_STEP_LEAST : VKAO_STEP_LEAST;
     double q = (step + s->noise.jitter) / s->params->step_count;
-    double distance = reach * q * (VKAO_STEP_LINEAR + (1.0 - VKAO_STEP_LINEAR) * q);
+    double distance = reach * q * (linear + (1.0 - linear) * q);
     double from[2], to[2];
     const double unit[3] = {s->p[0] + s->direction[0], s->p[1] + s->direction[1], s->p[2]};
     ref_view_project(&s->scene->view, s->p, from);
     ref_view_project(&s->scene->view, unit, to);
     double per_unit[2] = {to[0] - from[0], to[1] - from[1]};
     double texels = distance * hypot(per_unit[0], per_unit[1]);
-    double scale = fmax(1.0, (1.0 + 0.5 * step) / texels) * distance * side;
+    double scale = fmax(1.0, (1.0 + least * step) / texels) * distance * side;
     at[0] = (int)floor(fmax(-1e6, fmin(1e6, s->x + per_unit[0] * scale)) + 0.5);
     at[1] = (int)floor(fmax(-1e6, fmin(1e6, s->y + per_unit[1] * scale)) + 0.5);
 }
@@ -81,22 +114,24 @@ bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, dou
     ref_view_position(&s->scene->view, at[0], at[1], known ? z : s->p[2], q);
     for (int i = 0; i < 3; ++i)
         sample->v[i] = q[i] - s->p[i];
-    /* Into the slice along the tangent plane: the height over that plane, n.v, stays what it is. */
+    sample->x = at[0];
+    sample->y = at[1];
+    /* Into the slice along the depth image's plane: the height over that plane stays what it is. */
     double off = ref_dot(sample->v, s->across);
-    double facing = fmax(ref_dot(s->n, s->to_eye), VKAO_STEEPEST);
+    double facing = fmax(ref_dot(s->plane, s->to_eye), s->steepest);
     sample->out = side * ref_dot(sample->v, s->outward);
     /* The depth may be off by a step of its format. */
-    sample->up = ref_dot(sample->v, s->to_eye) + off * ref_dot(s->n, s->across) / facing - s->guard;
+    sample->up =
+        ref_dot(sample->v, s->to_eye) + off * ref_dot(s->plane, s->across) / facing - s->guard;
     sample->distance = hypot(sample->out, sample->up);
     /* Far off the axis a texel beside the slice may lie behind the shaded point. */
     return known && sample->out > 0.0;
 }
 
-double ref_thickness(const struct ao_ssao *params, double lateral)
+double ref_thickness_scale(const struct ao_ssao *params)
 {
     double scale = params->falloff == VKAO_FALLOFF_THRESHOLD ? VKAO_THICKNESS_THRESHOLD : 1.0;
-    return scale * (double)params->thickness *
-           (VKAO_THICKNESS_BASE * (double)params->radius + VKAO_THICKNESS_SLOPE * lateral);
+    return scale * (double)params->thickness;
 }
 
 double ref_falloff(const struct ao_ssao *params, double distance)

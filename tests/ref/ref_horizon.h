@@ -14,11 +14,13 @@ struct ref_slice {
     const struct ao_ssao *params;
     int x, y;
     struct ref_noise noise;
-    double p[3], n[3], to_eye[3];
-    double direction[2];          /* on screen, unit */
-    double outward[3], across[3]; /* orthonormal with to_eye */
-    double length, angle;         /* L and n of the projected normal */
-    double guard;                 /* how far a height may be off */
+    double p[3], n[3], plane[3], to_eye[3]; /* plane: normal of the depth image */
+    double direction[2];                    /* on screen, unit */
+    double outward[3], across[3];           /* orthonormal with to_eye */
+    double length, angle;                   /* L and n of the projected normal */
+    double fall;                            /* of that plane, against V, per length outwards */
+    double steepest; /* cosine to the eye at which it stops getting steeper */
+    double guard;    /* how far a height may be off */
 };
 
 /* Slice k of params->slice_count through texel (x, y), turned by the noise. */
@@ -30,6 +32,7 @@ void ref_slice_turn(struct ref_slice *slice, double angle);
 
 /* One step outwards on one side. */
 struct ref_sample {
+    int x, y;        /* texel */
     double v[3];     /* from the shaded point */
     double out, up;  /* in the slice, out on that side */
     double distance; /* of that point: hypot(out, up) */
@@ -42,8 +45,8 @@ bool ref_slice_sample(const struct ref_slice *slice, double side, uint32_t step,
 /* 1 - (d/R)^2 within R, or 1 within R. */
 double ref_falloff(const struct ao_ssao *params, double distance);
 
-/* Of what is seen at that distance to the side, in scene units. */
-double ref_thickness(const struct ao_ssao *params, double lateral);
+/* What params->thickness is relative to, falloff and all. */
+double ref_thickness_scale(const struct ao_ssao *params);
 
 /* Integrals from a to b over theta, by Simpson's rule: of the measure without L, and of the measure
  * times (sin theta, cos theta). */

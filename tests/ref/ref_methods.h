@@ -20,8 +20,8 @@ void ref_raymarch_bent(const struct ref_scene *scene, const struct ao_ssao *para
                        double *bent);
 
 /* Of VBAO: in how many of the 31 sectors of one side a bound at angle theta from V, on that side,
- * leaves hidden what lies beyond it; n as seen from that side. */
-int ref_vbao_sector(double n, double theta);
+ * leaves hidden what lies beyond it; n as seen from that side. less: of rounding. */
+int ref_vbao_sector(double n, double theta, double less);
 /* The share of a side's measure between the tangent plane and theta. */
 double ref_vbao_share(double n, double theta);
 

@@ -116,16 +116,16 @@ static void from_depth(const struct ref_scene *scene, int x, int y, measure *mis
 }
 
 void ref_scene_normal(const struct ref_scene *scene, const struct ao_view *view, int x, int y,
-                      const double *stored, double out[3])
+                      const double *stored, double out[3], double facet[3])
 {
-    double n[3], p[3], eye[3], facet[3], z = ref_scene_z(scene, x, y);
+    double n[3], p[3], eye[3], z = ref_scene_z(scene, x, y);
     for (int i = 0; i < 3; ++i)
-        out[i] = NAN;
+        out[i] = facet[i] = NAN;
     if (isnan(z))
         return;
     bool none = !stored || view->normal_encoding == VKAO_NORMALS_FROM_DEPTH;
     from_depth(scene, x, y, none ? misprediction : difference, facet);
-    memcpy(out, facet, sizeof facet);
+    memcpy(out, facet, 3 * sizeof out[0]);
     if (none || !ref_normal_decode(view->normal_encoding, stored, n))
         return;
     for (int row = 0; row < 3; ++row) {

@@ -13,8 +13,9 @@ double ref_dot(const double a[3], const double b[3]);
 bool ref_normal_decode(vkao_normal_encoding encoding, const double stored[4], double out[3]);
 /* The unit normal that components stand for, the other way round. */
 void ref_normal_encode(vkao_normal_encoding encoding, const double normal[3], double stored[4]);
-/* Unit view-space normal of a texel that faces the eye; stored may be NULL. */
+/* Unit view-space normal of a texel that faces the eye, and that of the depth image; stored may be
+ * NULL. */
 void ref_scene_normal(const struct ref_scene *scene, const struct ao_view *view, int x, int y,
-                      const double *stored, double out[3]);
+                      const double *stored, double out[3], double facet[3]);
 
 #endif

@@ -29,7 +29,8 @@ static bool hit(const struct ref_scene *scene, const struct ao_ssao *params, con
         under[i] = surface[i] - point[i];
     }
     double along = ref_dot(v, eye), lateral = sqrt(fmax(0.0, ref_dot(v, v) - along * along));
-    double thickness = ref_thickness(params, fmin(lateral, radius));
+    double thickness = ref_thickness_scale(params) * (VKAO_THICKNESS_BASE * radius +
+                                                      VKAO_THICKNESS_SLOPE * fmin(lateral, radius));
     /* What stands behind the point, as the eye sees it, may be higher over the tangent plane and
      * hides nothing. */
     double behind = ref_dot(eye, under);

@@ -29,8 +29,9 @@ void ref_scene_half(const struct ref_scene *full, const struct ao_view *view, co
     half->view.rect = half->view.valid;
     half->z = malloc(texels * sizeof *half->z);
     half->normals = malloc(texels * 3 * sizeof *half->normals);
+    half->planes = malloc(texels * 3 * sizeof *half->planes);
     *half_stored = malloc(texels * 4 * sizeof **half_stored);
-    if (!half->z || !half->normals || !*half_stored)
+    if (!half->z || !half->normals || !half->planes || !*half_stored)
         abort();
     for (size_t i = 0; i < texels; ++i) {
         size_t at = i / half->width * 2 * full->width + i % half->width * 2;
@@ -40,7 +41,8 @@ void ref_scene_half(const struct ref_scene *full, const struct ao_view *view, co
     }
     for (size_t i = 0; i < texels; ++i)
         ref_scene_normal(half, view, (int)(i % half->width), (int)(i / half->width),
-                         given ? &(*half_stored)[i * 4] : NULL, &half->normals[i * 3]);
+                         given ? &(*half_stored)[i * 4] : NULL, &half->normals[i * 3],
+                         &half->planes[i * 3]);
     if (!given) {
         free(*half_stored);
         *half_stored = NULL;

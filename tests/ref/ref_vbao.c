@@ -5,6 +5,7 @@
 #include "ref_horizon.h"
 #include "ref_normal.h"
 #include "ref_ssao.h"
+#include "ref_width.h"
 
 #include <math.h>
 
@@ -27,12 +28,12 @@ double ref_vbao_share(double n, double theta)
     return (mass_below(n, cos(theta)) - low) / fmax(all, 1.0e-4);
 }
 
-int ref_vbao_sector(double n, double theta)
+int ref_vbao_sector(double n, double theta, double less)
 {
     double share = ref_vbao_share(n, theta);
     if (theta >= n + half_pi)
         return 0;
-    return (int)fmax(0.0, fmin(SECTORS, floor(share * SECTORS + VKAO_VBAO_ROUND)));
+    return (int)fmax(0.0, fmin(SECTORS, floor(share * SECTORS + VKAO_VBAO_ROUND - less)));
 }
 
 struct side {
@@ -44,9 +45,10 @@ struct side {
 
 /* Hides the sectors between the angles of the back and the front edge; those that were not hidden
  * yet count. */
-static void hide(struct side *s, double front, double back, double weight)
+static void hide(struct side *s, double front, double less, double back, double weight)
 {
-    int high = ref_vbao_sector(s->n, front), low = ref_vbao_sector(s->n, back), fresh = 0;
+    int high = ref_vbao_sector(s->n, front, less), low = ref_vbao_sector(s->n, back, 0.0),
+        fresh = 0;
     for (int i = low < high ? low : high; i < high; ++i) {
         fresh += !s->hidden[i];
         s->hidden[i] = true;
@@ -70,30 +72,36 @@ static void march(struct side *s)
     const double radius = (double)params->radius;
     double reach =
         params->falloff == VKAO_FALLOFF_SMOOTH ? VKAO_VBAO_REACH_SMOOTH : VKAO_VBAO_REACH_THRESHOLD;
-    double before[2] = {0.0, 0.0}, before_angle = INFINITY;
+    const double fall = s->sign * s->slice->fall;
+    double last_out = 0.0, last_height = 0.0, last_angle = INFINITY;
+    bool all_joined = true;
     struct ref_sample p;
     for (uint32_t t = 0; t < params->step_count; ++t) {
         bool known = ref_slice_sample(s->slice, s->sign, t, reach * radius, &p);
-        double dx = p.out - before[0], dy = p.up - before[1], joined_angle = before_angle;
-        /* The tangent plane falls by this for every unit outwards. */
-        double fall = sin(s->n) / fmax(cos(s->n), VKAO_STEEPEST);
-        before[0] = p.out;
-        before[1] = known ? p.up : -p.out * fall;
-        before_angle = known ? fabs(atan2(p.out, p.up)) : INFINITY;
+        double dx = p.out - last_out, height = known ? p.up + p.out * fall : 0.0;
+        double joined_angle = last_angle;
+        bool joined = fabs(height - last_height) < VKAO_VBAO_JOIN * fabs(dx);
+        bool above = height > 0.0;
+        all_joined = all_joined && joined;
+        last_out = p.out;
+        last_height = height;
+        last_angle = known ? fabs(atan2(p.out, p.up)) : INFINITY;
         if (!known)
             continue;
-        bool joined = fabs(dy + dx * fall) < VKAO_VBAO_JOIN * fabs(dx);
-        bool above = p.up + p.out * fall > 0.0;
         double front_out =
             !joined && above ? fmax(p.out - VKAO_VBAO_GAP_FRONT * dx, 1.0e-4 * radius) : p.out;
         double front = fabs(atan2(front_out, p.up));
         if (joined)
             front = fmin(front, joined_angle);
-        double thickness = ref_thickness(params, p.out);
+        double thickness = fmax(ref_width_thickness(s->slice->scene, radius, p.x, p.y),
+                                VKAO_VBAO_THICKNESS_GAP * dx);
+        thickness =
+            ref_thickness_scale(params) *
+            fmin(thickness, VKAO_VBAO_THICKNESS_BASE * radius + VKAO_VBAO_THICKNESS_SLOPE * p.out);
         double back = fabs(atan2(p.out + VKAO_VBAO_GAP_BACK * dx, p.up - thickness));
         /* The slab's point nearest to P is on P's own height if the slab spans that. */
         double near_up = p.up < 0.0 ? p.up : fmax(0.0, p.up - thickness);
-        hide(s, lowered(front, (double)params->bias), back,
+        hide(s, lowered(front, (double)params->bias), all_joined ? VKAO_VBAO_ROUND_LESS : 0.0, back,
              ref_falloff(params, hypot(p.out - VKAO_VBAO_GAP_FRONT * dx, near_up)));
     }
 }

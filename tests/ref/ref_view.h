@@ -26,6 +26,7 @@ struct ref_scene {
     uint32_t width, height;
     double *z;       /* positive away from the eye; NAN = background or outside the valid texels */
     double *normals; /* 3 a texel, unit, view space, facing the eye */
+    double *planes;  /* the same of the depth image */
 };
 
 bool ref_invert(const double m[16], double out[16]);

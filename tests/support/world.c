@@ -82,6 +82,8 @@ void world_init(struct world *w, bool with_callbacks)
     w->bent_normals = w->images.bent_normals;
     w->images.bent_normals = (vkao_image){0};
     w->effect_info = vkao_effect_info_default();
+    /* It has one pass a stage, and two of the blur. */
+    w->effect_info.method = VKAO_SSAO_GTAO;
     w->effect_info.stages = VKAO_STAGE_ALL;
     w->effect_info.ao_format = formats[3];
     w->effect_info.noisy_ao = VK_TRUE;

@@ -172,7 +172,7 @@ static void parts_that_are_needed_together_do_not_overlap(void **state)
         for (int a = VKAO_RESOURCE_CONSTANTS; a < VKAO_RESOURCE_COUNT; ++a) {
             for (int b = VKAO_RESOURCE_CONSTANTS; b < a; ++b) {
                 /* Tiles alone are done with before the blur begins. */
-                if (a == VKAO_RESOURCE_COUNT - 1)
+                if (a == VKAO_RESOURCE_CPU + 5)
                     continue;
                 /* Noisy AO ends where upsampling begins, and copies only then. */
                 if ((i & 1) && b == VKAO_RESOURCE_CPU + 1)

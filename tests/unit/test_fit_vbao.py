@@ -57,18 +57,18 @@ class Search(unittest.TestCase):
 class Constants(unittest.TestCase):
     def test_all_fitted_ones_are_read(self):
         values = fit_vbao.read_constants(PARAMS)
-        for name in ('VBAO_REACH_SMOOTH', 'STEP_LINEAR', 'THICKNESS_BASE', 'VBAO_GAP_FRONT'):
+        for name in ('VBAO_REACH_SMOOTH', 'STEP_LINEAR', 'VBAO_THICKNESS_WIDTH', 'VBAO_GAP_FRONT'):
             self.assertIn(name, values)
         self.assertNotIn('VBAO_MOST_UNROLLED', values)
 
     def test_only_what_is_named_changes(self):
         values = fit_vbao.read_constants(PARAMS)
         self.assertEqual(fit_vbao.read_constants(fit_vbao.with_constants(PARAMS, values)), values)
-        changed = fit_vbao.with_constants(PARAMS, {'THICKNESS_BASE': 2})
-        self.assertEqual(fit_vbao.read_constants(changed), {**values, 'THICKNESS_BASE': 2.0})
+        changed = fit_vbao.with_constants(PARAMS, {'VBAO_GAP_FRONT': 2})
+        self.assertEqual(fit_vbao.read_constants(changed), {**values, 'VBAO_GAP_FRONT': 2.0})
         lines = [(a, b) for a, b in zip(PARAMS.splitlines(), changed.splitlines()) if a != b]
         self.assertEqual(len(lines), 1)
-        self.assertTrue(lines[0][1].startswith('#define VKAO_THICKNESS_BASE 2.0 '), lines[0][1])
+        self.assertTrue(lines[0][1].startswith('#define VKAO_VBAO_GAP_FRONT 2.0 '), lines[0][1])
         self.assertEqual(lines[0][0].split('/*')[1], lines[0][1].split('/*')[1])
 
     def test_only_files_that_name_it_are_built_again(self):
@@ -80,7 +80,7 @@ class Constants(unittest.TestCase):
             self.assertIn(os.path.join('lib', 'ssao.c'), touched)
             self.assertNotIn(os.path.join('shaders', 'blur.comp'), touched)
             self.assertEqual(os.stat(source.params).st_mtime_ns, before)
-            self.assertIn('#define VKAO_THICKNESS_SLOPE 0.5 ', fit_vbao.read(source.params))
+            self.assertIn('#define VKAO_THICKNESS_SLOPE 0.5\n', fit_vbao.read(source.params))
             self.assertEqual(source.set_constants(source.values), [])
         with open(os.path.join(ROOT, 'shaders', 'params.h'), encoding='utf-8') as file:
             self.assertEqual(file.read(), PARAMS)

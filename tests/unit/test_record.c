@@ -238,6 +238,27 @@ static void each_scratch_image_begins_anew_once(void **state)
     }
 }
 
+/* vbao takes thickness from the depth image: breaks of rows and of columns, and what lies
+ * between. */
+static void vbao_has_three_passes_more(void **state)
+{
+    (void)state;
+    size_t dispatches[2], bytes[2];
+    for (int i = 0; i < 2; ++i) {
+        struct world w;
+        world_open(&w);
+        w.effect_info.method = i ? VKAO_SSAO_VBAO : VKAO_SSAO_GTAO;
+        world_create_frame(&w);
+        fake_forget_calls(&w.fake);
+        assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+        dispatches[i] = check_recording(&w);
+        bytes[i] = w.frame->scratch.whole.size;
+        world_close(&w);
+    }
+    assert_int_equal(dispatches[1], dispatches[0] + 3);
+    assert_true(bytes[1] >= bytes[0]);
+}
+
 /* Groups cover the rect and a border, and not one more; the rect that shaders test is the rect
  * itself. */
 static void check_cover(const struct world *w, size_t index, struct vkao_rect want, uint32_t border)
@@ -459,6 +480,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(barrier_stands_between_producer_and_consumer),
         cmocka_unit_test(barriers_stand_in_every_kind_of_frame),
+        cmocka_unit_test(vbao_has_three_passes_more),
         cmocka_unit_test(unread_depth_does_not_reach_the_descriptors),
         cmocka_unit_test(every_call_begins_with_a_barrier),
         cmocka_unit_test(each_scratch_image_begins_anew_once),

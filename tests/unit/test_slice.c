@@ -67,8 +67,8 @@ static void sector_bounds_follow_the_distribution(void **state)
             double f = (1.0 - closed_form(-n, theta - n)) / (1.0 - closed_form(-n, -n));
             check_near("share of F", ref_vbao_share(n, theta), f, 1e-9);
         }
-        assert_int_equal(ref_vbao_sector(n, 0.0), 31);
-        assert_int_equal(ref_vbao_sector(n, low), 0);
+        assert_int_equal(ref_vbao_sector(n, 0.0, 0.0), 31);
+        assert_int_equal(ref_vbao_sector(n, low, 0.0), 0);
     }
 }
 

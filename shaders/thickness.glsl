@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Thickness from the width of a surface, and where that ends. Lengths are fractions of the radius
+ * or of the view, so that the same scene at another resolution has the same. */
+#ifndef VKAO_THICKNESS_GLSL_
+#define VKAO_THICKNESS_GLSL_
+
+#include "real.glsl"
+
+/* Of background, and of what lies outside: no smaller change is beside that. */
+const float NOTHING = 1.0e30;
+
+/* Above 0 where depth breaks between z and the next of four texels in a row: where it changes by
+ * far more than by the smaller change beside, which a plane at any tilt does not. */
+real break_between(real before, real z, real next, real behind)
+{
+    real beside = min(abs(z - before), abs(behind - next));
+    real least = params.break_least * (ORTHOGRAPHIC ? real(1.0) : min(z, next));
+    return max(abs(next - z) - (VKAO_VBAO_BREAK_RISE * beside + least), next - 0.5 * NOTHING);
+}
+
+/* How far a surface is followed to each side, in a row and in a column: in steps of texels, of
+ * which a word of breaks has 32. In large images a step is several texels, 1 << shift. */
+struct Reach {
+    ivec2 shift, steps;
+};
+
+Reach width_reach()
+{
+    vec2 reach = params.width_reach * abs(params.inverse_unproject) + 0.5;
+    ivec2 texels = ivec2(clamp(reach, vec2(1.0), vec2(65535.0)));
+    ivec2 shift = findMSB((texels - 1) >> 5) + 1;
+    return Reach(shift, texels >> shift);
+}
+
+/* View z with the thickness in its last bits. along_x, along_y: steps of the surface to both sides
+ * in the row and in the column; where they end nowhere, it goes on. */
+real with_thickness(real z, whole along_x, whole along_y, Reach reach)
+{
+    vec2 texel = params.inverse_radius * abs(params.unproject.xy);
+    real width = min(texel.x * (real(along_x << reach.shift.x) + 1.0),
+                     texel.y * (real(along_y << reach.shift.y) + 1.0));
+    width *= VKAO_VBAO_THICKNESS_WIDTH * (ORTHOGRAPHIC ? real(1.0) : z);
+    real left = real(2 * (reach.steps.x + reach.steps.y) - along_x - along_y);
+    real thickness =
+        min(width + NOTHING * max(real(0.0), 1.0 - left), real(VKAO_VBAO_THICKNESS_WIDE));
+    whole code = floatBitsToInt(thickness) - VKAO_THICKNESS_LEAST_BITS;
+    code = (code + (1 << (VKAO_THICKNESS_SHIFT - 1))) >> VKAO_THICKNESS_SHIFT;
+    code = clamp(code, whole(0), whole(VKAO_THICKNESS_MASK));
+    code = min(code, floatBitsToInt(z)); /* background stays 0 */
+    return intBitsToFloat((floatBitsToInt(z) & ~VKAO_THICKNESS_MASK) | code);
+}
+
+#endif

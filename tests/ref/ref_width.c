@@ -1,0 +1,87 @@
+/* SPDX-License-Identifier: MIT */
+#include "ref_width.h"
+
+#include "params.h"
+
+#include <math.h>
+#include <string.h>
+
+/* View z of the k-th texel from (x, y) along an axis. Outside of the valid texels nothing is
+ * known. */
+static bool known(const struct ref_scene *scene, int axis, int x, int y, int k, double *z)
+{
+    const VkRect2D *valid = &scene->view.valid;
+    x += axis == 0 ? k : 0;
+    y += axis == 1 ? k : 0;
+    if (x < valid->offset.x || x >= valid->offset.x + (int)valid->extent.width ||
+        y < valid->offset.y || y >= valid->offset.y + (int)valid->extent.height)
+        return false;
+    *z = ref_scene_z(scene, x, y);
+    return true;
+}
+
+/* By how much depth changes from texel k to the next; INFINITY where either has none. */
+static double change(const struct ref_scene *scene, int axis, int x, int y, int k)
+{
+    double a, b;
+    if (!known(scene, axis, x, y, k, &a) || !known(scene, axis, x, y, k + 1, &b))
+        return INFINITY;
+    return isnan(a) || isnan(b) ? INFINITY : fabs(b - a);
+}
+
+static bool breaks(const struct ref_scene *scene, double radius, int axis, int x, int y, int k)
+{
+    double here, next;
+    if (!known(scene, axis, x, y, k, &here) || !known(scene, axis, x, y, k + 1, &next))
+        return false;
+    if (isnan(here) || isnan(next))
+        return true;
+    double beside = fmin(change(scene, axis, x, y, k - 1), change(scene, axis, x, y, k + 1));
+    double least = scene->view.orthographic ? VKAO_VBAO_BREAK_LEAST_RADII * radius
+                                            : VKAO_VBAO_BREAK_LEAST * fmin(here, next);
+    return fabs(next - here) > VKAO_VBAO_BREAK_RISE * beside + least;
+}
+
+/* Texels without a break, to both sides; 2 * most if it goes on. */
+static int run(const struct ref_scene *scene, double radius, int axis, int x, int y, int most)
+{
+    int ahead = 0, back = 0;
+    while (ahead < most && !breaks(scene, radius, axis, x, y, ahead))
+        ++ahead;
+    while (back < most && !breaks(scene, radius, axis, x, y, -back - 1))
+        ++back;
+    return ahead + back;
+}
+
+/* As few bits as view z has for it. */
+static double coded(double thickness)
+{
+    float value = (float)fmin(thickness, 2.0);
+    int32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    bits = (bits - VKAO_THICKNESS_LEAST_BITS + (1 << (VKAO_THICKNESS_SHIFT - 1))) >>
+           VKAO_THICKNESS_SHIFT;
+    bits = bits < 0 ? 0 : bits > VKAO_THICKNESS_MASK ? VKAO_THICKNESS_MASK : bits;
+    bits = (bits << VKAO_THICKNESS_SHIFT) + VKAO_THICKNESS_LEAST_BITS;
+    memcpy(&value, &bits, sizeof value);
+    return (double)value;
+}
+
+double ref_width_thickness(const struct ref_scene *scene, double radius, int x, int y)
+{
+    double here[3], next[3], z = ref_scene_z(scene, x, y), least = INFINITY;
+    double reach =
+        scene->view.orthographic ? VKAO_VBAO_WIDTH_REACH_RADII * radius : VKAO_VBAO_WIDTH_REACH * z;
+    bool goes_on = true;
+    ref_view_position(&scene->view, x, y, z, here);
+    ref_view_position(&scene->view, x + 1.0, y + 1.0, z, next);
+    for (int axis = 0; axis < 2; ++axis) {
+        double texel = fabs(next[axis] - here[axis]);
+        int most = (int)fmax(1.0, reach / texel + 0.5),
+            texels = run(scene, radius, axis, x, y, most);
+        goes_on = goes_on && texels == 2 * most;
+        least = fmin(least, (texels + 1) * texel);
+    }
+    return radius *
+           coded(goes_on ? VKAO_VBAO_THICKNESS_WIDE : VKAO_VBAO_THICKNESS_WIDTH * least / radius);
+}

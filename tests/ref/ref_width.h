@@ -1,0 +1,12 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * How wide a surface is in the depth image. */
+#ifndef VKAO_TESTS_REF_WIDTH_H_
+#define VKAO_TESTS_REF_WIDTH_H_
+
+#include "ref_view.h"
+
+/* The thickness that vbao takes from it, in scene units. */
+double ref_width_thickness(const struct ref_scene *scene, double radius, int x, int y);
+
+#endif
