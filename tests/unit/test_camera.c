@@ -441,6 +441,22 @@ static void rotation_is_handed_over_by_columns(void **state)
     camera_set_free(&set);
 }
 
+static void only_files_place_the_camera(void **state)
+{
+    struct header *h = new_header(200, 100);
+    struct camera_set set =
+        parse("{\"fov_x_deg\":50,\"world_to_view\":[[0,1,0,3],[0,0,2,4],[1,0,0,5],[0,0,0,1]]}");
+    (void)state;
+    struct camera camera = resolve(h, &(struct camera_flags){0}, &set.views[0].camera);
+    assert_true(camera.has_translation);
+    for (int i = 0; i < 3; i++)
+        assert_close(camera.translation[i], i + 3, 0);
+    camera = resolve(h, &(struct camera_flags){0}, NULL);
+    assert_false(camera.has_translation);
+    camera_set_free(&set);
+    free(h);
+}
+
 #define TEST(name) cmocka_unit_test(name)
 
 int main(void)
@@ -461,6 +477,7 @@ int main(void)
         TEST(viewport_is_the_display_seen_from_the_data_window),
         TEST(planes_map_to_zero_and_one_or_reversed),
         TEST(rotation_is_handed_over_by_columns),
+        TEST(only_files_place_the_camera),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,6 +5,7 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <fnmatch.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -128,6 +129,91 @@ void corpus_close(struct corpus *corpus)
     *corpus = (struct corpus){0};
 }
 
+/* --- Frames of a sequence --- */
+
+/* The digits behind the last dot, NULL if there is anything else. */
+static const char *frame_digits(const char *stem)
+{
+    const char *dot = strrchr(stem, '.');
+    if (!dot || !dot[1] || strspn(dot + 1, "0123456789") != strlen(dot + 1))
+        return NULL;
+    return dot + 1;
+}
+
+/* Numbers of any length, with any zeros before them; only of names with frame_digits. */
+static int compare_frames(const void *a, const void *b)
+{
+    const char *x = frame_digits(*(char *const *)a), *y = frame_digits(*(char *const *)b);
+    x += strspn(x, "0");
+    y += strspn(y, "0");
+    if (strlen(x) != strlen(y))
+        return strlen(x) < strlen(y) ? -1 : 1;
+    return strcmp(x, y);
+}
+
+static bool check_frames(const struct corpus *corpus, struct tool_error *err)
+{
+    const char *first = corpus->stems[0], *digits = frame_digits(first);
+    for (size_t i = 0; i < corpus->count; i++) {
+        const char *stem = corpus->stems[i], *own = frame_digits(stem);
+        if (!own)
+            return fail(err, EXIT_INPUT, "%s/%s.exr: no frame of a sequence", corpus->folder, stem);
+        if (own - stem != digits - first || strncmp(stem, first, (size_t)(own - stem)) != 0)
+            return fail(err, EXIT_INPUT, "%s/%s.exr: no frame of the sequence of %s.exr",
+                        corpus->folder, stem, first);
+    }
+    if (corpus->count < 3)
+        return fail(err, EXIT_INPUT, "%s: a sequence of %zu, want at least 3 frames",
+                    corpus->folder, corpus->count);
+    return true;
+}
+
+bool corpus_order_frames(struct corpus *corpus, struct tool_error *err)
+{
+    if (!check_frames(corpus, err))
+        return fail_hint(err, "frames are STEM.NUMBER.exr; --files PART chooses among G-buffers");
+    qsort(corpus->stems, corpus->count, sizeof *corpus->stems, compare_frames);
+    return true;
+}
+
+/* --- Patterns --- */
+
+/* The next of comma-separated patterns; false at the end. */
+static bool next_pattern(const char **patterns, char *pattern, size_t size)
+{
+    *patterns += strspn(*patterns, ",");
+    const size_t length = strcspn(*patterns, ",");
+    snprintf(pattern, size, "%.*s", (int)length, *patterns);
+    *patterns += length;
+    return length > 0;
+}
+
+bool corpus_fits(const struct corpus *corpus, size_t index, const char *patterns)
+{
+    char pattern[256];
+    while (next_pattern(&patterns, pattern, sizeof pattern))
+        if (fnmatch(pattern, corpus->stems[index], 0) == 0)
+            return true;
+    return false;
+}
+
+bool corpus_check_patterns(const struct corpus *corpus, const char *option, const char *patterns,
+                           struct tool_error *err)
+{
+    char pattern[256];
+    while (next_pattern(&patterns, pattern, sizeof pattern)) {
+        bool found = false;
+        for (size_t i = 0; !found && i < corpus->count; i++)
+            found = fnmatch(pattern, corpus->stems[i], 0) == 0;
+        if (!found)
+            return fail(err, EXIT_USAGE, "%s: '%s' fits no G-buffer of %s", option, pattern,
+                        corpus->folder);
+    }
+    return true;
+}
+
+/* --- Files --- */
+
 static char *path_of(const struct corpus *corpus, size_t index, const char *view,
                      const char *suffix, struct tool_error *err)
 {
@@ -205,12 +291,13 @@ static float radius_of(const struct exr_info *info)
     return 0;
 }
 
-static bool load_truth(const char *path, struct scene *scene, struct tool_error *err)
+static bool load_truth(const char *path, const bool wanted[2], struct scene *scene,
+                       struct tool_error *err)
 {
     struct exr_info info = {0};
-    bool ok = exr_info_read(path, &info, err) &&
-              read_truth(&info, VKAO_FALLOFF_SMOOTH, scene, err) &&
-              read_truth(&info, VKAO_FALLOFF_THRESHOLD, scene, err);
+    bool ok = exr_info_read(path, &info, err);
+    for (int f = 0; ok && f < 2; f++)
+        ok = !wanted[f] || read_truth(&info, (vkao_falloff)f, scene, err);
     if (ok)
         scene->radius = radius_of(&info);
     exr_info_free(&info);
@@ -241,18 +328,19 @@ static bool mark_foreground(struct scene *scene, struct tool_error *err)
 }
 
 bool scene_load(const struct corpus *corpus, size_t index, const struct frame_source *source,
-                size_t view, struct report *report, struct scene *scene, struct tool_error *err)
+                size_t view, const bool wanted[2], struct report *report, struct scene *scene,
+                struct tool_error *err)
 {
     const struct options options = {.command = COMMAND_RENDER};
     const struct view *v = &source->views[view];
-    const struct gbuffer_options wanted = view_options(&options, v);
-    *scene = (struct scene){0};
+    const struct gbuffer_options read = view_options(&options, v);
+    *scene = (struct scene){.folder = corpus->folder};
     snprintf(scene->name, sizeof scene->name, "%s%s%s", corpus->stems[index], *v->name ? "." : "",
              v->name);
     char *truth = path_of(corpus, index, v->name, truth_suffix, err);
     bool ok = truth &&
-              gbuffer_load(&source->info, &wanted, v->camera, report, &scene->gbuffer, err) &&
-              load_truth(truth, scene, err) && mark_foreground(scene, err) &&
+              gbuffer_load(&source->info, &read, v->camera, report, &scene->gbuffer, err) &&
+              load_truth(truth, wanted, scene, err) && mark_foreground(scene, err) &&
               placement_expand(&scene->gbuffer, &scene->placement, err);
     free(truth);
     return ok;

@@ -32,6 +32,11 @@ static double finite_result(const struct image_pair *p, size_t texel)
     return isfinite(p->result[texel]) ? (double)p->result[texel] : 9.0;
 }
 
+double metrics_error(const struct image_pair *p, size_t texel)
+{
+    return finite_result(p, texel) - (double)p->truth[texel];
+}
+
 static bool counts(const struct image_pair *p, size_t texel)
 {
     return !p->mask || p->mask[texel];
@@ -44,7 +49,7 @@ double metrics_rmse(const struct image_pair *p)
     for (size_t i = 0; i < texels; i++) {
         if (!counts(p, i))
             continue;
-        double error = finite_result(p, i) - (double)p->truth[i];
+        double error = metrics_error(p, i);
         sum += error * error;
         counted++;
     }
@@ -126,7 +131,7 @@ bool metrics_compare(const struct image_pair *p, struct error_scores *scores,
     for (size_t i = 0; i < texels; i++) {
         if (!counts(p, i))
             continue;
-        double error = finite_result(p, i) - (double)p->truth[i];
+        double error = metrics_error(p, i);
         sum += error;
         absolute += fabs(error);
         errors[counted++] = (float)fabs(error);

@@ -33,6 +33,8 @@ struct error_scores {
 bool metrics_compare(const struct image_pair *pair, struct error_scores *scores,
                      struct tool_error *err);
 double metrics_rmse(const struct image_pair *pair);
+/* Of one texel: result - truth. */
+double metrics_error(const struct image_pair *pair, size_t texel);
 
 /* Linear between ranks, q in [0,1]; sorts values. 0 without values. */
 double metrics_quantile(float *values, size_t count, double q);

@@ -65,6 +65,8 @@ static void take_rotation(struct camera *camera, const struct camera *from)
     camera->axis_certain = from->axis_certain;
     memcpy(camera->world_to_view, from->world_to_view, sizeof camera->world_to_view);
     memcpy(camera->rotation_source, from->rotation_source, sizeof camera->rotation_source);
+    camera->has_translation = from->has_translation;
+    memcpy(camera->translation, from->translation, sizeof camera->translation);
 }
 
 /* The lens shift of a file stays: the flags only say how wide the view is. */

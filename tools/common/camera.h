@@ -25,6 +25,8 @@ struct camera {
     bool has_rotation;
     bool axis_certain; /* false: the header does not say whether the camera looks along +z or -z */
     double world_to_view[9]; /* rotation, m[row * 3 + column], for column vectors */
+    bool has_translation;    /* only of camera files, since AO does not depend on it */
+    double translation[3];   /* view space, scene units: where the origin of the world is */
     char source[64]; /* of the projection: "camera file", "cameraFov" ...; "" if there is none */
     char rotation_source[64];
 };

@@ -60,8 +60,8 @@ static bool read_matrix(const struct reader *r, const cJSON *rows, double m[16])
     return true;
 }
 
-/* The rotation of a rigid (or uniformly scaled) matrix. */
-static bool read_rotation(const struct reader *r, const cJSON *object, struct camera *camera)
+/* Rotation and translation of a rigid (or uniformly scaled) matrix. */
+static bool read_placement(const struct reader *r, const cJSON *object, struct camera *camera)
 {
     const cJSON *rows = cJSON_GetObjectItemCaseSensitive(object, "world_to_view");
     double m[16];
@@ -78,6 +78,7 @@ static bool read_rotation(const struct reader *r, const cJSON *object, struct ca
             return wrong(r, "world_to_view", "a rotation and a translation");
         for (int j = 0; j < 3; j++)
             camera->world_to_view[i * 3 + j] = row[j] / length;
+        camera->translation[i] = row[3];
     }
     const double *w = camera->world_to_view;
     double skew = fabs(w[0] * w[3] + w[1] * w[4] + w[2] * w[5]) +
@@ -85,7 +86,7 @@ static bool read_rotation(const struct reader *r, const cJSON *object, struct ca
                   fabs(w[3] * w[6] + w[4] * w[7] + w[5] * w[8]);
     if (skew > 1e-3)
         return wrong(r, "world_to_view", "a rotation and a translation, without shear");
-    camera->has_rotation = camera->axis_certain = true;
+    camera->has_rotation = camera->axis_certain = camera->has_translation = true;
     snprintf(camera->rotation_source, sizeof camera->rotation_source, "camera file");
     return true;
 }
@@ -129,7 +130,7 @@ static bool read_camera(const struct reader *r, const cJSON *object, struct came
            read_number(r, object, "far", 0, HUGE_VAL, positive, &camera->far_plane) &&
            read_number(r, object, "shift_x", -10, 10, shift, &camera->shift_x) &&
            read_number(r, object, "shift_y", -10, 10, shift, &camera->shift_y) &&
-           read_rotation(r, object, camera);
+           read_placement(r, object, camera);
 }
 
 static bool add_view(struct camera_set *set, const struct reader *r, const cJSON *object)

@@ -63,6 +63,8 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
                   const struct camera *camera_file, struct report *report, struct gbuffer *gbuffer,
                   struct tool_error *err);
 void gbuffer_free(struct gbuffer *gbuffer);
+/* Of a depth that is no background, at a texel of the data window, row * width + column. */
+double gbuffer_view_z(const struct gbuffer *gbuffer, float depth, size_t texel);
 
 const char *depth_type_name(enum depth_type type);
 const char *normal_space_name(enum normal_space space);

@@ -101,9 +101,9 @@ static void near_ray_to_planar(struct gbuffer *g)
             g->depth[i] = (float)((double)g->depth[i] / ray_length(g, i) + g->camera.near_plane);
 }
 
-static double view_z(const struct gbuffer *g, size_t texel)
+double gbuffer_view_z(const struct gbuffer *g, float depth, size_t texel)
 {
-    double d = (double)g->depth[texel];
+    double d = (double)depth;
     const float *m = g->view.projection;
     switch (g->view.depth_encoding) {
     case VKAO_DEPTH_DISTANCE:
@@ -127,7 +127,7 @@ static bool measure(struct gbuffer *g)
     for (size_t i = 0; i < gbuffer_texels(g); i++) {
         if (!gbuffer_is_foreground(g, i))
             continue;
-        double z = view_z(g, i);
+        double z = gbuffer_view_z(g, g->depth[i], i);
         if (!(z >= least_z && z <= largest_z)) {
             g->depth[i] = g->background_depth;
             continue;
