@@ -29,6 +29,8 @@ static void set_constants(struct vkao_program *program)
     c[VKAO_SETTING_GRID_SHIFT] = e->half_resolution;
     c[VKAO_SETTING_BENT_NORMALS] = e->bent_normals;
     c[VKAO_SETTING_THRESHOLD] = e->falloff == VKAO_FALLOFF_THRESHOLD;
+    c[VKAO_SETTING_THICKNESS_INPUT] = (uint32_t)e->thickness_input;
+    c[VKAO_SETTING_SECOND_LAYER] = e->second_layer;
     c[VKAO_SETTING_SPHERE_LITERAL] = e->sphere_form == VKAO_SPHERE_LITERAL;
     c[VKAO_SETTING_SLICES] = has_slices && unrolls(e) ? e->slice_count : 0;
     c[VKAO_SETTING_STEPS] = has_slices && unrolls(e) ? e->step_count : 0;
@@ -58,6 +60,9 @@ static uint32_t needs_of(const struct vkao_program *program)
         enum vkao_resource resource;
     } facts[] = {
         {makes_ao, VKAO_RESOURCE_DEPTH},
+        {e->thickness_input != VKAO_THICKNESS_AS_SEEN, VKAO_RESOURCE_THICKNESS},
+        {e->second_layer, VKAO_RESOURCE_SECOND_DEPTH},
+        {e->second_layer, VKAO_RESOURCE_SECOND_Z},
         {e->normal_encoding != VKAO_NORMALS_FROM_DEPTH &&
              (makes_ao || (lit && e->specular != VKAO_SPECULAR_NONE)),
          VKAO_RESOURCE_NORMALS},

@@ -37,6 +37,7 @@ static void plan_images(const vkao_frame *frame, struct vkao_scratch_plan *plan)
         {VKAO_RESOURCE_AO_NOISY, noisy, grid},
         {VKAO_RESOURCE_AO, ao, frame->extent},
         {VKAO_RESOURCE_VIEW_Z, VK_FORMAT_R32_SFLOAT, {grid.width + border, grid.height + border}},
+        {VKAO_RESOURCE_SECOND_Z, VK_FORMAT_R32_SFLOAT, {grid.width + border, grid.height + border}},
         {VKAO_RESOURCE_HALFWAY, noisy, grid},
         {VKAO_RESOURCE_BLURRED, noisy, grid},
         {VKAO_RESOURCE_BREAKS_X, VK_FORMAT_R32_UINT, {(grid.width + 31) / 32, grid.height}},

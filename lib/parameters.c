@@ -30,6 +30,7 @@ enum { METHOD_COUNT = sizeof methods / sizeof methods[0] };
 #define METHOD_WORD(NAME, word, words, has_bent) [VKAO_SSAO_##NAME] = word,
 static const char *const method_words[METHOD_COUNT] = {METHODS(METHOD_WORD)};
 static const char *const falloff_words[] = {"smooth", "threshold"};
+static const char *const thickness_words[] = {"as-seen", "given", "back-depth"};
 static const char *const form_words[] = {"rescaled", "literal"};
 static const char *const depth_words[] = {"projected", "z", "distance", "inverse-z"};
 static const char *const normal_words[] = {"none", "xyz-snorm", "xyz-unorm", "oct-snorm",
@@ -83,6 +84,10 @@ static const vkao_parameter parameters[] = {
      .help = "samples on each side of a slice, or on a ray", .most = 256,
      .standard = 8, .zero_is_standard = VK_TRUE, .stages = VKAO_STAGE_SSAO,
      .methods = SLICED | METHOD(RAYMARCH)},
+    {CHOICE(thickness_input, thickness_words), .help = "what is known of how thick things are",
+     .stages = MAKES_AO, .methods = METHOD(VBAO) | METHOD(RAYMARCH)},
+    {SWITCH(second_layer), .help = "a second layer of depth hides too", .stages = MAKES_AO,
+     .methods = METHOD(VBAO) | METHOD(RAYMARCH)},
     {COMPILED(blur_radius, UINT), .help = "texels on each side; 0: intensity and power alone",
      .most = 16, .standard = 3, .stages = VKAO_STAGE_BLUR},
     {COMPILED(blur_normal_power, FLOAT),
@@ -293,9 +298,9 @@ static const struct {
     size_t least, known;
 } sizes[VKAO_STRUCT_COUNT] = {
     [VKAO_STRUCT_CONTEXT_INFO] = {104, sizeof(vkao_context_info)},
-    [VKAO_STRUCT_EFFECT_INFO] = {112, sizeof(vkao_effect_info)},
+    [VKAO_STRUCT_EFFECT_INFO] = {120, sizeof(vkao_effect_info)},
     [VKAO_STRUCT_FRAME_INFO] = {40, sizeof(vkao_frame_info)},
-    [VKAO_STRUCT_IMAGES] = {248, sizeof(vkao_images)},
+    [VKAO_STRUCT_IMAGES] = {296, sizeof(vkao_images)},
     [VKAO_STRUCT_VIEW] = {160, sizeof(vkao_view)},
     [VKAO_STRUCT_PARAMS] = {56, sizeof(vkao_params)},
 };
@@ -395,7 +400,9 @@ static vkao_result check_combination(const struct vkao_logger *log, const vkao_e
                      e->composite_mode == VKAO_COMPOSITE_INDIRECT;
     const bool reads_bent = e->composite_mode == VKAO_COMPOSITE_BENT_NORMALS ||
                             (lit && e->specular == VKAO_SPECULAR_FROM_BENT);
-    const bool has_method = !ssao || methods[e->method].has_bent_normals;
+    const bool has_method = !ssao || methods[e->method].has_bent_normals,
+               is_layered =
+                   ssao && (e->method == VKAO_SSAO_VBAO || e->method == VKAO_SSAO_RAYMARCH);
     const struct {
         bool wrong;
         const char *name;
@@ -412,6 +419,10 @@ static vkao_result check_combination(const struct vkao_logger *log, const vkao_e
         {e->bent_normals && e->noisy_ao, "bent_normals", e->bent_normals, "no noisy_ao with it"},
         {e->bent_normals && !has_method, "method", (uint32_t)e->method,
          "GTAO, VBAO or RAYMARCH for bent_normals"},
+        {e->thickness_input && !is_layered, "thickness_input", (uint32_t)e->thickness_input,
+         "the stage SSAO and the method VBAO or RAYMARCH for it"},
+        {e->second_layer && !is_layered, "second_layer", e->second_layer,
+         "the stage SSAO and the method VBAO or RAYMARCH for it"},
         {composite && e->composite_mode > VKAO_COMPOSITE_AO_ONLY && !ssao, "composite_mode",
          (uint32_t)e->composite_mode, "the stage SSAO for it"},
         {composite && e->composite_mode == VKAO_COMPOSITE_NOISY_AO &&

@@ -11,9 +11,10 @@ bool vkao_makes_ao(const vkao_effect_info *effect)
     return effect->stages & (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
 }
 
-bool vkao_has_width(const vkao_effect_info *effect)
+bool vkao_has_thickness(const vkao_effect_info *effect)
 {
-    return effect->stages & VKAO_STAGE_SSAO && effect->method == VKAO_SSAO_VBAO;
+    return effect->stages & VKAO_STAGE_SSAO &&
+           (effect->method == VKAO_SSAO_VBAO || effect->thickness_input != VKAO_THICKNESS_AS_SEEN);
 }
 
 vkao_stage_flags vkao_stages_of(const vkao_effect_info *effect)

@@ -23,7 +23,9 @@
     X(OUTPUT, output, COLOR)                                                                       \
     X(BENT_NORMALS, bent_normals, COLOR)                                                           \
     X(ALBEDO, albedo, COLOR)                                                                       \
-    X(SPECULAR, specular, COLOR)
+    X(SPECULAR, specular, COLOR)                                                                   \
+    X(THICKNESS, thickness, DEPTH)                                                                 \
+    X(SECOND_DEPTH, second_depth, DEPTH)
 
 #define VKAO_SLOT_RESOURCE(NAME, member, kind) VKAO_RESOURCE_##NAME,
 /* What passes read and write. */
@@ -31,6 +33,7 @@ enum vkao_resource {
     VKAO_SLOTS(VKAO_SLOT_RESOURCE) VKAO_SLOT_COUNT,
     /* Scratch images. */
     VKAO_RESOURCE_VIEW_Z = VKAO_SLOT_COUNT,
+    VKAO_RESOURCE_SECOND_Z, /* view z of the second layer */
     VKAO_RESOURCE_HALFWAY,  /* AO between the two directions of the blur */
     VKAO_RESOURCE_BLURRED,  /* at half resolution, for upsampling */
     VKAO_RESOURCE_BREAKS_X, /* words of where depth breaks along rows, and along columns */
@@ -69,7 +72,7 @@ enum vkao_area {
     VKAO_AREA_IMAGE_RECT   /* on the image's grid */
 };
 
-enum { VKAO_MOST_USES = 12, VKAO_MOST_PASSES = 12, VKAO_MOST_FORMS = 4 };
+enum { VKAO_MOST_USES = 12, VKAO_MOST_PASSES = 16, VKAO_MOST_FORMS = 4 };
 
 /* Bits of a form's index. */
 enum { VKAO_FORM_TONED = 1, VKAO_FORM_COPIED = 2 };
@@ -124,7 +127,7 @@ struct vkao_program {
 vkao_stage_flags vkao_stages_of(const vkao_effect_info *effect);
 bool vkao_makes_ao(const vkao_effect_info *effect);
 /* Has view z the thickness of what is seen in its last bits? */
-bool vkao_has_width(const vkao_effect_info *effect);
+bool vkao_has_thickness(const vkao_effect_info *effect);
 
 /* Adds a row, yet to be compiled. */
 void vkao_program_add(struct vkao_program *program, const struct vkao_pass *row);

@@ -3,6 +3,7 @@
 
 #include "vkao_breaks.h"
 #include "vkao_prepare.h"
+#include "vkao_thickness.h"
 #include "vkao_width.h"
 
 #include <assert.h>
@@ -21,48 +22,56 @@ static_assert(VKAO_GLSL_NORMALS_FROM_DEPTH == (int)VKAO_NORMALS_FROM_DEPTH &&
                   VKAO_GLSL_NORMALS_OCT_UNORM == (int)VKAO_NORMALS_OCT_UNORM,
               "params.h repeats vkao_normal_encoding");
 
-static const struct vkao_pass prepare = {
-    .name = "vkao prepare",
-    .label = "prepare",
-    .stage = VKAO_STAGE_PREPARE,
-    VKAO_CODE(vkao_prepare),
-    .uses = {VKAO_READS(DEPTH, DEPTH), VKAO_WRITES(VIEW_Z_WRITE, VIEW_Z)},
-    .area = VKAO_AREA_VALID,
-    VKAO_ONE_TEXEL,
-    .forms = 1,
-};
+static_assert(VKAO_GLSL_THICKNESS_AS_SEEN == (int)VKAO_THICKNESS_AS_SEEN &&
+                  VKAO_GLSL_THICKNESS_GIVEN == (int)VKAO_THICKNESS_GIVEN &&
+                  VKAO_GLSL_THICKNESS_BACK_DEPTH == (int)VKAO_THICKNESS_BACK_DEPTH,
+              "params.h repeats vkao_thickness_input");
 
-#define BREAKS(resource, width, height, is_vertical)                                               \
+#define PREPARES(shader, ...)                                                                      \
+    {                                                                                              \
+        .name = "vkao " #shader, .label = "prepare", .stage = VKAO_STAGE_PREPARE,                  \
+        VKAO_CODE(vkao_##shader), .uses = {__VA_ARGS__}, .area = VKAO_AREA_VALID, VKAO_ONE_TEXEL,  \
+        .forms = 1,                                                                                \
+    }
+#define BREAKS(view_z, resource, width, height, is_vertical)                                       \
     {                                                                                              \
         .name = "vkao breaks", .label = "prepare", .stage = VKAO_STAGE_PREPARE,                    \
         VKAO_CODE(vkao_breaks),                                                                    \
-        .uses = {VKAO_READS(VIEW_Z, VIEW_Z), VKAO_WRITES(BREAKS_WRITE, resource)},                 \
+        .uses = {VKAO_READS(VIEW_Z, view_z), VKAO_WRITES(BREAKS_WRITE, resource)},                 \
         .area = VKAO_AREA_VALID, .texels = {width, height},                                        \
         .group = {VKAO_GROUP_WIDTH, VKAO_GROUP_HEIGHT}, .vertical = is_vertical, .forms = 1,       \
     }
-static const struct vkao_pass breaks_x = BREAKS(BREAKS_X, 32, 1, false),
-                              breaks_y = BREAKS(BREAKS_Y, 1, 32, true);
+/* A layer of depth, and how thick it is as seen. */
+#define LAYER(depth, view_z)                                                                       \
+    {                                                                                              \
+        PREPARES(prepare, VKAO_READS(DEPTH, depth), VKAO_WRITES(VIEW_Z_WRITE, view_z)),            \
+            BREAKS(view_z, BREAKS_X, 32, 1, false), BREAKS(view_z, BREAKS_Y, 1, 32, true),         \
+            PREPARES(width, VKAO_READS(BREAKS_X, BREAKS_X), VKAO_READS(BREAKS_Y, BREAKS_Y),        \
+                     VKAO_WRITES(VIEW_Z_WRITE, view_z)),                                           \
+    }
+enum { LAYER_PASSES = 4 };
+static const struct vkao_pass first[LAYER_PASSES] = LAYER(DEPTH, VIEW_Z),
+                              second[LAYER_PASSES] = LAYER(SECOND_DEPTH, SECOND_Z);
+/* An input. Back depth is decoded as depth is, so it takes that binding. */
+static const struct vkao_pass given =
+    PREPARES(thickness, VKAO_READS(DEPTH, THICKNESS), VKAO_WRITES(VIEW_Z_WRITE, VIEW_Z));
 
-static const struct vkao_pass width = {
-    .name = "vkao width",
-    .label = "prepare",
-    .stage = VKAO_STAGE_PREPARE,
-    VKAO_CODE(vkao_width),
-    .uses = {VKAO_READS(BREAKS_X, BREAKS_X), VKAO_READS(BREAKS_Y, BREAKS_Y),
-             VKAO_WRITES(VIEW_Z_WRITE, VIEW_Z)},
-    .area = VKAO_AREA_VALID,
-    VKAO_ONE_TEXEL,
-    .forms = 1,
-};
+static void plan_layer(struct vkao_program *program, const struct vkao_pass *layer, int count)
+{
+    for (int i = 0; i < count; ++i)
+        vkao_program_add(program, &layer[i]);
+}
 
 void vkao_prepare_plan(struct vkao_program *program)
 {
-    vkao_program_add(program, &prepare);
-    if (!vkao_has_width(&program->settings))
-        return;
-    vkao_program_add(program, &breaks_x);
-    vkao_program_add(program, &breaks_y);
-    vkao_program_add(program, &width);
+    const vkao_effect_info *e = &program->settings;
+    const bool is_given = e->thickness_input != VKAO_THICKNESS_AS_SEEN,
+               is_vbao = vkao_has_thickness(e) && e->method == VKAO_SSAO_VBAO;
+    plan_layer(program, first, is_vbao && !is_given ? LAYER_PASSES : 1);
+    if (is_given && vkao_has_thickness(e))
+        vkao_program_add(program, &given);
+    if (e->second_layer && e->stages & VKAO_STAGE_SSAO)
+        plan_layer(program, second, is_vbao && !is_given ? LAYER_PASSES : 1);
 }
 
 /* What to divide by so that the matrix makes unit vectors of unit vectors: 1 for what floats make

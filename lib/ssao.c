@@ -15,7 +15,7 @@
         .name = "vkao ssao " #method, .label = "ssao", .stage = VKAO_STAGE_SSAO,                   \
         VKAO_CODE(vkao_ssao_##method),                                                             \
         .uses = {VKAO_READS(VIEW_Z, VIEW_Z), VKAO_READS(NORMALS, NORMALS),                         \
-                 VKAO_WRITES(TARGET, AO_NOISY)},                                                   \
+                 VKAO_READS(SECOND_Z, SECOND_Z), VKAO_WRITES(TARGET, AO_NOISY)},                   \
         .area = VKAO_AREA_AROUND, VKAO_ONE_TEXEL, .forms = 1,                                      \
     }
 static const struct vkao_pass methods[] = {
@@ -41,14 +41,14 @@ void vkao_ssao_constants(const struct vkao_recording *r, const vkao_params *para
     out->inverse_radius = 1.0f / out->radius;
     out->bias = params->bias * out->radius;
     out->bias_cosine = params->bias;
-    const bool is_vbao = vkao_has_width(effect);
+    const bool is_vbao = effect->method == VKAO_SSAO_VBAO;
     out->thickness = thickness;
     out->thickness_gap = thickness * (float)VKAO_VBAO_THICKNESS_GAP;
     out->thickness_base =
         thickness * (float)(is_vbao ? VKAO_VBAO_THICKNESS_BASE : VKAO_THICKNESS_BASE);
     out->thickness_slope =
         thickness * (float)(is_vbao ? VKAO_VBAO_THICKNESS_SLOPE : VKAO_THICKNESS_SLOPE);
-    if (is_vbao) /* whose view z has it in its last bits */
+    if (vkao_has_thickness(effect)) /* in the last bits of view z */
         out->depth_error[effect->projection == VKAO_PROJECTION_ORTHOGRAPHIC] +=
             (float)VKAO_THICKNESS_DEPTH_ERROR;
     out->slices = effect->slice_count;

@@ -45,6 +45,8 @@
 #define VKAO_BINDING_BREAKS_X 15 /* where depth breaks, in words along rows, and along columns */
 #define VKAO_BINDING_BREAKS_Y 16
 #define VKAO_BINDING_BREAKS_WRITE 17
+#define VKAO_BINDING_THICKNESS 18
+#define VKAO_BINDING_SECOND_Z 19
 #define VKAO_BINDING_CPU 32 /* the first of the CPU's */
 
 /* What a pass is compiled for: specialization constants, the same for all passes of an effect but
@@ -66,11 +68,13 @@
 #define VKAO_SETTING_COMPOSITE_MODE 13
 #define VKAO_SETTING_MULTI_BOUNCE 14
 #define VKAO_SETTING_SPECULAR 15
-#define VKAO_SETTING_PATH 16     /* the CPU's own */
-#define VKAO_SETTING_VERTICAL 17 /* of the pass: one shader blurs in two directions */
-#define VKAO_SETTING_TONED 18    /* of the form: intensity or power is not 1 */
-#define VKAO_SETTING_COPIED 19   /* of the form, the CPU's own */
-#define VKAO_SETTING_COUNT 20
+#define VKAO_SETTING_THICKNESS_INPUT 16
+#define VKAO_SETTING_SECOND_LAYER 17
+#define VKAO_SETTING_PATH 18     /* the CPU's own */
+#define VKAO_SETTING_VERTICAL 19 /* of the pass: one shader blurs in two directions */
+#define VKAO_SETTING_TONED 20    /* of the form: intensity or power is not 1 */
+#define VKAO_SETTING_COPIED 21   /* of the form, the CPU's own */
+#define VKAO_SETTING_COUNT 22
 
 /* Samples or steps in a row: loops longer than that take long to compile, and their overhead is
  * small. */
@@ -101,6 +105,9 @@
 #define VKAO_GLSL_NORMALS_XYZ_UNORM 2
 #define VKAO_GLSL_NORMALS_OCT_SNORM 3
 #define VKAO_GLSL_NORMALS_OCT_UNORM 4
+#define VKAO_GLSL_THICKNESS_AS_SEEN 0
+#define VKAO_GLSL_THICKNESS_GIVEN 1
+#define VKAO_GLSL_THICKNESS_BACK_DEPTH 2
 #define VKAO_GLSL_COMPOSITE_MULTIPLY 0
 #define VKAO_GLSL_COMPOSITE_INDIRECT 1
 #define VKAO_GLSL_COMPOSITE_AO_ONLY 2
@@ -135,8 +142,12 @@
  * from the sample before, for whose gap it stands, and at most BASE + SLOPE of its lateral
  * distance. */
 #define VKAO_VBAO_THICKNESS_WIDTH 0.9
-#define VKAO_VBAO_THICKNESS_WIDE 0.75 /* of what goes on on all sides */
+/* Of what goes on on all sides, but at most WIDER of the width that is seen of it: where the radius
+ * is most of the view, and what is seen a sliver of it, that says little. */
+#define VKAO_VBAO_THICKNESS_WIDE 0.75
+#define VKAO_VBAO_THICKNESS_WIDER 10.0
 #define VKAO_VBAO_THICKNESS_GAP 2.5
+#define VKAO_VBAO_THICKNESS_GIVEN_GAP 0.5 /* where thickness is an input, which has no cap */
 #define VKAO_VBAO_THICKNESS_BASE 0.40
 #define VKAO_VBAO_THICKNESS_SLOPE 0.80
 /* Depth breaks between two texels if it changes by more than RISE of the smaller change beside them
@@ -154,6 +165,7 @@
 #define VKAO_THICKNESS_THRESHOLD 1.1
 
 /* View z has that thickness in its last 4 bits, as 2^-7, 1.5 * 2^-7, 2^-6 ... 1, 1.5. */
+#define VKAO_THICKNESS_MOST 1.5
 #define VKAO_THICKNESS_MASK 15
 #define VKAO_THICKNESS_SHIFT 22
 #define VKAO_THICKNESS_LEAST_BITS 0x3c000000

@@ -20,6 +20,8 @@ layout(constant_id = VKAO_SETTING_BLUR_NORMAL_POWER) const float NORMAL_POWER = 
 layout(constant_id = VKAO_SETTING_COMPOSITE_MODE) const uint COMPOSITE_MODE = 0u;
 layout(constant_id = VKAO_SETTING_MULTI_BOUNCE) const bool MULTI_BOUNCE = false;
 layout(constant_id = VKAO_SETTING_SPECULAR) const uint SPECULAR = 0u;
+layout(constant_id = VKAO_SETTING_THICKNESS_INPUT) const uint THICKNESS_INPUT = 0u;
+layout(constant_id = VKAO_SETTING_SECOND_LAYER) const bool SECOND_LAYER = false;
 layout(constant_id = VKAO_SETTING_VERTICAL) const bool VERTICAL = false;
 layout(constant_id = VKAO_SETTING_TONED) const bool TONED = false;
 

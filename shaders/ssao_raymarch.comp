@@ -12,6 +12,21 @@
 #define VKAO_GLSL
 #include "params.h"
 #include "ssao.glsl"
+#include "layers.glsl"
+
+/* Is the point of a ray behind what is seen at a texel, by less than that is thick? */
+bool is_inside(vec3 point, ivec2 at, float z, bool is_given, vec3 position, vec3 normal,
+               vec3 to_eye, float bias)
+{
+    vec3 surface = view_position(vec2(at), z);
+    vec3 v = surface - position;
+    float lateral = length(v - dot(v, to_eye) * to_eye), radius = params.radius;
+    float behind = dot(to_eye, surface - point);
+    float depth = params.thickness_base * radius + params.thickness_slope * min(lateral, radius);
+    if (is_given)
+        depth = radius * thickness_of(vec2(z)).x;
+    return z > 0.0 && dot(normal, surface - point) > bias && behind > 0.0 && behind < depth;
+}
 
 /* Weight of the first hit, 0 if there is none. */
 float first_hit(vec3 position, vec3 normal, vec3 direction, float jitter)
@@ -26,14 +41,11 @@ float first_hit(vec3 position, vec3 normal, vec3 direction, float jitter)
         if (point.z <= 0.0)
             return 0.0;
         ivec2 at = nearest_texel(point);
-        float z = load_view_z(at);
-        vec3 surface = view_position(vec2(at), z);
-        vec3 v = surface - position;
-        float lateral = length(v - dot(v, to_eye) * to_eye);
-        float behind = dot(to_eye, surface - point);
-        float depth =
-            params.thickness_base * radius + params.thickness_slope * min(lateral, radius);
-        if (z > 0.0 && dot(normal, surface - point) > bias && behind > 0.0 && behind < depth) {
+        bool hit =
+            is_inside(point, at, load_view_z(at), IS_GIVEN, position, normal, to_eye, bias);
+        if (SECOND_LAYER && !hit)
+            hit = is_inside(point, at, load_second_z(at), false, position, normal, to_eye, bias);
+        if (hit) {
             d *= params.inverse_radius;
             return falloff_weight(vec2(d * d)).x;
         }

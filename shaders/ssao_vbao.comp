@@ -17,9 +17,11 @@
  *  - its back edge moves out by VKAO_VBAO_GAP_BACK of the gap, as the surface goes on to somewhere
  *    before the next sample;
  *  - sky hides nothing; what follows it is looked at as after a sample of the surface's plane;
- *  - what is seen is as thick as it is wide, which view z holds (width.comp), at least as
- *    VKAO_VBAO_THICKNESS_GAP of the gap, which it must hide as what lies there would, and at most
- *    as VKAO_VBAO_THICKNESS_BASE of the radius and _SLOPE of its lateral distance. */
+ *  - what is seen is as thick as it is wide, which view z holds (width.comp); if it is not seen to
+ *    end, VKAO_VBAO_THICKNESS_WIDE or, of a large radius, _WIDER of the width that is followed;
+ *  - that is at least VKAO_VBAO_THICKNESS_GAP of the gap, which it must hide as what lies there
+ *    would, and at most VKAO_VBAO_THICKNESS_BASE of the radius and _SLOPE of its lateral
+ *    distance. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -29,44 +31,52 @@
 #include "ssao.glsl"
 #include "horizon.glsl"
 #include "sectors.glsl"
+#include "layers.glsl"
 
-/* How far a march of both sides has come. */
+/* What a march of both sides has found hidden. */
 struct March {
-    ivec2 mask; /* sectors that are hidden */
-    vec2 last_x, last_height, last_front;
-    vec2 rounding; /* taken off upper bounds while all samples join the point's own surface */
-    vec2 hidden;   /* sectors, weighted */
+    ivec2 mask;  /* sectors */
+    vec2 hidden; /* their count, weighted */
     vec2 out_moment, eye_moment;
 };
 
-/* In radii, as the width of the surface says. */
-vec2 thickness_of(vec2 z)
+/* The sample before, of one layer. */
+struct Trail {
+    vec2 x, height, front;
+    vec2 rounding; /* taken off upper bounds while all samples join the point's own surface */
+};
+
+/* How far back what is sampled goes, in radii. is_given: view z has the truth, and a sample stands
+ * for its gap alone. */
+vec2 depth_of(vec2 z, vec2 x, vec2 gap, bool is_given)
 {
-    ivec2 code = floatBitsToInt(z) & VKAO_THICKNESS_MASK;
-    code = (code << VKAO_THICKNESS_SHIFT) + VKAO_THICKNESS_LEAST_BITS;
-    return params.thickness * intBitsToFloat(code);
+    vec2 thickness = thickness_of(z);
+    if (is_given)
+        return max(thickness, VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
+    return min(max(thickness, params.thickness_gap * gap),
+               params.thickness_base + params.thickness_slope * x);
 }
 
 /* Takes what a sample of both sides hides first. */
-void hide(inout March march, Slice s, Masks m, float center_z, vec2 offset, vec2 z)
+void hide(inout March march, inout Trail last, Slice s, Masks m, float center_z, vec2 offset,
+          vec2 z, bool is_given)
 {
     bvec2 seen = greaterThan(z, vec2(0.0));
     vec2 x, y;
     slice_points(s, offset, mix(vec2(center_z), z, seen), x, y);
     seen = bvec2(seen.x && x.x > 0.0, seen.y && x.y > 0.0); /* see is_seen */
-    vec2 gap = x - march.last_x, height = mix(vec2(0.0), y + x * (SIDES * s.fall), seen);
-    bvec2 joined = lessThan(abs(height - march.last_height), VKAO_VBAO_JOIN * abs(gap));
+    vec2 gap = x - last.x, height = mix(vec2(0.0), y + x * (SIDES * s.fall), seen);
+    bvec2 joined = lessThan(abs(height - last.height), VKAO_VBAO_JOIN * abs(gap));
     vec2 inner_x = x - VKAO_VBAO_GAP_FRONT * gap;
     vec2 front_x = mix(x, inner_x, greaterThan(height, vec2(0.0)));
     front_x = mix(front_x, x, joined);
-    vec2 thick_y = y - min(max(thickness_of(z), params.thickness_gap * gap),
-                           params.thickness_base + params.thickness_slope * x);
+    vec2 thick_y = y - depth_of(z, x, gap, is_given);
     vec2 back_x = x + VKAO_VBAO_GAP_BACK * gap;
     vec2 front = y * inversesqrt(front_x * front_x + y * y);
     vec2 back = thick_y * inversesqrt(back_x * back_x + thick_y * thick_y);
-    front = max(front, mix(vec2(-2.0), march.last_front, joined));
-    march.rounding = mix(vec2(0.0), march.rounding, joined);
-    ivec2 high = min(sector(m, max(front - params.bias_cosine, m.low), march.rounding), ivec2(31));
+    front = max(front, mix(vec2(-2.0), last.front, joined));
+    last.rounding = mix(vec2(0.0), last.rounding, joined);
+    ivec2 high = min(sector(m, max(front - params.bias_cosine, m.low), last.rounding), ivec2(31));
     ivec2 low = min(sector(m, max(back, m.low), vec2(0.0)), high);
     ivec2 bits = mix(ivec2(0), (ivec2(1) << high) - (ivec2(1) << low), seen);
     ivec2 fresh = bits & ~march.mask;
@@ -80,9 +90,9 @@ void hide(inout March march, Slice s, Masks m, float center_z, vec2 offset, vec2
         march.out_moment += w * SIDES * sqrt(max(vec2(0.0), 1.0 - middle * middle));
         march.eye_moment += w * middle;
     }
-    march.last_x = x;
-    march.last_height = height;
-    march.last_front = mix(vec2(-2.0), front, seen);
+    last.x = x;
+    last.height = height;
+    last.front = mix(vec2(-2.0), front, seen);
 }
 
 /* What a slice loses: of its mass, .x, and of its moment along O and along V. */
@@ -94,12 +104,18 @@ vec3 hidden(Slice s, ivec2 texel, float center_z, float jitter)
                                  (THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH),
                              VKAO_VBAO_STEP_LINEAR);
     const vec2 none = vec2(0.0);
-    March march =
-        March(ivec2(0), none, none, vec2(-2.0), vec2(VKAO_VBAO_ROUND_LESS), none, none, none);
+    March march = March(ivec2(0), none, none, none);
+    Trail first = Trail(none, none, vec2(-2.0), vec2(VKAO_VBAO_ROUND_LESS));
+    Trail second = Trail(none, none, vec2(-2.0), none);
     uint t = 0u;
     [[unroll]] for (;;) {
         vec2 offset = step_offset(s, steps, t, VKAO_VBAO_STEP_LEAST);
-        hide(march, s, m, center_z, offset, load_sides(texel, offset));
+        hide(march, first, s, m, center_z, offset, load_sides(texel, offset), IS_GIVEN);
+        if (SECOND_LAYER) {
+            ivec2 at = ivec2(offset);
+            vec2 z = vec2(load_second_z(texel + at), load_second_z(texel - at));
+            hide(march, second, s, m, center_z, offset, z, IS_GIVEN);
+        }
         if (++t >= step_count())
             break;
     }

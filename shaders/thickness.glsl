@@ -33,8 +33,18 @@ Reach width_reach()
     return Reach(shift, texels >> shift);
 }
 
-/* View z with the thickness in its last bits. along_x, along_y: steps of the surface to both sides
- * in the row and in the column; where they end nowhere, it goes on. */
+/* View z with a thickness, in radii, in its last bits. */
+real with_code(real z, real thickness)
+{
+    whole code = floatBitsToInt(thickness) - VKAO_THICKNESS_LEAST_BITS;
+    code = (code + (1 << (VKAO_THICKNESS_SHIFT - 1))) >> VKAO_THICKNESS_SHIFT;
+    code = clamp(code, whole(0), whole(VKAO_THICKNESS_MASK));
+    code = min(code, floatBitsToInt(z)); /* background stays 0 */
+    return intBitsToFloat((floatBitsToInt(z) & ~VKAO_THICKNESS_MASK) | code);
+}
+
+/* The same with what is seen. along_x, along_y: steps of the surface to both sides in the row and
+ * in the column; where they end nowhere, it goes on, to how far is unknown. */
 real with_thickness(real z, whole along_x, whole along_y, Reach reach)
 {
     vec2 texel = params.inverse_radius * abs(params.unproject.xy);
@@ -42,13 +52,8 @@ real with_thickness(real z, whole along_x, whole along_y, Reach reach)
                      texel.y * (real(along_y << reach.shift.y) + 1.0));
     width *= VKAO_VBAO_THICKNESS_WIDTH * (ORTHOGRAPHIC ? real(1.0) : z);
     real left = real(2 * (reach.steps.x + reach.steps.y) - along_x - along_y);
-    real thickness =
-        min(width + NOTHING * max(real(0.0), 1.0 - left), real(VKAO_VBAO_THICKNESS_WIDE));
-    whole code = floatBitsToInt(thickness) - VKAO_THICKNESS_LEAST_BITS;
-    code = (code + (1 << (VKAO_THICKNESS_SHIFT - 1))) >> VKAO_THICKNESS_SHIFT;
-    code = clamp(code, whole(0), whole(VKAO_THICKNESS_MASK));
-    code = min(code, floatBitsToInt(z)); /* background stays 0 */
-    return intBitsToFloat((floatBitsToInt(z) & ~VKAO_THICKNESS_MASK) | code);
+    width += (VKAO_VBAO_THICKNESS_WIDER - 1.0) * width * max(real(0.0), 1.0 - left);
+    return with_code(z, min(width, real(VKAO_VBAO_THICKNESS_WIDE)));
 }
 
 #endif

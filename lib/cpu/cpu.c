@@ -260,7 +260,11 @@ static const struct vkao_pass tiles = {
 #define METHOD(method, words, width, codes)                                                        \
     {                                                                                              \
         .name = "vkao ssao " #method, .label = "ssao", .stage = VKAO_STAGE_SSAO, VKAO_CODE(words), \
-        .uses = {READS_Z, READS_NORMALS, VKAO_WRITES(TARGET, AO_NOISY), READS_WORDS(TILES, TILES), \
+        .uses = {READS_Z,                                                                          \
+                 READS_NORMALS,                                                                    \
+                 VKAO_READS(SECOND_Z, SECOND_Z),                                                   \
+                 VKAO_WRITES(TARGET, AO_NOISY),                                                    \
+                 READS_WORDS(TILES, TILES),                                                        \
                  WRITES_TEXELS(PACKED_WRITE, PACKED, codes)},                                      \
         .area = VKAO_AREA_AROUND, .texels = {width, 1}, ROW_GROUP, .forms = 1,                     \
         .record = record_ssao,                                                                     \
@@ -413,7 +417,8 @@ static void plan_blur(struct vkao_program *program)
 bool vkao_cpu_has(const vkao_effect_info *settings)
 {
     return !(settings->stages & VKAO_STAGE_SSAO) ||
-           ((size_t)settings->method < COUNT(methods) && methods[settings->method].code);
+           (settings->thickness_input == VKAO_THICKNESS_AS_SEEN && !settings->second_layer &&
+            (size_t)settings->method < COUNT(methods) && methods[settings->method].code);
 }
 
 static const struct vkao_pass *method_row(const struct vkao_program *program)
@@ -432,7 +437,7 @@ bool vkao_cpu_plan(struct vkao_program *program, vkao_stage_flags stage)
     switch (stage) {
     case VKAO_STAGE_PREPARE:
         vkao_program_add(program, &prepare);
-        if (vkao_has_width(e)) {
+        if (vkao_has_thickness(e)) {
             vkao_program_add(program, &breaks_x);
             vkao_program_add(program, &breaks_y);
             vkao_program_add(program, &width);
@@ -494,7 +499,7 @@ void vkao_cpu_parts(const struct vkao_program *program, VkExtent2D extent, bool 
     rows->stride = (grid.width + window - 1) / window * window + 2 * VKAO_BUFFER_PAD;
     const VkDeviceSize stride = rows->stride;
     parts[PART_Z] = stride * (grid.height + 2 * VKAO_VIEW_Z_BORDER) * 4;
-    if (vkao_has_width(&program->settings)) {
+    if (vkao_has_thickness(&program->settings)) {
         parts[PART_BREAKS_X] = (VkDeviceSize)VKAO_BREAKS_STRIDE_OF(stride) * grid.height * 4;
         parts[PART_BREAKS_Y] = stride * ((grid.height + 31) / 32) * 4;
     }

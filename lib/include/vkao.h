@@ -251,6 +251,14 @@ typedef enum vkao_falloff {
     VKAO_FALLOFF_MAX_ENUM = 0x7fffffff
 } vkao_falloff;
 
+/* What VBAO and RAYMARCH know of how thick a texel's surface is, along the view axis. */
+typedef enum vkao_thickness_input {
+    VKAO_THICKNESS_AS_SEEN = 0,    /* nothing: guessed, see params.thickness */
+    VKAO_THICKNESS_GIVEN = 1,      /* images.thickness has it, in scene units */
+    VKAO_THICKNESS_BACK_DEPTH = 2, /* images.thickness has where it ends, encoded as depth is */
+    VKAO_THICKNESS_MAX_ENUM = 0x7fffffff
+} vkao_thickness_input;
+
 typedef enum vkao_sphere_form {
     /* Range-checked and rescaled by the '50 %' rule: visibility = min(1, 2 * (1 - blocked)), so
      * that a wall, which fills half the sphere, is open. */
@@ -329,6 +337,12 @@ typedef struct vkao_effect_info {
     uint32_t slice_count;
     /* [0,256] samples on each side of a slice, or on each ray of RAYMARCH; 0 = 8. Default 8 */
     uint32_t step_count;
+    /* VBAO, RAYMARCH: with true thickness light passes behind what is thin and not through what is
+     * thick. Default AS_SEEN */
+    vkao_thickness_input thickness_input;
+    /* VK_TRUE: images.second_depth has what lies behind the first layer, and hides too. VBAO,
+     * RAYMARCH */
+    VkBool32 second_layer;
 
     /* --- Blur. Separable, cross-bilateral, two dispatches: a mean whose taps count less the
      * further they lie off the surface that the local depth slope continues, and the more their
@@ -424,6 +438,12 @@ typedef struct vkao_images {
     vkao_image albedo; /* diffuse reflectance in rgb, for multi_bounce; as color */
     /* indirect specular light in rgb, roughness in alpha, for effect.specular; as color */
     vkao_image specular;
+    /* For effect.thickness_input, format as depth. What is not above 0, no number, or not behind
+     * depth is unknown: as for something that goes on on all sides. */
+    vkao_image thickness;
+    /* For effect.second_layer, encoding and format as depth: of each texel the front of what lies
+     * next behind depth; background where there is nothing. */
+    vkao_image second_depth;
 } vkao_images;
 
 VKAO_DEFAULT(vkao_images)

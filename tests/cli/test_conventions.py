@@ -274,6 +274,11 @@ OPTIONS = [
     ('--normal', ('--normal', 'Other'), ()),
     ('--depth', ('--depth', 'Other.Y'), ()),
     ('--depth-type', ('--depth-type', 'radial'), ()),
+    ('--thickness-channel', ('--thickness-channel', 'Thin.Y'), ()),
+    ('--thickness-channel of raymarch', ('--thickness-channel', 'Thin.Y'), ('-m', 'raymarch')),
+    ('--back-depth', ('--back-depth', 'Back.Y'), ()),
+    ('--layer2', ('--layer2', 'Second.Y'), ()),
+    ('--layer2 of raymarch', ('--layer2', 'Second.Y'), ('-m', 'raymarch')),
     ('--fov', ('--fov', 50), ()),
     ('--ortho', ('--ortho', 6), None),
     ('--pixel-type', ('--pixel-type', 'half'), ()),
@@ -285,6 +290,8 @@ def option_changes_the_result(scratch, _, option, base):
     start = () if base is None else ('--fov', FOV)
     other = SCENE.normals('Other', space='world')
     other['Other.Y'] = np.where(SCENE.sky, 0, SCENE.z * 2).astype(np.float32)
+    for name, z in (('Thin', 0.03), ('Back', SCENE.z + 0.03), ('Second', SCENE.z + 0.1)):
+        other[f'{name}.Y'] = np.where(SCENE.sky, 0, z).astype(np.float32)
     channels = {'Z': SCENE.depth(), **SCENE.normals(), **other}
     before = ao_of(scratch, channels, *start, *(base or ()))
     after = ao_of(scratch, channels, *start, *(base or ()), *option)

@@ -14,6 +14,10 @@ VIEW = ('--fov', FOV)
 
 def gbuffer(scratch, name='in.exr', **options):
     channels = {'Z': SCENE.depth(), **SCENE.normals(), **SCENE.color()}
+    for layer, distance in (('back', 0.05), ('second', 0.2)):
+        z = np.where(SCENE.sky, 1e10, SCENE.z + distance).astype(np.float32)
+        channels[f'{layer}.V'] = z
+    channels['thick.V'] = np.full_like(channels['Z'], 0.05)
     write_exr(scratch.path(name), channels, **options)
 
 
@@ -45,6 +49,9 @@ SETTINGS = [
      '--blur-sharpness', '33', '--blur-normal-power', '3.5', '--noise-index', '3', '--bent-normals',
      '--pixel-type', 'float'),
     ('raymarch', '-m', 'raymarch', '-s', '5', '--steps', '9', '--thickness', '.31', '--quality',
+     'fast'),
+    ('thickness', '--thickness-channel', 'thick.V', '--bent-normals', '--pixel-type', 'float'),
+    ('layers', '--back-depth', 'back.V', '--layer2', 'second.V', '-m', 'raymarch', '--quality',
      'fast'),
     ('no normals', '--normal', 'none', '--depth', 'Z', '--depth-type', 'radial'),
 ]
@@ -154,6 +161,13 @@ def options_come_before_the_record(scratch):
     scratch.render('in.exr', '-o', 'e.exr', '--fov', 50, '--power', 2, '-m', 'gtao')
     equal(scratch.bytes('d.exr'), scratch.bytes('e.exr'), 'the file with a radius found anew')
     scratch.render('in.exr', '-o', 'f.exr', *VIEW, '-m', 'hbao')
+    scratch.render('in.exr', '-o', 'h.exr', *VIEW, '--back-depth', 'back.V', '--layer2', 'second.V')
+    scratch.render('--like', 'h.exr', 'in.exr', '-o', 'i.exr', '--thickness-channel', 'thick.V',
+                   '--layer2', 'none')
+    scratch.render('in.exr', '-o', 'j.exr', *VIEW, '--thickness-channel', 'thick.V')
+    equal(scratch.bytes('i.exr'), scratch.bytes('j.exr'), 'the file of another thickness')
+    scratch.fails(USAGE, '--back-depth needs --method vbao or raymarch', '--like', 'h.exr',
+                  'in.exr', '-o', 'k.exr', '-m', 'gtao')
     scratch.fails(USAGE, '--bent-normals needs --method gtao, vbao or raymarch', '--like', 'f.exr',
                   'in.exr', '-o', 'g.exr', '--bent-normals')
 

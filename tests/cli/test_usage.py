@@ -45,7 +45,7 @@ WRONG_VALUES = [
     ('--falloff', ('linear',), 'want smooth or threshold'),
 ]
 TEXTS = ('--output', '--preview', '--part-name', '--depth', '--normal', '--color', '--view',
-         '--camera', '--frames', '--device')
+         '--camera', '--frames', '--device', '--thickness-channel', '--back-depth', '--layer2')
 FLAGS = ('--continue-on-error', '--validation', '--verbose', '--quiet')
 
 
@@ -103,6 +103,14 @@ def unknown_options_without_likeness(scratch):
     ('inspect -o', ('inspect', 'in.exr', '-o', 'x.exr'), "'--output' has no meaning for"),
     ('render --json', ('render', 'in.exr', '--json'), "'--json' has no meaning for 'vkao render'"),
     ('cameras', ('in.exr', '-o', 'x.exr', '--fov', '40', '--ortho', '2'), 'exclude each other'),
+    ('thickness twice', ('in.exr', '-o', 'x.exr', '--thickness-channel', 'T', '--back-depth', 'B'),
+     '--thickness-channel and --back-depth exclude each other'),
+    ('thickness of gtao', ('in.exr', '-o', 'x.exr', '-m', 'gtao', '--thickness-channel', 'T'),
+     '--thickness-channel needs --method vbao or raymarch'),
+    ('back depth of hbao', ('in.exr', '-o', 'x.exr', '-m', 'hbao', '--back-depth', 'B'),
+     '--back-depth needs --method vbao or raymarch'),
+    ('layer2 of sphere', ('in.exr', '-o', 'x.exr', '-m', 'sphere', '--layer2', 'L'),
+     '--layer2 needs --method vbao or raymarch'),
 ])
 def command_lines_are_checked(scratch, _, arguments, message):
     fails(scratch, message, *arguments)

@@ -239,6 +239,13 @@ static void load_with_options(struct fuzz_input *in, const struct exr_info *info
     if (budget & 2)
         options.budget.pixels = UINT64_C(1) << budget / 8;
     options.work_texel_bytes = budget & 4 ? 100 : 0;
+    if (fuzz_flag(in)) /* any channel may stand behind the depth */
+        for (int kind = ROLE_THICKNESS; kind < ROLE_KINDS; kind++) {
+            const struct exr_part *part = &info->parts[fuzz_below(in, (uint32_t)info->part_count)];
+            if (part->channel_count)
+                options.roles.name[kind] =
+                    part->channels[fuzz_below(in, (uint32_t)part->channel_count)].name;
+        }
     load(info, &options);
 }
 

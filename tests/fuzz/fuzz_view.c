@@ -58,6 +58,10 @@ void fuzz_check_job(const struct fuzz_job *job)
     images.color = images.output = image_of(VK_FORMAT_R32G32B32A32_SFLOAT);
     if (setting.effect.bent_normals)
         images.bent_normals = image_of(VK_FORMAT_R32G32B32A32_SFLOAT);
+    if (setting.effect.thickness_input)
+        images.thickness = image_of(VK_FORMAT_R32_SFLOAT);
+    if (setting.effect.second_layer)
+        images.second_depth = image_of(VK_FORMAT_R32_SFLOAT);
     vkao_effect_info effect_info = setting.effect;
     effect_info.stages = VKAO_STAGE_ALL;
     ao_view_describe(job->view, &effect_info);
@@ -85,9 +89,11 @@ void fuzz_check_job(const struct fuzz_job *job)
 
 static void check_depth(const struct gbuffer *g)
 {
-    for (size_t i = 0; i < gbuffer_texels(g); i++)
-        FUZZ_CHECK(isfinite(g->depth[i]) && g->depth[i] >= 0, "depth %zu is %g", i,
-                   (double)g->depth[i]);
+    const float *const images[] = {g->depth, g->thickness, g->second_depth};
+    for (size_t k = 0; k < sizeof images / sizeof *images; k++)
+        for (size_t i = 0; images[k] && i < gbuffer_texels(g); i++)
+            FUZZ_CHECK(isfinite(images[k][i]) && images[k][i] >= 0, "depth %zu, %zu is %g", k, i,
+                       (double)images[k][i]);
     FUZZ_CHECK(isfinite(g->min_z) && isfinite(g->max_z) && g->min_z >= 0 &&
                    g->min_z <= g->median_z && g->median_z <= g->max_z,
                "view z %g, %g, %g", g->min_z, g->median_z, g->max_z);

@@ -73,6 +73,29 @@ static void agrees_with_reference_for_every_count_falloff_and_noise(void **state
     }
 }
 
+/* What ends nowhere is only as thick as it is seen to be wide. Everything occludes, so that more
+ * sector bounds round the other way than at smaller radii. */
+static void vbao_agrees_with_its_reference_where_the_radius_exceeds_the_view(void **state)
+{
+    (void)state;
+    const struct scene scene = scene_corner();
+    struct picture p;
+    struct ref_scene view;
+    picture_make(&p, VKAO_STAGE_SSAO, &scene);
+    p.ssao.method = VKAO_SSAO_VBAO;
+    p.ssao.slice_count = 4;
+    p.ssao.step_count = 24;
+    p.ssao.radius = 6.0f;
+    picture_run(&p);
+    picture_reference_scene(&p, &view);
+    double *want = test_alloc(picture_texels(&p), sizeof *want);
+    ref_vbao(&view, &p.ssao, want);
+    check_close("vbao, R 6", p.values[SLOT_AO], want, picture_texels(&p), 2e-3, 0.0125, 0.035);
+    free(want);
+    ref_scene_free(&view);
+    picture_free(&p);
+}
+
 static void agrees_with_reference_for_every_normal_encoding(void **state)
 {
     (void)state;
@@ -180,6 +203,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         gpu_test(agrees_with_reference_for_every_count_falloff_and_noise),
+        gpu_test(vbao_agrees_with_its_reference_where_the_radius_exceeds_the_view),
         gpu_test(agrees_with_reference_for_every_normal_encoding),
         gpu_test(agrees_with_reference_for_world_space_normals),
         gpu_test(agrees_with_reference_for_every_projection),

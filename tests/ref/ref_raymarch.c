@@ -6,6 +6,7 @@
 #include "ref_noise.h"
 #include "ref_normal.h"
 #include "ref_ssao.h"
+#include "ref_width.h"
 
 #include <math.h>
 
@@ -17,13 +18,13 @@ struct ray {
 
 /* The ray is hit where it is under the scene's surface, which stands over the tangent plane, by
  * less than the scene is thick there. */
-static bool hit(const struct ref_scene *scene, const struct ao_ssao *params, const struct ray *ray,
+static bool hit(const struct ref_scene *layer, const struct ao_ssao *params, const struct ray *ray,
                 const double point[3])
 {
-    double surface[3], v[3], eye[3], under[3], radius = (double)params->radius;
-    if (!ref_scene_lookup(scene, point, surface))
+    double surface[3], v[3], eye[3], under[3], at[2], radius = (double)params->radius;
+    if (!ref_scene_lookup(layer, point, surface))
         return false;
-    ref_view_eye(&scene->view, ray->p, eye);
+    ref_view_eye(&layer->view, ray->p, eye);
     for (int i = 0; i < 3; ++i) {
         v[i] = surface[i] - ray->p[i];
         under[i] = surface[i] - point[i];
@@ -31,10 +32,15 @@ static bool hit(const struct ref_scene *scene, const struct ao_ssao *params, con
     double along = ref_dot(v, eye), lateral = sqrt(fmax(0.0, ref_dot(v, v) - along * along));
     double thickness = ref_thickness_scale(params) * (VKAO_THICKNESS_BASE * radius +
                                                       VKAO_THICKNESS_SLOPE * fmin(lateral, radius));
+    if (layer->thickness) {
+        ref_view_project(&layer->view, point, at);
+        int x = (int)floor(at[0] + 0.5), y = (int)floor(at[1] + 0.5);
+        thickness = ref_thickness_scale(params) * ref_width_thickness(layer, radius, x, y);
+    }
     /* What stands behind the point, as the eye sees it, may be higher over the tangent plane and
      * hides nothing. */
     double behind = ref_dot(eye, under);
-    return ref_dot(ray->n, under) > ref_guard(scene, params, ray->p[2]) && behind > 0.0 &&
+    return ref_dot(ray->n, under) > ref_guard(layer, params, ray->p[2]) && behind > 0.0 &&
            behind < thickness;
 }
 
@@ -47,7 +53,8 @@ static double first_hit(const struct ref_scene *scene, const struct ao_ssao *par
             point[i] = ray->p[i] + d * ray->direction[i];
         if (point[2] <= 0.0)
             return 0.0;
-        if (hit(scene, params, ray, point))
+        if (hit(scene, params, ray, point) ||
+            (scene->second && hit(scene->second, params, ray, point)))
             return ref_falloff(params, d);
     }
     return 0.0;

@@ -66,43 +66,67 @@ static double lowered(double theta, double bias)
     return acos(fmax(-1.0, cos(theta) - bias));
 }
 
-static void march(struct side *s)
+/* The sample before, of one layer. */
+struct trail {
+    double out, height, angle;
+    bool all_joined;
+};
+
+/* How far back a sample goes. Where thickness is given the second layer has none of its own. */
+static double depth_of(const struct side *s, const struct ref_scene *layer,
+                       const struct ref_sample *p, double gap)
+{
+    const struct ref_scene *first = s->slice->scene;
+    const struct ao_ssao *params = s->slice->params;
+    const double radius = (double)params->radius, scale = ref_thickness_scale(params);
+    if (first->thickness && layer != first)
+        return fmax(scale * radius * ldexp(1.0, -7), VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
+    double thickness = ref_width_thickness(layer, radius, p->x, p->y);
+    if (first->thickness)
+        return fmax(scale * thickness, VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
+    return scale * fmin(fmax(thickness, VKAO_VBAO_THICKNESS_GAP * gap),
+                        VKAO_VBAO_THICKNESS_BASE * radius + VKAO_VBAO_THICKNESS_SLOPE * p->out);
+}
+
+static void take(struct side *s, struct trail *last, const struct ref_scene *layer, uint32_t t)
 {
     const struct ao_ssao *params = s->slice->params;
-    const double radius = (double)params->radius;
+    const double radius = (double)params->radius, fall = s->sign * s->slice->fall;
     double reach =
         params->falloff == VKAO_FALLOFF_SMOOTH ? VKAO_VBAO_REACH_SMOOTH : VKAO_VBAO_REACH_THRESHOLD;
-    const double fall = s->sign * s->slice->fall;
-    double last_out = 0.0, last_height = 0.0, last_angle = INFINITY;
-    bool all_joined = true;
+    struct ref_slice slice = *s->slice;
     struct ref_sample p;
-    for (uint32_t t = 0; t < params->step_count; ++t) {
-        bool known = ref_slice_sample(s->slice, s->sign, t, reach * radius, &p);
-        double dx = p.out - last_out, height = known ? p.up + p.out * fall : 0.0;
-        double joined_angle = last_angle;
-        bool joined = fabs(height - last_height) < VKAO_VBAO_JOIN * fabs(dx);
-        bool above = height > 0.0;
-        all_joined = all_joined && joined;
-        last_out = p.out;
-        last_height = height;
-        last_angle = known ? fabs(atan2(p.out, p.up)) : INFINITY;
-        if (!known)
-            continue;
-        double front_out =
-            !joined && above ? fmax(p.out - VKAO_VBAO_GAP_FRONT * dx, 1.0e-4 * radius) : p.out;
-        double front = fabs(atan2(front_out, p.up));
-        if (joined)
-            front = fmin(front, joined_angle);
-        double thickness = fmax(ref_width_thickness(s->slice->scene, radius, p.x, p.y),
-                                VKAO_VBAO_THICKNESS_GAP * dx);
-        thickness =
-            ref_thickness_scale(params) *
-            fmin(thickness, VKAO_VBAO_THICKNESS_BASE * radius + VKAO_VBAO_THICKNESS_SLOPE * p.out);
-        double back = fabs(atan2(p.out + VKAO_VBAO_GAP_BACK * dx, p.up - thickness));
-        /* The slab's point nearest to P is on P's own height if the slab spans that. */
-        double near_up = p.up < 0.0 ? p.up : fmax(0.0, p.up - thickness);
-        hide(s, lowered(front, (double)params->bias), all_joined ? VKAO_VBAO_ROUND_LESS : 0.0, back,
-             ref_falloff(params, hypot(p.out - VKAO_VBAO_GAP_FRONT * dx, near_up)));
+    slice.scene = layer;
+    bool known = ref_slice_sample(&slice, s->sign, t, reach * radius, &p);
+    double gap = p.out - last->out, height = known ? p.up + p.out * fall : 0.0;
+    double joined_angle = last->angle;
+    bool joined = fabs(height - last->height)<VKAO_VBAO_JOIN * fabs(gap), above = height> 0.0;
+    last->all_joined = last->all_joined && joined;
+    last->out = p.out;
+    last->height = height;
+    last->angle = known ? fabs(atan2(p.out, p.up)) : INFINITY;
+    if (!known)
+        return;
+    double front_out =
+        !joined && above ? fmax(p.out - VKAO_VBAO_GAP_FRONT * gap, 1.0e-4 * radius) : p.out;
+    double front = fabs(atan2(front_out, p.up));
+    if (joined)
+        front = fmin(front, joined_angle);
+    double thickness = depth_of(s, layer, &p, gap);
+    double back = fabs(atan2(p.out + VKAO_VBAO_GAP_BACK * gap, p.up - thickness));
+    /* The slab's point nearest to P is on P's own height if the slab spans that. */
+    double near_up = p.up < 0.0 ? p.up : fmax(0.0, p.up - thickness);
+    hide(s, lowered(front, (double)params->bias), last->all_joined ? VKAO_VBAO_ROUND_LESS : 0.0,
+         back, ref_falloff(params, hypot(p.out - VKAO_VBAO_GAP_FRONT * gap, near_up)));
+}
+
+static void march(struct side *s)
+{
+    struct trail first = {.angle = INFINITY, .all_joined = true}, second = {.angle = INFINITY};
+    for (uint32_t t = 0; t < s->slice->params->step_count; ++t) {
+        take(s, &first, s->slice->scene, t);
+        if (s->slice->scene->second)
+            take(s, &second, s->slice->scene->second, t);
     }
 }
 

@@ -27,6 +27,10 @@ struct ref_scene {
     double *z;       /* positive away from the eye; NAN = background or outside the valid texels */
     double *normals; /* 3 a texel, unit, view space, facing the eye */
     double *planes;  /* the same of the depth image */
+    /* What the caller knows beyond that, and owns; NULL = nothing. thickness: scene units; what is
+     * not above 0 or NAN is unknown. */
+    const double *thickness;
+    const struct ref_scene *second;
 };
 
 bool ref_invert(const double m[16], double out[16]);

@@ -67,8 +67,18 @@ static double coded(double thickness)
     return (double)value;
 }
 
+/* Scene units. */
+static double given(const struct ref_scene *scene, double radius, int x, int y)
+{
+    double thickness = scene->thickness[(size_t)y * scene->width + (size_t)x];
+    bool is_known = thickness > 0.0 && thickness < VKAO_THICKNESS_MOST * radius;
+    return radius * coded(is_known ? thickness / radius : VKAO_THICKNESS_MOST);
+}
+
 double ref_width_thickness(const struct ref_scene *scene, double radius, int x, int y)
 {
+    if (scene->thickness)
+        return given(scene, radius, x, y);
     double here[3], next[3], z = ref_scene_z(scene, x, y), least = INFINITY;
     double reach =
         scene->view.orthographic ? VKAO_VBAO_WIDTH_REACH_RADII * radius : VKAO_VBAO_WIDTH_REACH * z;
@@ -82,6 +92,8 @@ double ref_width_thickness(const struct ref_scene *scene, double radius, int x, 
         goes_on = goes_on && texels == 2 * most;
         least = fmin(least, (texels + 1) * texel);
     }
-    return radius *
-           coded(goes_on ? VKAO_VBAO_THICKNESS_WIDE : VKAO_VBAO_THICKNESS_WIDTH * least / radius);
+    double thickness = VKAO_VBAO_THICKNESS_WIDTH * least / radius;
+    if (goes_on)
+        thickness = fmin(VKAO_VBAO_THICKNESS_WIDER * thickness, VKAO_VBAO_THICKNESS_WIDE);
+    return radius * coded(thickness);
 }

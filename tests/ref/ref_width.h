@@ -6,7 +6,7 @@
 
 #include "ref_view.h"
 
-/* The thickness that vbao takes from it, in scene units. */
+/* The thickness that vbao takes from it, in scene units; where thickness is given, that. */
 double ref_width_thickness(const struct ref_scene *scene, double radius, int x, int y);
 
 #endif

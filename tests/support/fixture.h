@@ -70,6 +70,8 @@ enum picture_slot {
     SLOT_BENT,
     SLOT_ALBEDO,
     SLOT_SPECULAR,
+    SLOT_THICKNESS,
+    SLOT_SECOND,
     SLOT_COUNT
 };
 
@@ -81,6 +83,7 @@ struct picture {
                                       others 4 */
     bool output_is_color;         /* composite in place */
     bool half_resolution;
+    vkao_thickness_input thickness_input;
     bool staged;                   /* ao.image is given */
     VkDeviceMemory scratch_memory; /* null = the library's own */
     VkDeviceSize scratch_offset;
@@ -118,6 +121,10 @@ void picture_fill(struct picture *p, enum picture_slot slot, VkFormat format, do
  * normals slot (as view.normal_encoding), and sets the projection. */
 void picture_render_scene(struct picture *p, const struct scene *scene, const struct lens *lens,
                           VkFormat depth_format, VkFormat normals_format);
+
+/* What lies behind the first layer, of a picture whose depth is view z: the slots of thickness, as
+ * thickness_input says, and of the second layer. */
+void picture_render_behind(struct picture *p, const struct scene *scene, const struct lens *lens);
 
 /* 80x60, SSAO and whatever else is asked for, the scene from a right-handed perspective camera as
  * view z in R32F, given normals in RGBA32F, AO in R32F. */

@@ -43,7 +43,9 @@ void picture_free(struct picture *p)
 
 uint32_t picture_channels(enum picture_slot slot)
 {
-    return slot == SLOT_DEPTH || slot == SLOT_NOISY || slot == SLOT_AO ? 1 : 4;
+    const bool is_color = slot != SLOT_DEPTH && slot != SLOT_NOISY && slot != SLOT_AO &&
+                          slot != SLOT_THICKNESS && slot != SLOT_SECOND;
+    return is_color ? 4 : 1;
 }
 
 size_t picture_texels(const struct picture *p)
@@ -54,11 +56,12 @@ size_t picture_texels(const struct picture *p)
 vkao_image *picture_slot_image(vkao_images *images, enum picture_slot slot)
 {
     vkao_image *const slots[SLOT_COUNT] = {
-        [SLOT_DEPTH] = &images->depth,    [SLOT_NORMALS] = &images->normals,
-        [SLOT_NOISY] = &images->ao_noisy, [SLOT_AO] = &images->ao,
-        [SLOT_COLOR] = &images->color,    [SLOT_DIRECT] = &images->direct,
-        [SLOT_OUTPUT] = &images->output,  [SLOT_BENT] = &images->bent_normals,
-        [SLOT_ALBEDO] = &images->albedo,  [SLOT_SPECULAR] = &images->specular,
+        [SLOT_DEPTH] = &images->depth,         [SLOT_NORMALS] = &images->normals,
+        [SLOT_NOISY] = &images->ao_noisy,      [SLOT_AO] = &images->ao,
+        [SLOT_COLOR] = &images->color,         [SLOT_DIRECT] = &images->direct,
+        [SLOT_OUTPUT] = &images->output,       [SLOT_BENT] = &images->bent_normals,
+        [SLOT_ALBEDO] = &images->albedo,       [SLOT_SPECULAR] = &images->specular,
+        [SLOT_THICKNESS] = &images->thickness, [SLOT_SECOND] = &images->second_depth,
     };
     return slots[slot];
 }
@@ -144,6 +147,20 @@ void picture_render_scene(struct picture *p, const struct scene *scene, const st
     free(normals);
 }
 
+void picture_render_behind(struct picture *p, const struct scene *scene, const struct lens *lens)
+{
+    const size_t texels = picture_texels(p);
+    double *back = test_alloc(texels, sizeof *back), *second = test_alloc(texels, sizeof *second);
+    scene_render_behind(scene, lens, lens_viewport(p), p->width, p->height, back, second);
+    if (p->thickness_input == VKAO_THICKNESS_GIVEN)
+        for (size_t i = 0; i < texels; ++i)
+            back[i] -= p->values[SLOT_DEPTH][i]; /* view z */
+    picture_set(p, SLOT_THICKNESS, VK_FORMAT_R32_SFLOAT, back);
+    picture_set(p, SLOT_SECOND, VK_FORMAT_R32_SFLOAT, second);
+    free(back);
+    free(second);
+}
+
 void picture_make(struct picture *p, vkao_stage_flags stages, const struct scene *scene)
 {
     struct lens lens = lens_perspective(0.6, 0.45);
@@ -182,6 +199,8 @@ vkao_effect_info picture_effect_info(const struct picture *p)
     const bool has_both = (p->stages & both) == both;
     vkao_effect_info info = ao_effect(p->stages, &p->view, &p->ssao, &p->blur, &p->composite);
     info.half_resolution = p->half_resolution;
+    info.thickness_input = p->thickness_input;
+    info.second_layer = p->formats[SLOT_SECOND] != VK_FORMAT_UNDEFINED;
     info.bent_normals = has_both && p->formats[SLOT_BENT] != VK_FORMAT_UNDEFINED;
     info.noisy_ao = has_both && p->formats[SLOT_NOISY] != VK_FORMAT_UNDEFINED;
     info.ao_format = p->formats[SLOT_AO];

@@ -152,8 +152,29 @@ static double hit(const struct shape *shape, const double origin[3], const doubl
     return t;
 }
 
-static double cast(const struct scene *scene, const struct lens *lens, double x, double y,
-                   double normal[3])
+/* Where the ray that has hit a shape leaves it; INFINITY for a plane, which has no other side. */
+static double exit_of(const struct shape *shape, const double origin[3], const double ray[3],
+                      double enter)
+{
+    double back[3], away[3], ignored[3];
+    if (shape->kind == SHAPE_PLANE || enter == INFINITY)
+        return INFINITY;
+    /* The same shape, hit from far behind. */
+    const double far = enter + 100.0;
+    for (int i = 0; i < 3; ++i) {
+        back[i] = origin[i] + far * ray[i];
+        away[i] = -ray[i];
+    }
+    return far - hit(shape, back, away, ignored);
+}
+
+/* What a texel sees: the ray advances 1 in z for 1 in t. */
+struct sight {
+    double z, normal[3];
+    double back, second; /* where the first shape ends, where the next one begins */
+};
+
+static struct sight cast(const struct scene *scene, const struct lens *lens, double x, double y)
 {
     const double axis[3] = {0.0, 0.0, 1.0};
     double at[3] = {lens->x0 + (lens->x1 - lens->x0) * (x + 1.0) / 2.0,
@@ -161,33 +182,54 @@ static double cast(const struct scene *scene, const struct lens *lens, double x,
     const double ray[3] = {at[0], at[1], 1.0}, eye[3] = {0.0, 0.0, 0.0};
     const double *origin = lens->orthographic ? at : eye,
                  *direction = lens->orthographic ? axis : ray;
-    double nearest = INFINITY, n[3] = {0.0, 0.0, -1.0};
+    struct sight s = {INFINITY, {0.0, 0.0, -1.0}, INFINITY, INFINITY};
+    int first = -1;
     for (int i = 0; i < SCENE_SHAPES && scene->shapes[i].kind != SHAPE_NONE; ++i) {
         double candidate[3], t = hit(&scene->shapes[i], origin, direction, candidate);
-        /* The ray advances 1 in z for 1 in t. */
-        if (t > lens->near && t < lens->far && t < nearest) {
-            nearest = t;
-            memcpy(n, candidate, sizeof n);
+        if (!(t > lens->near && t < lens->far))
+            continue;
+        s.second = fmin(s.second, t < s.z ? s.z : t);
+        if (t < s.z) {
+            s.z = t;
+            first = i;
+            memcpy(s.normal, candidate, sizeof s.normal);
         }
     }
-    double length = sqrt(dot(n, n)) * (dot(n, direction) > 0.0 ? -1.0 : 1.0);
+    if (first >= 0)
+        s.back = exit_of(&scene->shapes[first], origin, direction, s.z);
+    double length = sqrt(dot(s.normal, s.normal)) * (dot(s.normal, direction) > 0.0 ? -1.0 : 1.0);
     for (int i = 0; i < 3; ++i)
-        normal[i] = n[i] / length;
-    return nearest;
+        s.normal[i] /= length;
+    return s;
+}
+
+static struct sight cast_texel(const struct scene *scene, const struct lens *lens,
+                               VkRect2D viewport, size_t column, size_t row)
+{
+    double x = ((double)column + 0.5 - viewport.offset.x) / viewport.extent.width * 2.0 - 1.0;
+    double y = ((double)row + 0.5 - viewport.offset.y) / viewport.extent.height * 2.0 - 1.0;
+    return cast(scene, lens, x, y);
 }
 
 void scene_render(const struct scene *scene, const struct lens *lens, VkRect2D viewport,
                   uint32_t width, uint32_t height, double *z, double *normals)
 {
-    for (uint32_t row = 0; row < height; ++row) {
-        for (uint32_t column = 0; column < width; ++column) {
-            size_t i = (size_t)row * width + column;
-            double x = (column + 0.5 - viewport.offset.x) / viewport.extent.width * 2.0 - 1.0;
-            double y = (row + 0.5 - viewport.offset.y) / viewport.extent.height * 2.0 - 1.0;
-            z[i] = cast(scene, lens, x, y, &normals[i * 4]);
-            normals[i * 4 + 2] *= lens->forward;
-            normals[i * 4 + 3] = 0.0;
-        }
+    for (size_t i = 0; i < (size_t)width * height; ++i) {
+        const struct sight s = cast_texel(scene, lens, viewport, i % width, i / width);
+        z[i] = s.z;
+        memcpy(&normals[i * 4], s.normal, sizeof s.normal);
+        normals[i * 4 + 2] *= lens->forward;
+        normals[i * 4 + 3] = 0.0;
+    }
+}
+
+void scene_render_behind(const struct scene *scene, const struct lens *lens, VkRect2D viewport,
+                         uint32_t width, uint32_t height, double *back, double *second)
+{
+    for (size_t i = 0; i < (size_t)width * height; ++i) {
+        const struct sight s = cast_texel(scene, lens, viewport, i % width, i / width);
+        back[i] = s.back;
+        second[i] = s.second;
     }
 }
 

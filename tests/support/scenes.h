@@ -49,6 +49,11 @@ struct scene scene_posts(void);
 void scene_render(const struct scene *scene, const struct lens *lens, VkRect2D viewport,
                   uint32_t width, uint32_t height, double *z, double *normals);
 
+/* What the first layer hides: view z where each texel's shape ends, INFINITY for planes and
+ * background, and where the next shape begins, INFINITY for none. */
+void scene_render_behind(const struct scene *scene, const struct lens *lens, VkRect2D viewport,
+                         uint32_t width, uint32_t height, double *back, double *second);
+
 /* Ambient visibility of a surface point, ray cast: threshold counts any hit within the radius,
  * falloff weighs it 1 - (t / R)^2; bent is the unit mean of the directions by the falloff's
  * visibility. */

@@ -50,6 +50,10 @@ static struct setting any_setting(void)
         memcpy(parameter_of(&s, p), is_number ? (const void *)numbers : &word, parameter_bytes(p));
     }
     s.effect.bent_normals = s.effect.bent_normals && method_has_bent(s.effect.method);
+    if (s.effect.method != VKAO_SSAO_VBAO && s.effect.method != VKAO_SSAO_RAYMARCH) {
+        s.effect.thickness_input = VKAO_THICKNESS_AS_SEEN;
+        s.effect.second_layer = VK_FALSE;
+    }
     return s;
 }
 
@@ -61,6 +65,9 @@ static struct gbuffer any_gbuffer(void)
     snprintf(g.roles.kind[ROLE_DEPTH].label, ROLE_LABEL_MAX, "part \"1\"/left.Z");
     snprintf(g.roles.kind[ROLE_NORMAL].label, ROLE_LABEL_MAX, "N\xc3\xa4");
     snprintf(g.roles.kind[ROLE_COLOR].label, ROLE_LABEL_MAX, "beauty");
+    snprintf(g.roles.kind[ROLE_THICKNESS].label, ROLE_LABEL_MAX, "thickness.T");
+    snprintf(g.roles.kind[ROLE_BACK_DEPTH].label, ROLE_LABEL_MAX, "back/Z");
+    snprintf(g.roles.kind[ROLE_LAYER2].label, ROLE_LABEL_MAX, "second.Z");
     g.camera.type = uniform() < 0.5 ? CAMERA_PERSPECTIVE : CAMERA_ORTHOGRAPHIC;
     g.camera.half_width = exp(uniform() * 20 - 10);
     g.camera.half_height = exp(uniform() * 20 - 10);
@@ -128,6 +135,12 @@ static void record_reads_back_to_the_bit(void **unused)
             assert_int_equal(r.normal_encoding, g.normal_encoding);
         }
         assert_int_equal(r.color != NULL, o.mode == OUTPUT_COMP);
+        if (s.effect.thickness_input)
+            assert_string_equal(r.thickness, s.effect.thickness_input == VKAO_THICKNESS_GIVEN
+                                                 ? "thickness.T"
+                                                 : "back/Z");
+        assert_int_equal(r.thickness != NULL, s.effect.thickness_input != VKAO_THICKNESS_AS_SEEN);
+        assert_int_equal(r.second_depth != NULL, s.effect.second_layer);
         record_free(&r);
         free(json);
     }
@@ -215,11 +228,15 @@ static void damaged_values_are_named_with_file_field_and_range(void **unused)
            "a.exr: vkao/params: 'parameters.composite_mode' is 'view-z', want multiply");
     refuse("\"depth_bits\":0", "\"depth_bits\":17",
            "a.exr: vkao/params: 'parameters.depth_bits' is 17, want 0");
+    refuse("\"thickness_input\":\"as-seen\"", "\"thickness_input\":\"given\"",
+           "a.exr: vkao/params: 'thickness_channel' is missing, want a string");
+    refuse("\"second_layer\":false", "\"second_layer\":true",
+           "a.exr: vkao/params: 'layer2' is missing, want a string");
     refuse("\"parameters\":{", "\"parameters\":7,\"x\":{",
            "a.exr: vkao/params: 'parameters' is 7, want an object { ... }");
 }
 
-static void bent_normals_need_their_method(void **unused)
+static void bent_normals_and_thickness_need_their_method(void **unused)
 {
     (void)unused;
     struct setting s = setting_default();
@@ -233,6 +250,14 @@ static void bent_normals_need_their_method(void **unused)
     assert_false(record_parse(json, "a.exr", &r, &err));
     assert_string_equal(err.message, "a.exr: vkao/params: 'parameters.bent_normals' is true, want "
                                      "false with this method");
+    free(json);
+    s.effect.bent_normals = VK_FALSE;
+    s.effect.thickness_input = VKAO_THICKNESS_GIVEN;
+    err = (struct tool_error){0};
+    json = record_write(&o, &s, "", &g, "device");
+    assert_false(record_parse(json, "a.exr", &r, &err));
+    assert_string_equal(err.message, "a.exr: vkao/params: 'parameters.thickness_input' is 'given', "
+                                     "want as-seen with this method");
     free(json);
 }
 
@@ -275,7 +300,7 @@ int main(void)
         cmocka_unit_test(every_parameter_of_the_table_is_in_it),
         cmocka_unit_test(record_reads_back_to_the_bit),
         cmocka_unit_test(damaged_values_are_named_with_file_field_and_range),
-        cmocka_unit_test(bent_normals_need_their_method),
+        cmocka_unit_test(bent_normals_and_thickness_need_their_method),
         cmocka_unit_test(other_versions_are_refused),
         cmocka_unit_test(what_is_no_record_is_refused),
     };

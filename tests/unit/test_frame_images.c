@@ -106,6 +106,31 @@ static void slots_are_required_as_the_stages_say(void **state)
     }
 }
 
+/* What lies behind the first layer is asked for by settings, not by stages. */
+static void layers_are_required_where_they_are_read(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open(&w);
+    set_case(&w, 2 * (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR));
+    w.effect_info.thickness_input = VKAO_THICKNESS_GIVEN;
+    expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, "thickness_input", "method VBAO or RAYMARCH");
+    w.effect_info.method = VKAO_SSAO_VBAO;
+    expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, "images.thickness", "required");
+    w.images.thickness = w.images.depth;
+    expect_result(&w, VKAO_SUCCESS, "images.thickness", "");
+    w.effect_info.second_layer = VK_TRUE;
+    expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, "images.second_depth", "required");
+    w.images.second_depth = w.images.depth;
+    expect_result(&w, VKAO_SUCCESS, "images.second_depth", "");
+    w.images.thickness.format = VK_FORMAT_R8G8B8A8_UNORM;
+    expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, "images.thickness", "37");
+    w.effect_info.stages = VKAO_STAGE_BLUR;
+    w.effect_info.noisy_ao = VK_FALSE;
+    expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, "thickness_input", "stage SSAO");
+    world_close(&w);
+}
+
 static void used_slots_need_views(void **state)
 {
     (void)state;
@@ -383,7 +408,9 @@ static void check_bindings(const struct world *w, vkao_images images)
     }
     const uint32_t absent = program->settings.bent_normals ? VKAO_BIT(VKAO_RESOURCE_AO_NOISY)
                                                            : VKAO_BIT(VKAO_RESOURCE_BENT_NORMALS);
-    assert_int_equal(checked | absent, (1u << VKAO_SLOT_COUNT) - 1u);
+    const uint32_t layers =
+        VKAO_BIT(VKAO_RESOURCE_THICKNESS) | VKAO_BIT(VKAO_RESOURCE_SECOND_DEPTH);
+    assert_int_equal(checked | absent | layers, (1u << VKAO_SLOT_COUNT) - 1u);
 }
 
 static void each_binding_holds_its_slot(void **state)
@@ -480,6 +507,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slots_are_required_as_the_stages_say),
+        cmocka_unit_test(layers_are_required_where_they_are_read),
         cmocka_unit_test(used_slots_need_views),
         cmocka_unit_test(layouts_fit_what_is_done),
         cmocka_unit_test(device_abilities_decide_about_formats),

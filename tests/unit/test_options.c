@@ -85,13 +85,13 @@ static void every_option_reaches_its_member(void **state)
     assert_int_equal(o.pixel_type, EXR_FLOAT);
 }
 
-/* What has no option of its own: images decide it, --quality, --mode, or the tools have no such
- * image. */
+/* What has no option of its own: images decide it, --quality, --mode, options that name channels,
+ * or the tools have no such image. */
 static void every_parameter_has_an_option_but_these(void **state)
 {
-    static const char *const others[] = {"half_resolution", "depth_bits",   "noisy_ao",
-                                         "composite_mode",  "multi_bounce", "specular",
-                                         "debug_distance"};
+    static const char *const others[] = {"half_resolution", "depth_bits",      "noisy_ao",
+                                         "composite_mode",  "multi_bounce",    "specular",
+                                         "debug_distance",  "thickness_input", "second_layer"};
     uint32_t count;
     const vkao_parameter *all = vkao_parameters(&count);
     (void)state;
@@ -148,6 +148,28 @@ static void bent_normals_need_a_method_that_has_them(void **state)
     accept("i.exr -o o.exr --bent-normals -m gtao");
     refuse("i.exr -o o.exr --bent-normals -m hbao",
            "--bent-normals needs --method gtao, vbao or raymarch");
+}
+
+static void thickness_and_layers_decide_what_is_compiled(void **state)
+{
+    (void)state;
+    struct options o = accept("i.exr -o o.exr --thickness-channel T --layer2 Z2");
+    assert_int_equal(o.setting.effect.thickness_input, VKAO_THICKNESS_GIVEN);
+    assert_true(o.setting.effect.second_layer);
+    assert_string_equal(o.gbuffer.roles.name[ROLE_THICKNESS], "T");
+    assert_string_equal(o.gbuffer.roles.name[ROLE_LAYER2], "Z2");
+    o = accept("i.exr -o o.exr --back-depth B -m raymarch");
+    assert_int_equal(o.setting.effect.thickness_input, VKAO_THICKNESS_BACK_DEPTH);
+    assert_false(o.setting.effect.second_layer);
+    o = accept("i.exr -o o.exr --thickness-channel T --thickness-channel none --layer2 none");
+    assert_int_equal(o.setting.effect.thickness_input, VKAO_THICKNESS_AS_SEEN);
+    assert_false(o.setting.effect.second_layer);
+    refuse("i.exr -o o.exr --back-depth B --thickness-channel T",
+           "--thickness-channel and --back-depth exclude each other");
+    refuse("i.exr -o o.exr --back-depth B -m gtao", "--back-depth needs --method vbao or raymarch");
+    refuse("i.exr -o o.exr --thickness-channel B -m hbao",
+           "--thickness-channel needs --method vbao or raymarch");
+    refuse("i.exr -o o.exr --layer2 B -m sphere", "--layer2 needs --method vbao or raymarch");
 }
 
 /* What another file brings stands behind what was said, before and after --like. */
@@ -340,6 +362,7 @@ int main(void)
         TEST(ranges_are_those_of_the_table),
         TEST(presets_fill_what_is_left),
         TEST(bent_normals_need_a_method_that_has_them),
+        TEST(thickness_and_layers_decide_what_is_compiled),
         TEST(options_come_before_what_is_taken),
         TEST(camera_and_channel_options_reach_the_gbuffer),
         TEST(numbers_out_of_range_are_named_with_the_range),

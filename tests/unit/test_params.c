@@ -67,8 +67,9 @@ static void check_float(const vkao_parameter *p)
 /* Rules between members refuse some words that are in range. */
 static bool depends_on_others(const vkao_parameter *p)
 {
-    static const char *const names[] = {"depth_bits", "noisy_ao", "bent_normals", "normal_encoding",
-                                        "projection"};
+    static const char *const names[] = {"depth_bits",      "noisy_ao",   "bent_normals",
+                                        "normal_encoding", "projection", "thickness_input",
+                                        "second_layer"};
     for (size_t i = 0; i < COUNT(names); ++i) {
         if (strcmp(p->name, names[i]) == 0)
             return true;

@@ -16,6 +16,8 @@ enum job_image {
     IMAGE_AO,
     IMAGE_OUTPUT,
     IMAGE_BENT,
+    IMAGE_THICKNESS,
+    IMAGE_SECOND_DEPTH,
     IMAGE_COUNT
 };
 
@@ -96,6 +98,8 @@ vkao_effect_info ao_job_effect(const struct ao_job *job)
 static bool create_frame(struct ao_session *session, const struct ao_job *job,
                          struct tool_error *err)
 {
+    const vkao_effect_info *effect = &job->setting.effect;
+    const bool has_thickness = effect->thickness_input != VKAO_THICKNESS_AS_SEEN;
     const struct {
         bool used;
         VkFormat format;
@@ -111,6 +115,9 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
                           VK_IMAGE_USAGE_STORAGE_BIT},
         [IMAGE_BENT] = {job->setting.effect.bent_normals, VK_FORMAT_R32G32B32A32_SFLOAT,
                         VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
+        [IMAGE_THICKNESS] = {has_thickness, VK_FORMAT_R32_SFLOAT, VK_IMAGE_USAGE_SAMPLED_BIT},
+        [IMAGE_SECOND_DEPTH] = {effect->second_layer, VK_FORMAT_R32_SFLOAT,
+                                VK_IMAGE_USAGE_SAMPLED_BIT},
     };
     VkExtent2D extent = {job->width, job->height};
     drop_frame(session);
@@ -131,6 +138,10 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
     }
     if (job->setting.effect.bent_normals)
         images.bent_normals = gpu_image_slot(&session->images[IMAGE_BENT]);
+    if (has_thickness)
+        images.thickness = gpu_image_slot(&session->images[IMAGE_THICKNESS]);
+    if (effect->second_layer)
+        images.second_depth = gpu_image_slot(&session->images[IMAGE_SECOND_DEPTH]);
     vkao_result result = vkao_frame_create(session->effect,
                                            &(vkao_frame_info){
                                                .struct_size = sizeof(vkao_frame_info),
@@ -162,15 +173,17 @@ static bool fit_effect(struct ao_session *session, const struct ao_job *job, str
     return result == VKAO_SUCCESS || gpu_library_failed(err, "vkao_effect_create", result);
 }
 
-uint64_t ao_job_texel_bytes(bool has_normals, bool has_color, bool bent_normals)
+uint64_t ao_job_texel_bytes(bool has_normals, bool has_color, const vkao_effect_info *effect)
 {
     /* Images on the device, and results; the library's scratch, with room for the margins of half
      * resolution; what an image passes through on its way to or from the device. */
     const uint64_t vector = 4 * sizeof(float), normals = has_normals ? vector : 0;
-    const uint64_t color = has_color ? vector : 0, bent = bent_normals ? vector : 0;
-    const uint64_t images = 2 * sizeof(float) + normals + 2 * color + bent;
+    const uint64_t color = has_color ? vector : 0, bent = effect->bent_normals ? vector : 0;
+    const uint64_t thickness = effect->thickness_input ? sizeof(float) : 0;
+    const uint64_t second = effect->second_layer ? sizeof(float) : 0;
+    const uint64_t images = 2 * sizeof(float) + normals + 2 * color + bent + thickness + second;
     const uint64_t results = sizeof(float) + color + bent;
-    const uint64_t scratch = bent_normals ? 24 : 8;
+    const uint64_t scratch = (bent ? 24 : 8) + second;
     return images + results + scratch + (normals || color || bent ? vector : sizeof(float));
 }
 
@@ -180,6 +193,19 @@ static bool upload(struct ao_session *session, enum job_image which, const float
     struct gpu_image *image = &session->images[which];
     return !data || gpu_image_upload(session->gpu, image, data,
                                      texels * gpu_format_bytes(image->format), err);
+}
+
+static bool upload_behind(struct ao_session *session, const struct ao_job *job, uint64_t texels,
+                          struct tool_error *err)
+{
+    const vkao_effect_info *effect = &job->setting.effect;
+    if ((effect->thickness_input && !job->thickness) ||
+        (effect->second_layer && !job->second_depth))
+        return fail(err, EXIT_BUG, "no image of thickness or second depth");
+    return (!effect->thickness_input ||
+            upload(session, IMAGE_THICKNESS, job->thickness, texels, err)) &&
+           (!effect->second_layer ||
+            upload(session, IMAGE_SECOND_DEPTH, job->second_depth, texels, err));
 }
 
 static double now_ms(void)
@@ -259,6 +285,7 @@ static bool run(struct ao_session *session, const struct ao_job *job, struct ao_
         !upload(session, IMAGE_DEPTH, job->depth, texels, err) ||
         !upload(session, IMAGE_NORMALS, job->normals, texels, err) ||
         !upload(session, IMAGE_COLOR, job->color, texels, err) ||
+        !upload_behind(session, job, texels, err) ||
         !record_and_run(session, job, &result->gpu_ms, err))
         return false;
     result->ao = download(session, IMAGE_AO, texels, err);

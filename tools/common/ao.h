@@ -15,6 +15,9 @@ struct ao_job {
     /* width * height * 4 (xyz and padding), or NULL; what view.normal_encoding says */
     const float *normals;
     const float *color; /* width * height * 4 linear RGBA, or NULL = no composite */
+    /* width * height each, where setting.effect asks for them: what its thickness_input says, and
+     * depth as that above */
+    const float *thickness, *second_depth;
     struct ao_view view;
     struct setting setting; /* the job itself decides stages, encodings, projection and ao_format */
 };
@@ -28,7 +31,7 @@ struct ao_result {
 };
 
 /* Memory that a job takes per texel beside its own images, on host and device together. */
-uint64_t ao_job_texel_bytes(bool has_normals, bool has_color, bool bent_normals);
+uint64_t ao_job_texel_bytes(bool has_normals, bool has_color, const vkao_effect_info *effect);
 
 /* A session keeps device objects from one frame to the next: create once, run per frame of the same
  * or of another size. What is compiled is compiled anew when the job's settings change. */

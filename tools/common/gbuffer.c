@@ -82,33 +82,40 @@ static void copy_overlap(float *dst, const struct exr_box *dst_box, const float 
     }
 }
 
-/* A role with four floats per texel in the window of the depth; what its own window lacks is zero,
- * and so is a missing fourth component. */
-static float *read_vector(const struct exr_info *info, const struct gbuffer *g,
-                          const struct role *role, struct tool_error *err)
+static void fill(float *values, size_t count, float value)
+{
+    for (size_t i = 0; i < count; i++)
+        values[i] = value;
+}
+
+/* A role with so many floats per texel in the window of the depth; missing: what its own window
+ * lacks, and a fourth component that is not there. */
+static float *read_role(const struct exr_info *info, const struct gbuffer *g,
+                        const struct role *role, size_t components, float missing,
+                        struct tool_error *err)
 {
     const struct exr_box *box = &info->parts[role->part].data_window;
     size_t width = (size_t)((int64_t)box->x_max - box->x_min + 1);
     size_t height = (size_t)((int64_t)box->y_max - box->y_min + 1), texels;
     if (!size_multiply(width, height, &texels))
         texels = SIZE_MAX;
-    float *values = allocate(texels, 4, info->path, err);
+    float *values = allocate(texels, components, info->path, err);
     if (!values)
         return NULL;
-    memset(values, 0, texels * 4 * sizeof *values);
+    fill(values, texels * components, missing);
     struct exr_read reads[4];
     size_t count = 0;
-    for (size_t i = 0; i < 4; i++)
+    for (size_t i = 0; i < components; i++)
         if (role->channels[i])
-            reads[count++] = (struct exr_read){role->channels[i]->name, values + i, 4};
+            reads[count++] = (struct exr_read){role->channels[i]->name, values + i, components};
     float *aligned = values;
     if (!exr_read_channels(info, role->part, reads, count, err)) {
         aligned = NULL;
     } else if (!same_box(box, &g->data_window)) {
-        aligned = allocate(gbuffer_texels(g), 4, info->path, err);
+        aligned = allocate(gbuffer_texels(g), components, info->path, err);
         if (aligned) {
-            memset(aligned, 0, gbuffer_texels(g) * 4 * sizeof *aligned);
-            copy_overlap(aligned, &g->data_window, values, box, 4);
+            fill(aligned, gbuffer_texels(g) * components, missing);
+            copy_overlap(aligned, &g->data_window, values, box, components);
         }
     }
     if (aligned != values)
@@ -124,10 +131,21 @@ static bool read_depth(const struct exr_info *info, struct gbuffer *g, struct to
     return g->depth && exr_read_channels(info, role->part, &read, 1, err);
 }
 
+/* What is known beside the depth. A window that lacks a texel knows nothing of it: NaN. */
+static bool read_behind(const struct exr_info *info, struct gbuffer *g, enum role_kind kind,
+                        float **values, struct tool_error *err)
+{
+    const struct role *role = &g->roles.kind[kind];
+    if (!role->found)
+        return true;
+    *values = read_role(info, g, role, 1, NAN, err);
+    return *values != NULL;
+}
+
 static bool read_color(const struct exr_info *info, struct gbuffer *g, struct tool_error *err)
 {
     const struct role *role = &g->roles.kind[ROLE_COLOR];
-    g->color = read_vector(info, g, role, err);
+    g->color = read_role(info, g, role, 4, 0.0f, err);
     if (!g->color)
         return false;
     g->color_has_alpha = role->channels[ROLE_MAX_COMPONENTS] != NULL;
@@ -142,16 +160,17 @@ static uint64_t box_texels(const struct exr_box *box)
            (uint64_t)((int64_t)box->y_max - box->y_min + 1);
 }
 
-/* Bytes per texel of a role with four components, and what reading it takes for a while: the
+/* Bytes per texel of a role with so many components, and what reading it takes for a while: the
  * decoder and, if its window is another, an image of that. */
-static void add_vector(const struct exr_info *info, const struct gbuffer *g,
-                       const struct role *role, uint64_t *texel_bytes, uint64_t *for_a_while)
+static void add_role(const struct exr_info *info, const struct gbuffer *g, const struct role *role,
+                     uint64_t components, uint64_t *texel_bytes, uint64_t *for_a_while)
 {
     const struct exr_part *part = &info->parts[role->part];
     const bool same = same_box(&part->data_window, &g->data_window);
+    const uint64_t role_bytes = components * sizeof(float);
     const uint64_t bytes =
-        part->decode_bytes + (same ? 0 : box_texels(&part->data_window) * 4 * sizeof(float));
-    *texel_bytes += 4 * sizeof(float);
+        part->decode_bytes + (same ? 0 : box_texels(&part->data_window) * role_bytes);
+    *texel_bytes += role_bytes;
     *for_a_while = bytes > *for_a_while ? bytes : *for_a_while;
 }
 
@@ -168,9 +187,12 @@ static bool check_budget(const struct exr_info *info, const struct gbuffer_optio
     if (!budget_allows_pixels(&options->budget, info->path, g->width, g->height, err))
         return false;
     if (normal->found)
-        add_vector(info, g, normal, &texel_bytes, &for_a_while);
+        add_role(info, g, normal, 4, &texel_bytes, &for_a_while);
     if (options->want_color)
-        add_vector(info, g, color, &texel_bytes, &for_a_while);
+        add_role(info, g, color, 4, &texel_bytes, &for_a_while);
+    for (int kind = ROLE_THICKNESS; kind < ROLE_KINDS; kind++)
+        if (g->roles.kind[kind].found)
+            add_role(info, g, &g->roles.kind[kind], 1, &texel_bytes, &for_a_while);
     const uint64_t work = work_texels * (options->work_texel_bytes +
                                          (normal->found ? options->work_normals_texel_bytes : 0));
     const uint64_t bytes =
@@ -205,6 +227,9 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
         fail_hint(err, "say which it is: --color NAME");
         return fail(err, EXIT_CHANNELS, "%s: no colour found, which --mode comp needs", info->path);
     }
+    for (int kind = ROLE_THICKNESS; kind < ROLE_KINDS; kind++)
+        if (!check_role(info, &g->roles.kind[kind], err))
+            return false;
     return check_role(info, depth, err) && check_role(info, &g->roles.kind[ROLE_NORMAL], err) &&
            (!options->want_color || check_role(info, &g->roles.kind[ROLE_COLOR], err)) &&
            check_budget(info, options, g, err);
@@ -223,10 +248,13 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
                     "%s: no camera in the header; assuming 40 degrees horizontal field of view "
                     "(--fov or --camera sets it)",
                     info->path);
-    if (!read_depth(info, g, err) || !gbuffer_prepare_depth(g, options, info->path, report, err))
+    if (!read_depth(info, g, err) || !read_behind(info, g, ROLE_THICKNESS, &g->thickness, err) ||
+        (!g->thickness && !read_behind(info, g, ROLE_BACK_DEPTH, &g->thickness, err)) ||
+        !read_behind(info, g, ROLE_LAYER2, &g->second_depth, err) ||
+        !gbuffer_prepare_depth(g, options, info->path, report, err))
         goto failed;
     if (g->roles.kind[ROLE_NORMAL].found) {
-        g->normals = read_vector(info, g, &g->roles.kind[ROLE_NORMAL], err);
+        g->normals = read_role(info, g, &g->roles.kind[ROLE_NORMAL], 4, 0.0f, err);
         if (!g->normals)
             goto failed;
     }
@@ -245,5 +273,8 @@ void gbuffer_free(struct gbuffer *gbuffer)
     free(gbuffer->depth);
     free(gbuffer->normals);
     free(gbuffer->color);
+    free(gbuffer->thickness);
+    free(gbuffer->second_depth);
     gbuffer->depth = gbuffer->normals = gbuffer->color = NULL;
+    gbuffer->thickness = gbuffer->second_depth = NULL;
 }

@@ -43,6 +43,10 @@ struct gbuffer {
     float *depth; /* width * height, as view.depth_encoding says; background is background_depth */
     float *normals; /* width * height * 4, xyz in [-1,1]; NULL: from depth */
     float *color;   /* width * height * 4 RGBA; NULL: not wanted */
+    /* width * height each; NULL: not named. Lengths, 0 if unknown, or, as depth, where things
+     * end. */
+    float *thickness;
+    float *second_depth; /* as depth */
     float background_depth;
     bool color_has_alpha; /* else alpha is 1 throughout */
 

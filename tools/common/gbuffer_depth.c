@@ -40,45 +40,53 @@ static bool stored_median(const struct gbuffer *g, double *median)
     return true;
 }
 
-/* Distances of any kind: what is no distance becomes 0, which the library takes for background. */
-static void clean_distances(struct gbuffer *g, double median)
+/* An image of one number per texel, and the median of the depth beside it, which tells what is too
+ * far away to belong to the scene. */
+struct plane {
+    float *values;
+    size_t count;
+    bool is_half;
+    double median;
+};
+
+/* Distances of any kind: what is no distance becomes 0, which the library takes for background. All
+ * of these return how many values are invalid. */
+static size_t clean_distances(const struct plane *p)
 {
-    double limit = median * 1e7;
+    double limit = p->median * 1e7;
     size_t invalid = 0;
-    bool half = g->roles.kind[ROLE_DEPTH].channels[0]->type == EXR_HALF;
-    for (size_t i = 0; i < gbuffer_texels(g); i++) {
-        float z = g->depth[i];
+    for (size_t i = 0; i < p->count; i++) {
+        float z = p->values[i];
         invalid += isnan(z) || z < 0;
         /* 65504 is the largest half, where a far background saturates. */
-        bool saturated = half && z >= 65504.0f && median < 6550.4;
+        bool saturated = p->is_half && z >= 65504.0f && p->median < 6550.4;
         if (!is_valid(z) || (double)z >= limit || saturated)
-            g->depth[i] = 0;
+            p->values[i] = 0;
     }
-    g->invalid_share = (double)invalid / (double)gbuffer_texels(g);
+    return invalid;
 }
 
-static void clean_inverse(struct gbuffer *g)
+static size_t clean_inverse(const struct plane *p)
 {
     size_t invalid = 0;
-    for (size_t i = 0; i < gbuffer_texels(g); i++) {
-        invalid += isnan(g->depth[i]) || g->depth[i] < 0;
-        if (!isfinite(g->depth[i]) || g->depth[i] <= 0)
-            g->depth[i] = 0;
+    for (size_t i = 0; i < p->count; i++) {
+        invalid += isnan(p->values[i]) || p->values[i] < 0;
+        if (!isfinite(p->values[i]) || p->values[i] <= 0)
+            p->values[i] = 0;
     }
-    g->invalid_share = (double)invalid / (double)gbuffer_texels(g);
+    return invalid;
 }
 
-static void clean_device(struct gbuffer *g, bool reversed)
+static size_t clean_device(const struct plane *p, float background)
 {
     size_t invalid = 0;
-    g->background_depth = reversed ? 0.0f : 1.0f;
-    for (size_t i = 0; i < gbuffer_texels(g); i++) {
-        bool inside = g->depth[i] >= 0 && g->depth[i] <= 1;
+    for (size_t i = 0; i < p->count; i++) {
+        bool inside = p->values[i] >= 0 && p->values[i] <= 1;
         invalid += !inside;
         if (!inside)
-            g->depth[i] = g->background_depth;
+            p->values[i] = background;
     }
-    g->invalid_share = (double)invalid / (double)gbuffer_texels(g);
+    return invalid;
 }
 
 /* How much longer the ray of a texel is than its way along the view axis. */
@@ -94,11 +102,28 @@ static double ray_length(const struct gbuffer *g, size_t texel)
 
 /* Rays of Mitsuba start at the near plane; in double, since the result is compared with that of
  * planar files. */
-static void near_ray_to_planar(struct gbuffer *g)
+static void near_ray_to_planar(const struct gbuffer *g, const struct plane *p)
 {
-    for (size_t i = 0; i < gbuffer_texels(g); i++)
-        if (g->depth[i] > 0)
-            g->depth[i] = (float)((double)g->depth[i] / ray_length(g, i) + g->camera.near_plane);
+    for (size_t i = 0; i < p->count; i++)
+        if (p->values[i] > 0)
+            p->values[i] = (float)((double)p->values[i] / ray_length(g, i) + g->camera.near_plane);
+}
+
+/* A depth of any layer as read becomes one of the library's encodings. */
+static size_t clean_depth(const struct gbuffer *g, const struct plane *p)
+{
+    size_t invalid;
+    switch (g->depth_type) {
+    case DEPTH_INVERSE:
+        return clean_inverse(p);
+    case DEPTH_DEVICE:
+        return clean_device(p, g->background_depth);
+    default:
+        invalid = clean_distances(p);
+        if (g->depth_type == DEPTH_RADIAL_NEAR)
+            near_ray_to_planar(g, p);
+        return invalid;
+    }
 }
 
 double gbuffer_view_z(const struct gbuffer *g, float depth, size_t texel)
@@ -115,6 +140,39 @@ double gbuffer_view_z(const struct gbuffer *g, float depth, size_t texel)
                                                      : (double)m[14] / (d + (double)m[10]);
     default:
         return d;
+    }
+}
+
+/* What no scene measures, after all: the library would compute with it. */
+static void drop_immeasurable(const struct gbuffer *g, float *values)
+{
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        double z = gbuffer_view_z(g, values[i], i);
+        if (!(z >= least_z && z <= largest_z))
+            values[i] = g->background_depth;
+    }
+}
+
+/* Thickness and second depth, when the projection is known. */
+static void prepare_behind(struct gbuffer *g, double median)
+{
+    const struct role *roles = g->roles.kind;
+    const bool is_given = roles[ROLE_THICKNESS].found;
+    const enum role_kind kinds[] = {is_given ? ROLE_THICKNESS : ROLE_BACK_DEPTH, ROLE_LAYER2};
+    float *const images[] = {g->thickness, g->second_depth};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        if (!images[i])
+            continue;
+        const struct plane p = {.values = images[i],
+                                .count = gbuffer_texels(g),
+                                .is_half = roles[kinds[i]].channels[0]->type == EXR_HALF,
+                                .median = kinds[i] == ROLE_THICKNESS ? g->median_z : median};
+        if (kinds[i] == ROLE_THICKNESS) {
+            (void)clean_distances(&p);
+            continue;
+        }
+        (void)clean_depth(g, &p);
+        drop_immeasurable(g, images[i]);
     }
 }
 
@@ -222,24 +280,19 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *opti
         return false;
     if (!stored_median(g, &median))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
-    switch (g->depth_type) {
-    case DEPTH_INVERSE:
-        g->view.depth_encoding = VKAO_DEPTH_INVERSE_Z;
-        clean_inverse(g);
-        break;
-    case DEPTH_DEVICE:
-        g->view.depth_encoding = VKAO_DEPTH_PROJECTED;
-        clean_device(g, planes.near_plane > planes.far_plane);
+    g->view.depth_encoding = g->depth_type == DEPTH_INVERSE  ? VKAO_DEPTH_INVERSE_Z
+                             : g->depth_type == DEPTH_DEVICE ? VKAO_DEPTH_PROJECTED
+                             : g->depth_type == DEPTH_RADIAL ? VKAO_DEPTH_DISTANCE
+                                                             : VKAO_DEPTH_VIEW_Z;
+    if (g->depth_type == DEPTH_DEVICE) {
+        g->background_depth = planes.near_plane > planes.far_plane ? 0.0f : 1.0f;
         camera_project(&g->camera, &planes, &g->display_window, &g->data_window, &g->view);
-        break;
-    default:
-        g->view.depth_encoding =
-            g->depth_type == DEPTH_RADIAL ? VKAO_DEPTH_DISTANCE : VKAO_DEPTH_VIEW_Z;
-        clean_distances(g, median);
-        if (g->depth_type == DEPTH_RADIAL_NEAR)
-            near_ray_to_planar(g);
-        break;
     }
+    const struct plane depth = {.values = g->depth,
+                                .count = gbuffer_texels(g),
+                                .is_half = g->roles.kind[ROLE_DEPTH].channels[0]->type == EXR_HALF,
+                                .median = median};
+    g->invalid_share = (double)clean_depth(g, &depth) / (double)depth.count;
     if (!measure(g))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     if (g->depth_type != DEPTH_DEVICE) {
@@ -248,7 +301,8 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *opti
     }
     if (!camera_can_project(&g->view))
         return fail_projection(g, path, &planes, err);
-    if (g->roles.kind[ROLE_DEPTH].channels[0]->type == EXR_HALF && median > 0)
+    prepare_behind(g, median);
+    if (depth.is_half && median > 0)
         g->depth_step = ldexp(1.0, (int)floor(log2(median)) - 10);
     warn_about_depth(g, path, report);
     return true;

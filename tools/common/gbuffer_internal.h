@@ -26,7 +26,8 @@ static inline bool gbuffer_is_foreground(const struct gbuffer *g, size_t texel)
     return !(g->depth[texel] <= g->background_depth && g->depth[texel] >= g->background_depth);
 }
 
-/* Depth as read becomes depth as the library takes it; fills projection and statistics. */
+/* Depth, thickness and second depth as read become what the library takes; fills projection and
+ * statistics, which are those of the depth. */
 bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *options,
                            const char *path, struct report *report, struct tool_error *err);
 /* Needs the depth. g->normals as read becomes signed, or is freed. */

@@ -156,6 +156,8 @@ static bool check_together(const struct options *o, struct tool_error *err)
     }
     if (o->gbuffer.camera.fov_deg > 0 && o->gbuffer.camera.ortho_width > 0)
         return fail(err, EXIT_USAGE, "--fov and --ortho exclude each other");
+    if (o->gbuffer.roles.name[ROLE_THICKNESS] && o->gbuffer.roles.name[ROLE_BACK_DEPTH])
+        return fail(err, EXIT_USAGE, "--thickness-channel and --back-depth exclude each other");
     return true;
 }
 
@@ -213,14 +215,28 @@ static bool is_left(const struct options *o, const char *name)
     return true;
 }
 
-static bool fail_bent_normals(struct tool_error *err)
+/* Whether the method reads a parameter that an option has set. */
+static bool check_method(const struct options *o, const char *option, const char *parameter,
+                         struct tool_error *err)
 {
+    const uint32_t methods = parameter_named(parameter)->methods;
+    if (methods >> o->setting.effect.method & 1u)
+        return true;
     struct text list = {0};
-    text_add_list(&list, parameter_named("method")->choices,
-                  parameter_named("bent_normals")->methods, "or");
-    fail(err, EXIT_USAGE, "--bent-normals needs --method %s", list.data ? list.data : "");
+    text_add_list(&list, parameter_named("method")->choices, methods, "or");
+    fail(err, EXIT_USAGE, "--%s needs --method %s", option, list.data ? list.data : "");
     text_free(&list);
     return false;
+}
+
+static bool check_methods(const struct options *o, struct tool_error *err)
+{
+    const vkao_effect_info *e = &o->setting.effect;
+    const bool is_given = e->thickness_input == VKAO_THICKNESS_GIVEN;
+    return (!e->bent_normals || check_method(o, "bent-normals", "bent_normals", err)) &&
+           (!e->thickness_input || check_method(o, is_given ? "thickness-channel" : "back-depth",
+                                                "thickness_input", err)) &&
+           (!e->second_layer || check_method(o, "layer2", "second_layer", err));
 }
 
 bool options_settle(struct options *options, const struct setting *like, struct tool_error *err)
@@ -239,10 +255,12 @@ bool options_settle(struct options *options, const struct setting *like, struct 
     o->radius_is_auto = is_left(o, "radius") && (!like || option_is_given(o, "radius"));
     o->bias_is_given = like || !is_left(o, "bias");
     o->gbuffer.want_color = o->mode == OUTPUT_COMP;
+    const char *const *names = o->gbuffer.roles.name;
+    o->setting.effect.thickness_input = names[ROLE_THICKNESS]    ? VKAO_THICKNESS_GIVEN
+                                        : names[ROLE_BACK_DEPTH] ? VKAO_THICKNESS_BACK_DEPTH
+                                                                 : VKAO_THICKNESS_AS_SEEN;
+    o->setting.effect.second_layer = names[ROLE_LAYER2] != NULL;
     /* A record may bring another method. */
     const bool all_is_known = like || !o->like;
-    if (all_is_known && o->setting.effect.bent_normals &&
-        !method_has_bent(o->setting.effect.method))
-        return fail_bent_normals(err);
-    return true;
+    return !all_is_known || check_methods(o, err);
 }

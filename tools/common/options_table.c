@@ -268,6 +268,16 @@ bool apply_normal(struct options *options, const struct option_row *row, const c
     return true;
 }
 
+/* none takes back what a record brings. */
+bool apply_layer(struct options *options, const struct option_row *row, const char *argument,
+                 struct tool_error *err)
+{
+    if (strcmp(argument, "none") != 0)
+        return apply_text(options, row, argument, err);
+    *(const char **)member(options, row) = NULL;
+    return true;
+}
+
 bool apply_compression(struct options *options, const struct option_row *row, const char *argument,
                        struct tool_error *err)
 {
@@ -424,6 +434,25 @@ const struct option_row option_table[] = {
      .help = "layer of the colour, for --mode comp",
      .commands = RENDER | INSPECT, .apply = apply_text,
      .offset = AT(gbuffer.roles.name[ROLE_COLOR])},
+    {.name = "thickness-channel", .argument = "NAME",
+     .help = "channel of how thick things are at each texel, along the view axis, in scene units; "
+             "for vbao and raymarch",
+     .commands = RENDER | INSPECT, .apply = apply_layer,
+     .offset = AT(gbuffer.roles.name[ROLE_THICKNESS]),
+     .more = "What is not above 0 is unknown. none: as without the option, also with --like."},
+    {.name = "back-depth", .argument = "NAME",
+     .help = "channel of where the surface ends that depth sees, of the same depth type; for vbao "
+             "and raymarch",
+     .commands = RENDER | INSPECT, .apply = apply_layer,
+     .offset = AT(gbuffer.roles.name[ROLE_BACK_DEPTH]),
+     .more = "Instead of --thickness-channel. Background, and what is not behind depth, is "
+             "unknown. none: as without the option, also with --like."},
+    {.name = "layer2", .argument = "NAME",
+     .help = "channel of the depth of what lies next behind the first surface, of the same depth "
+             "type; for vbao and raymarch",
+     .commands = RENDER | INSPECT, .apply = apply_layer,
+     .offset = AT(gbuffer.roles.name[ROLE_LAYER2]),
+     .more = "Background where there is nothing. none: as without the option, also with --like."},
     {.name = "view", .argument = "NAME",
      .help = "one view of a stereo file, or all. Default: all if the camera file has views",
      .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(view)},

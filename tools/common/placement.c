@@ -66,6 +66,8 @@ bool placement_expand(struct gbuffer *gbuffer, struct placement *placement, stru
         return true;
     if (!pad(&g->depth, g, placement, 1, g->background_depth, err) ||
         !pad(&g->normals, g, placement, 4, 0.0f, err) ||
+        !pad(&g->thickness, g, placement, 1, 0.0f, err) ||
+        !pad(&g->second_depth, g, placement, 1, g->background_depth, err) ||
         !pad(&g->color, g, placement, 4, 0.0f, err))
         return false;
     /* Half resolution wants to begin at even texels: a column and a row of background do no

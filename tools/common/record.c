@@ -76,6 +76,11 @@ static void add_parameter(cJSON *object, const vkao_parameter *p, const struct s
     text_free(&value);
 }
 
+static const char *thickness_key(vkao_thickness_input input)
+{
+    return input == VKAO_THICKNESS_GIVEN ? "thickness_channel" : "back_depth";
+}
+
 static void add_camera(cJSON *root, const struct camera *camera)
 {
     cJSON *object = cJSON_AddObjectToObject(root, "camera");
@@ -131,6 +136,13 @@ char *record_write(const struct options *o, const struct setting *setting, const
     }
     if (o->mode == OUTPUT_COMP)
         cJSON_AddStringToObject(root, "color", g->roles.kind[ROLE_COLOR].label);
+    const vkao_effect_info *effect = &setting->effect;
+    const bool is_given = effect->thickness_input == VKAO_THICKNESS_GIVEN;
+    if (effect->thickness_input)
+        cJSON_AddStringToObject(root, thickness_key(effect->thickness_input),
+                                g->roles.kind[is_given ? ROLE_THICKNESS : ROLE_BACK_DEPTH].label);
+    if (effect->second_layer)
+        cJSON_AddStringToObject(root, "layer2", g->roles.kind[ROLE_LAYER2].label);
     add_camera(root, &g->camera);
     char *json = json_text(root, false, begun);
     cJSON_Delete(root);
@@ -259,11 +271,23 @@ static bool read_parameter(const struct reader *r, const cJSON *object, const vk
 }
 
 /* What no option sets is the library's default in everything that vkao writes. The preset sets
- * half_resolution. */
+ * half_resolution; channels that options name, the others. */
 static bool can_be_asked_for(const vkao_parameter *p)
 {
     return option_of_parameter(p) || parameter_is_of_images(p) ||
-           p == parameter_named("half_resolution");
+           p == parameter_named("half_resolution") || p == parameter_named("thickness_input") ||
+           p == parameter_named("second_layer");
+}
+
+/* Of what only some methods have. */
+static bool check_method(const struct reader *r, const cJSON *object, const vkao_effect_info *e,
+                         const char *name, bool is_on, const char *off)
+{
+    char wanted[48];
+    if (!is_on || parameter_named(name)->methods >> e->method & 1u)
+        return true;
+    snprintf(wanted, sizeof wanted, "%s with this method", off);
+    return wrong(r, name, cJSON_GetObjectItemCaseSensitive(object, name), wanted);
 }
 
 /* No option would make such a setting, and the library might refuse it. */
@@ -271,7 +295,6 @@ static bool check_setting(const struct reader *r, const cJSON *object,
                           const struct setting *setting)
 {
     const struct setting standard = setting_default();
-    const char *bent = parameter_named("bent_normals")->name;
     uint32_t count;
     const vkao_parameter *all = vkao_parameters(&count);
     for (uint32_t i = 0; i < count; i++) {
@@ -284,8 +307,10 @@ static bool check_setting(const struct reader *r, const cJSON *object,
         text_free(&wanted);
         return false;
     }
-    return !setting->effect.bent_normals || method_has_bent(setting->effect.method) ||
-           wrong(r, bent, cJSON_GetObjectItemCaseSensitive(object, bent), "false with this method");
+    const vkao_effect_info *e = &setting->effect;
+    return check_method(r, object, e, "bent_normals", e->bent_normals, "false") &&
+           check_method(r, object, e, "thickness_input", e->thickness_input, "as-seen") &&
+           check_method(r, object, e, "second_layer", e->second_layer, "false");
 }
 
 static bool read_parameters(struct reader r, const cJSON *root, struct setting *setting)
@@ -407,6 +432,13 @@ static bool read_channels(const struct reader *r, const cJSON *root, struct reco
         !read_string(r, root, "normal", &normal))
         return false;
     record->depth_type = (enum depth_type)(DEPTH_PLANAR + depth);
+    const vkao_effect_info *e = &record->setting.effect;
+    if ((e->thickness_input &&
+         !read_string(r, root, thickness_key(e->thickness_input), &record->thickness)) ||
+        (e->second_layer && !read_string(r, root, "layer2", &record->second_depth))) {
+        free(normal);
+        return false;
+    }
     if (strcmp(normal, "none") == 0) {
         free(normal);
         return true;
@@ -532,6 +564,8 @@ void record_free(struct record *record)
     free(record->depth);
     free(record->normal);
     free(record->color);
+    free(record->thickness);
+    free(record->second_depth);
     *record = (struct record){0};
 }
 
@@ -586,5 +620,12 @@ bool options_take_record(struct options *options, const struct record *record,
         g->normal_encoding = record->normal_encoding;
     if (!option_is_given(o, "color"))
         g->roles.name[ROLE_COLOR] = as_name(record->color);
+    /* Either option says all about thickness. */
+    if (!option_is_given(o, "thickness-channel") && !option_is_given(o, "back-depth")) {
+        const bool is_given = record->setting.effect.thickness_input == VKAO_THICKNESS_GIVEN;
+        g->roles.name[is_given ? ROLE_THICKNESS : ROLE_BACK_DEPTH] = as_name(record->thickness);
+    }
+    if (!option_is_given(o, "layer2"))
+        g->roles.name[ROLE_LAYER2] = as_name(record->second_depth);
     return options_settle(o, &record->setting, err);
 }

@@ -24,8 +24,9 @@ char *record_write(const struct options *options, const struct setting *setting,
 struct record {
     char *view;             /* "" in files without views */
     char *version, *device; /* of vkao and its device */
-    char *depth, *normal,
-        *color; /* as --depth, --normal and --color; normal and color may be NULL */
+    /* As --depth, --normal, --color, --thickness-channel or --back-depth, --layer2; but for depth
+     * they may be NULL. */
+    char *depth, *normal, *color, *thickness, *second_depth;
     enum depth_type depth_type;
     enum normal_space normal_space;
     enum normal_encoding normal_encoding;

@@ -172,7 +172,8 @@ static bool channel_name_is_never_depth(const struct channel_name *name)
 
 enum { MAX_HITS = 16 };
 
-static const char *const kind_names[ROLE_KINDS] = {"depth", "normal", "color", "position", "AO"};
+static const char *const kind_names[ROLE_KINDS] = {
+    "depth", "normal", "color", "position", "AO", "thickness-channel", "back-depth", "layer2"};
 
 struct hit {
     size_t part;
@@ -361,7 +362,7 @@ static void search_layer(struct search *s, enum role_kind kind, size_t part, con
         struct channel_name name;
         if (channel_name_read(p, p->channels[c].name, s->view, s->info->part_count > 1, &name) &&
             names_layer(s, part, &p->channels[c], &name, wanted))
-            match_sets(s, kind == ROLE_DEPTH ? depth : vector, part, &name);
+            match_sets(s, role_is_scalar(kind) ? depth : vector, part, &name);
     }
 }
 
@@ -370,7 +371,7 @@ static void search_named(struct search *s, enum role_kind kind, const char *name
 {
     s->count = 0;
     for (int layers = 0; layers < 2 && s->count == 0; layers++) {
-        if (!layers && kind != ROLE_DEPTH)
+        if (!layers && !role_is_scalar(kind))
             continue;
         for (size_t i = 0; i < s->info->part_count; i++) {
             const struct exr_part *part = &s->info->parts[i];

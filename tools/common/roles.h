@@ -11,7 +11,23 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum role_kind { ROLE_DEPTH, ROLE_NORMAL, ROLE_COLOR, ROLE_POSITION, ROLE_AO, ROLE_KINDS };
+enum role_kind {
+    ROLE_DEPTH,
+    ROLE_NORMAL,
+    ROLE_COLOR,
+    ROLE_POSITION,
+    ROLE_AO,
+    /* No renderer has a name for these: they are there if the request names them. */
+    ROLE_THICKNESS,
+    ROLE_BACK_DEPTH,
+    ROLE_LAYER2,
+    ROLE_KINDS
+};
+/* One number per texel. */
+static inline bool role_is_scalar(enum role_kind kind)
+{
+    return kind == ROLE_DEPTH || kind >= ROLE_THICKNESS;
+}
 
 /* What a depth value measures. */
 enum depth_type {

@@ -77,7 +77,8 @@ static bool add_views_with_depth(const struct options *options, const char *came
         struct role_request request = view_options(options, &view).roles;
         struct roles *roles = &(struct roles){0};
         struct tool_error unseen = {0};
-        request.name[ROLE_NORMAL] = request.name[ROLE_COLOR] = NULL;
+        for (int kind = ROLE_DEPTH + 1; kind < ROLE_KINDS; kind++)
+            request.name[kind] = NULL;
         request.no_normals = true;
         if (roles_resolve(info, &request, roles, &unseen) &&
             !add_view(source, view.name, view.name, camera_path, err))

@@ -27,11 +27,13 @@ static bool is_at(const vkao_parameter *p, size_t offset)
 }
 
 /* The view decides whether there are bent normals; no file says how many bits its depth once had,
- * and nobody asks for AO before the blur as an image of its own. */
+ * nobody asks for AO before the blur as an image of its own, and thickness and a second layer are
+ * not loaded. */
 static bool is_shown(const vkao_parameter *p)
 {
     return !parameter_is_of_images(p) && !is_at(p, EFFECT(depth_bits)) &&
-           !is_at(p, EFFECT(bent_normals)) && !is_at(p, EFFECT(noisy_ao));
+           !is_at(p, EFFECT(bent_normals)) && !is_at(p, EFFECT(noisy_ao)) &&
+           !is_at(p, EFFECT(thickness_input)) && !is_at(p, EFFECT(second_layer));
 }
 
 static enum param_group group_of(const vkao_parameter *p)

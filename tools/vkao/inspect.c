@@ -12,7 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const kind_names[ROLE_KINDS] = {"depth", "normal", "color", "position", "ao"};
+static const char *const kind_names[ROLE_KINDS] = {"depth", "normal",    "color",      "position",
+                                                   "ao",    "thickness", "back_depth", "layer2"};
 
 /* --- Collecting --- */
 
@@ -53,7 +54,9 @@ static void add_roles(cJSON *object, const struct roles *roles)
     for (int k = 0; k < ROLE_KINDS; k++) {
         const struct role *role = &roles->kind[k];
         if (!role->found) {
-            cJSON_AddNullToObject(list, kind_names[k]);
+            /* Those that nothing but an option finds are not missed. */
+            if (k < ROLE_THICKNESS)
+                cJSON_AddNullToObject(list, kind_names[k]);
             continue;
         }
         cJSON *entry = cJSON_AddObjectToObject(list, kind_names[k]);
@@ -273,6 +276,8 @@ static void print_view(const cJSON *view)
     const cJSON *roles = cJSON_GetObjectItemCaseSensitive(view, "roles");
     for (int k = 0; k < ROLE_KINDS; k++) {
         const cJSON *role = cJSON_GetObjectItemCaseSensitive(roles, kind_names[k]);
+        if (!role)
+            continue;
         if (cJSON_IsObject(role))
             printf("  %-9s %s (%s, part %d)\n", kind_names[k], text_of(role, "name"),
                    text_of(role, "type"), (int)number_of(role, "part"));

@@ -129,7 +129,8 @@ static void summarise(struct session *s, const struct options *o, const struct r
 static void tell_details(const struct session *s, const struct frame_source *source,
                          const struct rendered_view *view)
 {
-    static const char *const names[ROLE_KINDS] = {"depth", "normal", "color", "position", "AO"};
+    static const char *const names[ROLE_KINDS] = {
+        "depth", "normal", "color", "position", "AO", "thickness", "back depth", "second layer"};
     const struct gbuffer *g = &view->gbuffer;
     for (int k = 0; k < ROLE_KINDS; k++)
         if (g->roles.kind[k].found)
@@ -154,6 +155,8 @@ static bool compute(struct session *s, struct rendered_view *view, struct tool_e
         .depth = g->depth,
         .normals = g->normals,
         .color = g->color,
+        .thickness = g->thickness,
+        .second_depth = g->second_depth,
         .view = g->view,
         .setting = view->setting,
     };
@@ -186,10 +189,10 @@ static void open_part(void *data, uint32_t part)
         return;
     }
     struct gbuffer_options options = view_options(o->options, o->view);
-    const bool bent = o->options->setting.effect.bent_normals;
-    options.work_texel_bytes = ao_job_texel_bytes(false, options.want_color, bent);
+    const vkao_effect_info *effect = &o->options->setting.effect;
+    options.work_texel_bytes = ao_job_texel_bytes(false, options.want_color, effect);
     options.work_normals_texel_bytes =
-        ao_job_texel_bytes(true, options.want_color, bent) - options.work_texel_bytes;
+        ao_job_texel_bytes(true, options.want_color, effect) - options.work_texel_bytes;
     options.held_bytes = o->held_bytes;
     const double start = now_ms();
     o->is_read = gbuffer_load(&o->source->info, &options, o->view->camera, o->session->report,
@@ -278,7 +281,9 @@ static bool render_view(struct session *s, const struct options *frame_options,
     times->compute += now_ms() - start;
     free(g->depth);
     free(g->normals);
-    g->depth = g->normals = NULL;
+    free(g->thickness);
+    free(g->second_depth);
+    g->depth = g->normals = g->thickness = g->second_depth = NULL;
     return ok;
 }
 
