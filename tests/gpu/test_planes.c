@@ -3,6 +3,7 @@
  * Infinite planes: open at any tilt, at any field of view, and under normals that lean away from
  * them by as much as they hide. */
 #include "fixture.h"
+#include "ref_view.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -143,9 +144,80 @@ static void planes_are_open_at_any_field_of_view(void **state)
     }
 }
 
+/* Root mean square of what changes along a line, less its trend, which perspective has. */
+static double ripple_of(const double *values, int count)
+{
+    double sum = 0.0;
+    for (int i = 2; i < count - 2; ++i) {
+        double mean = 0.0;
+        for (int k = -2; k <= 2; ++k)
+            mean += values[i + k] / 5.0;
+        sum += pow(values[i] - mean, 2.0) / (count - 4);
+    }
+    return sqrt(sum);
+}
+
+/* The row of the last texel of the wall, above the floor. */
+static int last_of_wall(const struct picture *p, int x)
+{
+    int y = HEIGHT / 4;
+    while (p->values[SLOT_NORMALS][((size_t)(y + 1) * WIDTH + (size_t)x) * 4 + 1] ==
+           p->values[SLOT_NORMALS][((size_t)y * WIDTH + (size_t)x) * 4 + 1])
+        ++y;
+    return y;
+}
+
+/* Where two walls meet at a slant, texels beside the line are nearer to it and farther in turns:
+ * truth has steps there, but no dashes. */
+static void a_straight_corner_has_no_dashes(void **state)
+{
+    (void)state;
+    enum { FIRST = 100, COUNT = 180 };
+    const struct lens lens = lens_perspective(0.6, 0.45);
+    const struct scene scene = {{{SHAPE_PLANE, {0.0, 0.5, 0.0}, {0.05, -1.0, -0.1}},
+                                 {SHAPE_PLANE, {0.0, 0.0, 4.0}, {0.2, 0.1, -1.0}}}};
+    static double truth[2][COUNT], ao[2][COUNT];
+    for (int setting = 0; setting < SETTINGS; ++setting) {
+        struct picture p;
+        struct ref_scene view;
+        make(&p, VKAO_SSAO_VBAO, WIDTH, HEIGHT, &scene, &lens);
+        p.ssao.radius = 0.5f;
+        const char *name = use_setting(&p, setting);
+        picture_reference_scene(&p, &view);
+        for (int side = 0; side < 2 && setting == 0; ++side) {
+            for (int i = 0; i < COUNT; ++i) {
+                int x = FIRST + i, y = last_of_wall(&p, x) + side;
+                size_t t = (size_t)y * WIDTH + (size_t)x;
+                double at[3];
+                ref_view_position(&view.view, x, y, view.z[t], at);
+                truth[side][i] =
+                    scene_ambient(&scene, at, &view.normals[t * 3], (double)p.ssao.radius, 4096)
+                        .falloff;
+            }
+        }
+        picture_run(&p);
+        double ripple[2];
+        for (int side = 0; side < 2; ++side) {
+            for (int i = 0; i < COUNT; ++i) {
+                int x = FIRST + i, y = last_of_wall(&p, x) + side;
+                ao[side][i] = p.values[SLOT_AO][(size_t)y * WIDTH + (size_t)x];
+            }
+            ripple[side] = ripple_of(ao[side], COUNT);
+        }
+        double all = hypot(ripple[0], ripple[1]);
+        double most = hypot(ripple_of(truth[0], COUNT), ripple_of(truth[1], COUNT));
+        print_message("    %-8s ripple beside the corner %.4f, of truth %.4f\n", name, all, most);
+        /* A blur that keeps the walls apart leaves more of the noise of two slices. */
+        assert_true(all <= (setting == VKAO_QUALITY_HIGH ? 1.7 : 1.3) * most);
+        ref_scene_free(&view);
+        picture_free(&p);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {gpu_test(leaning_normals_lose_what_the_plane_hides),
-                                       gpu_test(planes_are_open_at_any_field_of_view)};
+                                       gpu_test(planes_are_open_at_any_field_of_view),
+                                       gpu_test(a_straight_corner_has_no_dashes)};
     return fixture_run(tests);
 }
