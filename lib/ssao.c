@@ -41,7 +41,8 @@ void vkao_ssao_constants(const struct vkao_recording *r, const vkao_params *para
     out->inverse_radius = 1.0f / out->radius;
     out->bias = params->bias * out->radius;
     out->bias_cosine = params->bias;
-    const bool is_vbao = effect->method == VKAO_SSAO_VBAO;
+    const bool is_vbao = effect->method == VKAO_SSAO_VBAO,
+               is_given = effect->thickness_input != VKAO_THICKNESS_AS_SEEN;
     out->thickness = thickness;
     out->thickness_gap = thickness * (float)VKAO_VBAO_THICKNESS_GAP;
     out->thickness_base =
@@ -50,7 +51,8 @@ void vkao_ssao_constants(const struct vkao_recording *r, const vkao_params *para
         thickness * (float)(is_vbao ? VKAO_VBAO_THICKNESS_SLOPE : VKAO_THICKNESS_SLOPE);
     if (vkao_has_thickness(effect)) /* in the last bits of view z */
         out->depth_error[effect->projection == VKAO_PROJECTION_ORTHOGRAPHIC] +=
-            (float)VKAO_THICKNESS_DEPTH_ERROR;
+            (float)VKAO_THICKNESS_DEPTH_ERROR *
+            (is_given ? (float)(1 << VKAO_THICKNESS_FINER) : 1.0f);
     out->slices = effect->slice_count;
     out->steps = effect->step_count;
     out->samples = effect->sample_count;

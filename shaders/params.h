@@ -170,6 +170,8 @@
 #define VKAO_THICKNESS_SHIFT 22
 #define VKAO_THICKNESS_LEAST_BITS 0x3c000000
 #define VKAO_THICKNESS_DEPTH_ERROR 0.95e-6 /* what that takes from view z, relative to it */
+/* Where thickness is given it is worth 2 bits more, eighths of octaves. */
+#define VKAO_THICKNESS_FINER 2
 
 /* Cosine to the eye at which the depth image's plane stops getting steeper where it is none: where
  * depth bends by more than BEND of its rise, and the plane's cosine to the shading normal is below

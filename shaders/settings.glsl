@@ -25,6 +25,12 @@ layout(constant_id = VKAO_SETTING_SECOND_LAYER) const bool SECOND_LAYER = false;
 layout(constant_id = VKAO_SETTING_VERTICAL) const bool VERTICAL = false;
 layout(constant_id = VKAO_SETTING_TONED) const bool TONED = false;
 
+/* Of the bits in view z that have thickness. */
+const bool IS_GIVEN = THICKNESS_INPUT != VKAO_GLSL_THICKNESS_AS_SEEN;
+const int THICKNESS_SHIFT = VKAO_THICKNESS_SHIFT - (IS_GIVEN ? VKAO_THICKNESS_FINER : 0);
+const int THICKNESS_MASK =
+    IS_GIVEN ? (VKAO_THICKNESS_MASK + 1 << VKAO_THICKNESS_FINER) - 1 : VKAO_THICKNESS_MASK;
+
 layout(binding = VKAO_BINDING_CONSTANTS) uniform Constants { vkao_constants params; };
 
 /* These are at least 1. Loops over them test at their end, as a driver in software goes through a

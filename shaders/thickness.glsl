@@ -37,10 +37,10 @@ Reach width_reach()
 real with_code(real z, real thickness)
 {
     whole code = floatBitsToInt(thickness) - VKAO_THICKNESS_LEAST_BITS;
-    code = (code + (1 << (VKAO_THICKNESS_SHIFT - 1))) >> VKAO_THICKNESS_SHIFT;
-    code = clamp(code, whole(0), whole(VKAO_THICKNESS_MASK));
+    code = (code + (1 << (THICKNESS_SHIFT - 1))) >> THICKNESS_SHIFT;
+    code = clamp(code, whole(0), whole(THICKNESS_MASK));
     code = min(code, floatBitsToInt(z)); /* background stays 0 */
-    return intBitsToFloat((floatBitsToInt(z) & ~VKAO_THICKNESS_MASK) | code);
+    return intBitsToFloat((floatBitsToInt(z) & ~THICKNESS_MASK) | code);
 }
 
 /* The same with what is seen. along_x, along_y: steps of the surface to both sides in the row and

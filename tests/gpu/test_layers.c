@@ -139,8 +139,9 @@ static void truth_of_thickness_and_layers_pays(void **state)
                 errors[f] = rmse_of(&p, truths[i]);
                 mean[f] += log(errors[f] / errors[0]) / ROWS;
             }
-            /* Codes of thickness are half an octave apart. */
-            assert_true(errors[1] <= errors[0] + 0.002 && errors[3] <= errors[0] + 0.002);
+            /* Rays are few, and their noise is that large. */
+            const double most = errors[0] + (m ? 0.002 : 0.0);
+            assert_true(errors[1] <= most && errors[3] <= most);
             print_message("    %-8s %-14s alone %.4f, with thickness %.4f, second layer %.4f, both "
                           "%.4f\n",
                           names[m], rows[i].name, errors[0], errors[1], errors[2], errors[3]);

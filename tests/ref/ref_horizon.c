@@ -75,7 +75,8 @@ void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
     slice->steepest = holds ? VKAO_STEEPEST : VKAO_PLANE_STEEPEST;
     double error = ref_view_depth_error(&scene->view, p[2]);
     if (params->method == VKAO_SSAO_VBAO)
-        error += VKAO_THICKNESS_DEPTH_ERROR * p[2];
+        error +=
+            VKAO_THICKNESS_DEPTH_ERROR * p[2] * (scene->thickness ? 1 << VKAO_THICKNESS_FINER : 1);
     /* Of both ends of v, along the directions in which they are seen. */
     slice->guard = 2.0 * error / fabs(slice->to_eye[2]);
     slice->noise = ref_noise(x, y, params->slice_count, params->noise_index);

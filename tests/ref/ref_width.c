@@ -54,15 +54,16 @@ static int run(const struct ref_scene *scene, double radius, int axis, int x, in
 }
 
 /* As few bits as view z has for it. */
-static double coded(double thickness)
+static double coded(double thickness, bool is_given)
 {
+    const int finer = is_given ? VKAO_THICKNESS_FINER : 0, shift = VKAO_THICKNESS_SHIFT - finer;
+    const int32_t mask = ((VKAO_THICKNESS_MASK + 1) << finer) - 1;
     float value = (float)fmin(thickness, 2.0);
     int32_t bits;
     memcpy(&bits, &value, sizeof bits);
-    bits = (bits - VKAO_THICKNESS_LEAST_BITS + (1 << (VKAO_THICKNESS_SHIFT - 1))) >>
-           VKAO_THICKNESS_SHIFT;
-    bits = bits < 0 ? 0 : bits > VKAO_THICKNESS_MASK ? VKAO_THICKNESS_MASK : bits;
-    bits = (bits << VKAO_THICKNESS_SHIFT) + VKAO_THICKNESS_LEAST_BITS;
+    bits = (bits - VKAO_THICKNESS_LEAST_BITS + (1 << (shift - 1))) >> shift;
+    bits = bits < 0 ? 0 : bits > mask ? mask : bits;
+    bits = (bits << shift) + VKAO_THICKNESS_LEAST_BITS;
     memcpy(&value, &bits, sizeof value);
     return (double)value;
 }
@@ -72,7 +73,7 @@ static double given(const struct ref_scene *scene, double radius, int x, int y)
 {
     double thickness = scene->thickness[(size_t)y * scene->width + (size_t)x];
     bool is_known = thickness > 0.0 && thickness < VKAO_THICKNESS_MOST * radius;
-    return radius * coded(is_known ? thickness / radius : VKAO_THICKNESS_MOST);
+    return radius * coded(is_known ? thickness / radius : VKAO_THICKNESS_MOST, true);
 }
 
 double ref_width_thickness(const struct ref_scene *scene, double radius, int x, int y)
@@ -95,5 +96,5 @@ double ref_width_thickness(const struct ref_scene *scene, double radius, int x, 
     double thickness = VKAO_VBAO_THICKNESS_WIDTH * least / radius;
     if (goes_on)
         thickness = fmin(VKAO_VBAO_THICKNESS_WIDER * thickness, VKAO_VBAO_THICKNESS_WIDE);
-    return radius * coded(thickness);
+    return radius * coded(thickness, false);
 }
