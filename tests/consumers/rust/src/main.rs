@@ -28,7 +28,7 @@ struct ContextInfo {
 
 /// vkao_effect_info: nothing of it is changed here, so that its size is enough
 #[repr(C)]
-struct EffectInfo([u64; 14]);
+struct EffectInfo([u64; 15]);
 
 #[link(name = "vkao")]
 extern "C" {
