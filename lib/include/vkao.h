@@ -338,7 +338,7 @@ typedef struct vkao_effect_info {
     /* [0,256] samples on each side of a slice, or on each ray of RAYMARCH; 0 = 8. Default 8 */
     uint32_t step_count;
     /* VBAO, RAYMARCH: with true thickness light passes behind what is thin and not through what is
-     * thick. Default AS_SEEN */
+     * thick. It then has no cap, and RAYMARCH does not guess. Default AS_SEEN */
     vkao_thickness_input thickness_input;
     /* VK_TRUE: images.second_depth has what lies behind the first layer, and hides too. VBAO,
      * RAYMARCH */
@@ -439,7 +439,8 @@ typedef struct vkao_images {
     /* indirect specular light in rgb, roughness in alpha, for effect.specular; as color */
     vkao_image specular;
     /* For effect.thickness_input, format as depth. What is not above 0, no number, or not behind
-     * depth is unknown: as for something that goes on on all sides. */
+     * depth is unknown, and taken to be 1.5 radii, as is what is thicker. params.thickness scales
+     * it. */
     vkao_image thickness;
     /* For effect.second_layer, encoding and format as depth: of each texel the front of what lies
      * next behind depth; background where there is nothing. */
@@ -574,9 +575,10 @@ VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_record(const vkao_frame *frame, Vk
                                                      const vkao_params *params);
 
 /* Record the named stages alone, which the effect must have; VKAO_STAGE_PREPARE is one of them
- * here. It reads depth over view->valid, for VBAO the radius as well, and writes the frame's
- * scratch, and comes first each time. Stages share scratch memory: record them in order, each once,
- * over the same rect; to split a frame into rects, record all stages of one before the next. */
+ * here. It reads depth over view->valid, for VBAO and where thickness is given the radius as well,
+ * and writes the frame's scratch, and comes first each time. Stages share scratch memory: record
+ * them in order, each once, over the same rect; to split a frame into rects, record all stages of
+ * one before the next. */
 VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_stage(const vkao_frame *frame, VkCommandBuffer cmd,
                                                     vkao_stage_flags stages, const vkao_view *view,
                                                     const vkao_params *params);
