@@ -45,9 +45,9 @@ static void refuse(const char *json, const char *words)
 struct header {
     struct exr_info info;
     struct exr_part part;
-    struct exr_attribute attributes[4];
-    double numbers[4][16];
-    char names[4][64];
+    struct exr_attribute attributes[8];
+    double numbers[8][16];
+    char names[8][64];
 };
 
 static struct header *new_header(int width, int height)
@@ -212,6 +212,187 @@ static void renderer_attributes_give_the_field_of_view(void **state)
     add_numbers(h, "cameraAperture", &aperture, 1);
     assert_close(resolve(h, &none, NULL).half_width, 0.36, 1e-9);
     free(h);
+}
+
+/* Karma's files have worldToCamera under both names. */
+static void a_placement_is_no_projection(void **state)
+{
+    static const double somewhere[3] = {1, -2, 5};
+    struct header *h = new_header(200, 100);
+    struct matrices m = make_matrices(true, 0, somewhere);
+    (void)state;
+    add_numbers(h, "worldToCamera", m.to_camera, 16);
+    add_numbers(h, "worldToNDC", m.to_camera, 16);
+    struct camera camera = resolve(h, &(struct camera_flags){0}, NULL);
+    assert_string_equal(camera.source, "");
+    assert_non_null(strstr(camera.remark, "worldToNDC is no projection"));
+    assert_true(camera.has_rotation && !camera.axis_certain);
+    add_numbers(h, "worldToScreen", m.to_ndc, 16);
+    camera = resolve(h, &(struct camera_flags){0}, NULL);
+    assert_string_equal(camera.source, "worldToScreen");
+    assert_close(camera.half_width, tan(30 * degree), 1e-6);
+    free(h);
+}
+
+static void an_affine_matrix_of_another_size_is_orthographic(void **state)
+{
+    static const double view[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3, 4, 5, 1};
+    const double ortho[16] = {0.25, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 0.01, 0, 0, 0, 0, 1};
+    double to_ndc[16];
+    struct header *h = new_header(200, 100);
+    (void)state;
+    multiply(view, ortho, to_ndc);
+    add_numbers(h, "worldToCamera", view, 16);
+    add_numbers(h, "worldToNDC", to_ndc, 16);
+    const struct camera camera = resolve(h, &(struct camera_flags){0}, NULL);
+    assert_int_equal(camera.type, CAMERA_ORTHOGRAPHIC);
+    assert_close(camera.half_width, 4, 1e-9);
+    assert_string_equal(camera.remark, "");
+    free(h);
+}
+
+static void the_width_counts_of_a_matrix_of_another_aspect(void **state)
+{
+    static const double somewhere[3] = {1, -2, 5};
+    struct header *h = new_header(200, 150);
+    struct matrices m = make_matrices(true, 0, somewhere);
+    (void)state;
+    add_numbers(h, "worldToCamera", m.to_camera, 16);
+    add_numbers(h, "worldToNDC", m.to_ndc, 16);
+    const struct camera camera = resolve(h, &(struct camera_flags){0}, NULL);
+    assert_close(camera.half_width, tan(30 * degree), 1e-6);
+    assert_close(camera.half_height, tan(30 * degree) * 0.75, 1e-6);
+    assert_non_null(strstr(camera.remark, "aspect ratio of 2, the image 1.333"));
+    free(h);
+}
+
+static void arnold_has_one_unit_for_film_and_lens(void **state)
+{
+    static const double fov = 50, film = 1.0, focal = 1.0722534656524658, wide = 2.0;
+    struct header *h = new_header(200, 100);
+    (void)state;
+    add_numbers(h, "CameraFilmApertureHorizontal", &film, 1);
+    add_numbers(h, "CameraFocalLength", &focal, 1);
+    struct camera camera = resolve(h, &(struct camera_flags){0}, NULL);
+    assert_close(camera_fov_x_deg(&camera), fov, 1e-3);
+    assert_string_equal(camera.source, "CameraFocalLength");
+    add_numbers(h, "CameraFov", &fov, 1);
+    camera = resolve(h, &(struct camera_flags){0}, NULL);
+    assert_string_equal(camera.source, "CameraFov");
+    assert_string_equal(camera.remark, "");
+    memcpy(h->numbers[0], &wide, sizeof wide);
+    camera = resolve(h, &(struct camera_flags){0}, NULL);
+    assert_close(camera_fov_x_deg(&camera), fov, 1e-9);
+    assert_non_null(strstr(camera.remark, "CameraFocalLength says 86.0"));
+    free(h);
+}
+
+static void a_field_of_view_comes_before_a_matrix_that_contradicts_it(void **state)
+{
+    static const double somewhere[3] = {1, -2, 5};
+    double fov = 60.2;
+    struct header *h = new_header(200, 100);
+    struct matrices m = make_matrices(false, 0.1, somewhere);
+    (void)state;
+    add_numbers(h, "worldToCamera", m.to_camera, 16);
+    add_numbers(h, "worldToScreen", m.to_ndc, 16);
+    add_numbers(h, "CameraFov", &fov, 1);
+    struct camera camera = resolve(h, &(struct camera_flags){0}, NULL);
+    assert_string_equal(camera.source, "worldToScreen"); /* they agree, and it has the shift */
+    assert_close(camera.shift_x, 0.1, 1e-6);
+    h->numbers[2][0] = 45;
+    camera = resolve(h, &(struct camera_flags){0}, NULL);
+    assert_close(camera_fov_x_deg(&camera), 45, 1e-9);
+    assert_non_null(
+        strstr(camera.remark, "CameraFov says 45 degrees, worldToScreen 60: CameraFov is taken"));
+    assert_true(camera.has_rotation);
+    camera = resolve(h, &(struct camera_flags){.fov_deg = 30}, NULL);
+    assert_string_equal(camera.remark, ""); /* nobody asked the header */
+    free(h);
+}
+
+static void a_panorama_is_no_camera_unless_options_say_so(void **state)
+{
+    static const double fov = 360, spherical = 4;
+    struct header *h = new_header(200, 100);
+    (void)state;
+    add_numbers(h, "cameraFov", &fov, 1);
+    add_numbers(h, "cameraProjection", &spherical, 1);
+    struct camera camera = resolve(h, &(struct camera_flags){0}, NULL);
+    assert_string_equal(camera.unsupported, "cameraProjection is 4");
+    camera = resolve(h, &(struct camera_flags){.fov_deg = 30}, NULL);
+    assert_string_equal(camera.unsupported, "");
+    free(h);
+}
+
+/* A camera of 30 degrees to the left about +y at (1, 2, 3), by its axes in the world. */
+static void renderers_transforms_give_the_rotation(void **state)
+{
+    const double c = cos(30 * degree), s = sin(30 * degree);
+    const double rows[16] = {c, 0, -s, 0, 0, 1, 0, 0, s, 0, c, 0, 1, 2, 3, 1};
+    const double want[9] = {c, 0, -s, 0, 1, 0, s, 0, c};
+    double columns[16];
+    char text[256];
+    (void)state;
+    memcpy(columns, rows, sizeof rows);
+    transpose(columns);
+    snprintf(text, sizeof text, "%g, 0, %g, 0, 0, 1, 0, 0, %g, 0, %g, 0, 1, 2, 3, 1", c, -s, s, c);
+    for (int i = 0; i < 3; i++) {
+        struct header *h = new_header(200, 100);
+        if (i == 2)
+            add_attribute(h, "rs/camera/transform")->text = text;
+        else
+            add_numbers(h, "cameraTransform", i ? columns : rows, 16);
+        const struct camera camera = resolve(h, &(struct camera_flags){0}, NULL);
+        assert_true(camera.has_rotation && !camera.axis_certain);
+        for (int k = 0; k < 9; k++)
+            assert_close(camera.world_to_view[k], want[k], 1e-5);
+        assert_string_equal(camera.rotation_source,
+                            i == 2 ? "rs/camera/transform" : "cameraTransform");
+        free(h);
+    }
+}
+
+/* Yaw turns from x (forwards) to y (right); a positive pitch looks up. */
+static void unreal_rotations_are_left_handed_with_z_up(void **state)
+{
+    static char pitch[] = "30.0", yaw[] = "90.0", roll[] = "0.0", roll_right[] = "90.0";
+    const double c = cos(30 * degree), s = sin(30 * degree);
+    const double want[9] = {-1, 0, 0, 0, -s, c, 0, -c, -s};
+    const double rolled[9] = {0, s, -c, -1, 0, 0, 0, -c, -s};
+    struct header *h = new_header(200, 100);
+    (void)state;
+    add_attribute(h, "unreal/camera/curRot/pitch")->text = pitch;
+    add_attribute(h, "unreal/camera/curRot/yaw")->text = yaw;
+    add_attribute(h, "unreal/camera/curRot/roll")->text = roll;
+    struct camera camera = resolve(h, &(struct camera_flags){0}, NULL);
+    for (int k = 0; k < 9; k++)
+        assert_close(camera.world_to_view[k], want[k], 1e-12);
+    assert_true(camera.axis_certain);
+    h->attributes[2].text = roll_right;
+    camera = resolve(h, &(struct camera_flags){0}, NULL);
+    for (int k = 0; k < 9; k++)
+        assert_close(camera.world_to_view[k], rolled[k], 1e-12);
+    free(h);
+}
+
+static void planes_come_from_the_header(void **state)
+{
+    static const double near_plane = 0.25, far_plane = 80;
+    static const char *const names[][2] = {{"clipNear", "clipFar"},
+                                           {"cameraNearClip", "cameraFarClip"},
+                                           {"arnold/camera/near_clip", "arnold/camera/far_clip"},
+                                           {"rs/camera/nearPlane", "rs/camera/farPlane"}};
+    (void)state;
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        struct header *h = new_header(200, 100);
+        add_numbers(h, names[i][0], &near_plane, 1);
+        add_numbers(h, names[i][1], &far_plane, 1);
+        const struct camera camera = resolve(h, &(struct camera_flags){0}, NULL);
+        assert_close(camera.near_plane, near_plane, 0);
+        assert_close(camera.far_plane, far_plane, 0);
+        free(h);
+    }
 }
 
 static void absurd_attributes_are_no_camera(void **state)
@@ -466,6 +647,15 @@ int main(void)
         TEST(header_matrices_of_a_camera_at_the_origin_are_read),
         TEST(header_matrices_keep_the_lens_shift),
         TEST(renderer_attributes_give_the_field_of_view),
+        TEST(a_placement_is_no_projection),
+        TEST(an_affine_matrix_of_another_size_is_orthographic),
+        TEST(the_width_counts_of_a_matrix_of_another_aspect),
+        TEST(arnold_has_one_unit_for_film_and_lens),
+        TEST(a_field_of_view_comes_before_a_matrix_that_contradicts_it),
+        TEST(a_panorama_is_no_camera_unless_options_say_so),
+        TEST(renderers_transforms_give_the_rotation),
+        TEST(unreal_rotations_are_left_handed_with_z_up),
+        TEST(planes_come_from_the_header),
         TEST(absurd_attributes_are_no_camera),
         TEST(flags_come_before_file_and_file_before_header),
         TEST(vertical_fov_and_pixel_aspect_fix_the_other_side),

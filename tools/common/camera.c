@@ -47,6 +47,7 @@ static void take_projection(struct camera *camera, const struct camera *from)
     camera->shift_x = from->shift_x;
     camera->shift_y = from->shift_y;
     memcpy(camera->source, from->source, sizeof camera->source);
+    camera->remark[0] = camera->unsupported[0] = '\0'; /* of what is not taken */
 }
 
 static void take_planes(struct camera *camera, double near_plane, double far_plane)
@@ -72,6 +73,8 @@ static void take_rotation(struct camera *camera, const struct camera *from)
 /* The lens shift of a file stays: the flags only say how wide the view is. */
 static void take_flags(struct camera *camera, const struct camera_flags *flags)
 {
+    if (flags->fov_deg > 0 || flags->ortho_width > 0)
+        camera->remark[0] = camera->unsupported[0] = '\0';
     if (flags->fov_deg > 0) {
         double half = tan(flags->fov_deg * degree / 2.0);
         camera->type = CAMERA_PERSPECTIVE;
@@ -92,8 +95,12 @@ void camera_resolve(const struct camera_flags *flags, const struct camera *file,
 {
     const struct exr_part *part = &info->parts[part_index];
     camera_from_header(part, camera);
-    if (camera->type == CAMERA_UNKNOWN && part_index > 0) /* Blender fills the first header only */
-        camera_from_header(&info->parts[0], camera);
+    if (camera->type == CAMERA_UNKNOWN && part_index > 0) { /* many fill the first header only */
+        struct camera first;
+        camera_from_header(&info->parts[0], &first);
+        if (first.type != CAMERA_UNKNOWN || first.unsupported[0] || !camera->has_rotation)
+            *camera = first;
+    }
     if (file) {
         take_projection(camera, file);
         take_planes(camera, file->near_plane, file->far_plane);

@@ -25,10 +25,13 @@ struct camera {
     bool has_rotation;
     bool axis_certain; /* false: the header does not say whether the camera looks along +z or -z */
     double world_to_view[9]; /* rotation, m[row * 3 + column], for column vectors */
-    bool has_translation;    /* only of camera files, since AO does not depend on it */
+    bool has_translation;    /* AO does not depend on it, depth from positions may */
     double translation[3];   /* view space, scene units: where the origin of the world is */
     char source[64]; /* of the projection: "camera file", "cameraFov" ...; "" if there is none */
     char rotation_source[64];
+    /* Of headers: what contradicts itself or is not believed; and what makes of it an image that no
+     * perspective and no orthographic camera took. "" if nothing does. */
+    char remark[256], unsupported[64];
 };
 
 /* One camera, or one for each view of a stereo image. */
@@ -49,7 +52,8 @@ void camera_set_free(struct camera_set *set);
 /* The camera of a view, NULL if there is none. A single camera serves all views. */
 const struct camera *camera_set_find(const struct camera_set *set, const char *view);
 
-/* Whatever the header says; camera->type stays CAMERA_UNKNOWN if it has no projection. */
+/* Whatever the header says; camera->type stays CAMERA_UNKNOWN if it has no projection.
+ * half_height may be 0. */
 void camera_from_header(const struct exr_part *part, struct camera *camera);
 
 /* What the command line says. */

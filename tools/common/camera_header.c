@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: MIT
  *
- * Cameras in OpenEXR headers: the standard matrices, and what renderers add. */
+ * Cameras in OpenEXR headers: the standard matrices, and what renderers add. Where two attributes
+ * speak of the same thing, the surer one is taken, and a contradiction is kept as a remark. */
 #include "camera.h"
 
+#include "matrix.h"
 #include "text.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -13,14 +16,14 @@ static const double degree = 3.14159265358979323846 / 180.0;
 
 /* --- Attributes --- */
 
-/* name may hold one '*', for the part of a name that the user chose. */
+/* pattern may hold one '*', for the part of a name that the user chose. */
 static bool name_fits(const char *name, const char *pattern)
 {
     const char *star = strchr(pattern, '*');
     size_t before = star ? (size_t)(star - pattern) : 0;
     if (!star)
         return strcmp(name, pattern) == 0;
-    return strlen(name) >= strlen(pattern) && strncmp(name, pattern, before) == 0 &&
+    return strlen(name) + 1 >= strlen(pattern) && strncmp(name, pattern, before) == 0 &&
            text_ends_with(name, star + 1);
 }
 
@@ -32,103 +35,74 @@ static const struct exr_attribute *find(const struct exr_part *part, const char 
     return NULL;
 }
 
-/* The index-th number of a float, double, vector or text attribute ("36.0,24.0"); 0 if there is
- * none. Unreal writes all of its numbers as text. */
-static double number(const struct exr_part *part, const char *pattern, size_t index)
+/* The index-th number of a float, double, vector or text attribute ("36.0,24.0"). Unreal writes
+ * all of its numbers as text. */
+static bool read_number(const struct exr_part *part, const char *pattern, size_t index,
+                        double *value)
 {
     const struct exr_attribute *a = find(part, pattern);
     if (!a)
-        return 0;
-    if (a->numbers && index < a->number_count)
-        return isfinite(a->numbers[index]) ? a->numbers[index] : 0;
+        return false;
+    if (a->numbers) {
+        *value = index < a->number_count ? a->numbers[index] : NAN;
+        return isfinite(*value);
+    }
     const char *text = a->text;
     for (size_t i = 0; text && i < index; i++) {
         text = strchr(text, ',');
         text = text ? text + 1 : NULL;
     }
-    char word[64];
-    double value;
     if (!text)
-        return 0;
-    while (*text == ' ')
-        text++;
-    snprintf(word, sizeof word, "%.*s", (int)strcspn(text, ", "), text);
-    return text_to_number(word, &value) && isfinite(value) ? value : 0;
+        return false;
+    char word[64];
+    text += strspn(text, " ([");
+    snprintf(word, sizeof word, "%.*s", (int)strcspn(text, ", )]"), text);
+    return text_to_number(word, value) && isfinite(*value);
 }
 
-/* --- worldToCamera and worldToNDC --- */
-
-/* Matrices for row vectors, as OpenEXR specifies: p' = p m, m[row][column]. */
-struct matrix {
-    double m[4][4];
-};
+/* The same; 0 if there is none. */
+static double number(const struct exr_part *part, const char *pattern, size_t index)
+{
+    double value;
+    return read_number(part, pattern, index, &value) ? value : 0;
+}
 
 static bool read_matrix(const struct exr_part *part, const char *name, struct matrix *matrix)
 {
-    const struct exr_attribute *a = find(part, name);
-    if (!a || !a->numbers || a->number_count != 16)
-        return false;
-    for (size_t i = 0; i < 16; i++) {
-        if (!isfinite(a->numbers[i]))
+    for (size_t i = 0; i < 16; i++)
+        if (!read_number(part, name, i, &matrix->m[i / 4][i % 4]))
             return false;
-        matrix->m[i / 4][i % 4] = a->numbers[i];
-    }
     return true;
 }
 
-static struct matrix transposed(const struct matrix *a)
-{
-    struct matrix t;
-    for (int i = 0; i < 4; i++)
-        for (int j = 0; j < 4; j++)
-            t.m[i][j] = a->m[j][i];
-    return t;
-}
+/* --- Remarks --- */
 
-static struct matrix product(const struct matrix *a, const struct matrix *b)
+TOOL_PRINTF(2, 3) static void remark(struct camera *camera, const char *format, ...)
 {
-    struct matrix p = {{{0}}};
-    for (int i = 0; i < 4; i++)
-        for (int j = 0; j < 4; j++)
-            for (int k = 0; k < 4; k++)
-                p.m[i][j] += a->m[i][k] * b->m[k][j];
-    return p;
-}
-
-/* Gauss-Jordan with row pivots. */
-static bool inverse(struct matrix a, struct matrix *out)
-{
-    struct matrix r = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}};
-    for (int c = 0; c < 4; c++) {
-        int pivot = c;
-        for (int i = c + 1; i < 4; i++)
-            if (fabs(a.m[i][c]) > fabs(a.m[pivot][c]))
-                pivot = i;
-        if (!(fabs(a.m[pivot][c]) > 1e-12))
-            return false;
-        for (int j = 0; j < 4; j++) {
-            double x = a.m[c][j], y = r.m[c][j];
-            a.m[c][j] = a.m[pivot][j];
-            r.m[c][j] = r.m[pivot][j];
-            a.m[pivot][j] = x;
-            r.m[pivot][j] = y;
-        }
-        double scale = 1.0 / a.m[c][c];
-        for (int j = 0; j < 4; j++) {
-            a.m[c][j] *= scale;
-            r.m[c][j] *= scale;
-        }
-        for (int i = 0; i < 4; i++) {
-            double factor = a.m[i][c];
-            for (int j = 0; i != c && j < 4; j++) {
-                a.m[i][j] -= factor * a.m[c][j];
-                r.m[i][j] -= factor * r.m[c][j];
-            }
-        }
+    size_t length = strlen(camera->remark);
+    va_list arguments;
+    if (length > 0 && length + 2 < sizeof camera->remark) {
+        memcpy(camera->remark + length, "; ", 3);
+        length += 2;
     }
-    *out = r;
-    return true;
+    va_start(arguments, format);
+    vsnprintf(camera->remark + length, sizeof camera->remark - length, format, arguments);
+    va_end(arguments);
 }
+
+static double box_aspect(const struct exr_part *part)
+{
+    const struct exr_box *box = &part->display_window;
+    return ((double)box->x_max - box->x_min + 1.0) / ((double)box->y_max - box->y_min + 1.0) *
+           (double)part->pixel_aspect;
+}
+
+static double fov_of(double half_width)
+{
+    return 2.0 * atan(half_width) / degree;
+}
+
+/* --- Projections from matrices --- */
 
 /* pbrt writes matrices for column vectors, with the translation in the last column. */
 static bool is_for_columns(const struct matrix *m)
@@ -146,9 +120,15 @@ static bool has_translation(const struct matrix *m)
     return sum > 0;
 }
 
+/* What float matrices leave of none at all is none. */
+static double rounded_shift(double shift)
+{
+    return fabs(shift) < 1e-6 ? 0 : shift;
+}
+
 /* camera space to NDC. What NDC is, [0,1] with y down as specified or [-1,1] with y up as others
  * write, shows on the optical axis. */
-static bool take_ndc(const struct matrix *m, struct camera *camera)
+static bool take_ndc(const struct matrix *m, const char *name, struct camera *camera)
 {
     double z_to_w = m->m[2][3], one_to_w = m->m[3][3];
     bool perspective = fabs(z_to_w) > 1e-6 * fabs(one_to_w);
@@ -170,16 +150,16 @@ static bool take_ndc(const struct matrix *m, struct camera *camera)
     camera->type = perspective ? CAMERA_PERSPECTIVE : CAMERA_ORTHOGRAPHIC;
     camera->half_width = 1.0 / fabs(scale_x);
     camera->half_height = 1.0 / fabs(scale_y);
-    camera->shift_x = -axis_x / 2.0;
-    camera->shift_y = (y_down ? axis_y : -axis_y) / 2.0;
-    snprintf(camera->source, sizeof camera->source, "worldToNDC");
+    camera->shift_x = rounded_shift(-axis_x / 2.0);
+    camera->shift_y = rounded_shift((y_down ? axis_y : -axis_y) / 2.0);
+    snprintf(camera->source, sizeof camera->source, "%s", name);
     return true;
 }
 
 /* OpenEXR's camera space looks along +z, ours along -z: turn its z round, unless w says that it
  * looks along -z. */
 static void take_world_to_camera(const struct matrix *m, bool looks_along_minus_z,
-                                 struct camera *camera)
+                                 const char *source, struct camera *camera)
 {
     for (int row = 0; row < 3; row++) {
         double length = sqrt(m->m[0][row] * m->m[0][row] + m->m[1][row] * m->m[1][row] +
@@ -189,52 +169,123 @@ static void take_world_to_camera(const struct matrix *m, bool looks_along_minus_
         double sign = row == 2 && !looks_along_minus_z ? -1.0 : 1.0;
         for (int column = 0; column < 3; column++)
             camera->world_to_view[row * 3 + column] = sign * m->m[column][row] / length;
+        camera->translation[row] = sign * m->m[3][row] / length;
     }
-    camera->has_rotation = true;
-    snprintf(camera->rotation_source, sizeof camera->rotation_source, "worldToCamera");
+    camera->has_rotation = camera->has_translation = true;
+    snprintf(camera->rotation_source, sizeof camera->rotation_source, "%s", source);
+}
+
+/* The world's projection by a matrix of this name, given where the camera is. Turns to_camera if
+ * only that makes sense of it. */
+static bool take_projection(const struct exr_part *part, const char *name, bool columns,
+                            struct matrix *to_camera, struct matrix *projection,
+                            struct camera *camera)
+{
+    struct matrix to_ndc, to_world, inverted;
+    if (!read_matrix(part, name, &to_ndc) || !matrix_inverse(*to_camera, &to_world))
+        return false;
+    struct matrix rows = columns ? matrix_transposed(&to_ndc) : to_ndc;
+    struct matrix m = matrix_product(&to_world, &rows);
+    /* A camera at the origin does not tell rows from columns, but its w does: it is z alone. */
+    if (!has_translation(to_camera) && fabs(fabs(m.m[2][3]) - 1.0) > 1e-3 &&
+        matrix_inverse(matrix_transposed(to_camera), &inverted)) {
+        struct matrix turned = matrix_transposed(&to_ndc);
+        struct matrix other = matrix_product(&inverted, &turned);
+        if (fabs(fabs(other.m[2][3]) - 1.0) < 1e-3) {
+            *to_camera = matrix_transposed(to_camera);
+            m = other;
+        }
+    }
+    *projection = m;
+    /* Karma writes worldToCamera once more under this name. */
+    if (matrix_is_rigid(&m)) {
+        remark(camera, "%s is no projection and not believed", name);
+        return false;
+    }
+    if (!take_ndc(&m, name, camera)) {
+        remark(camera, "%s and worldToCamera make no projection and are not believed", name);
+        return false;
+    }
+    double aspect = camera->half_width / camera->half_height;
+    if (fabs(log(aspect / box_aspect(part))) > 0.02) {
+        remark(camera, "%s has an aspect ratio of %.4g, the image %.4g: its width is taken", name,
+               aspect, box_aspect(part));
+        camera->half_height = 0;
+    }
+    return true;
 }
 
 static void take_matrices(const struct exr_part *part, struct camera *camera)
 {
-    struct matrix to_camera, to_ndc, to_world;
+    static const char *const names[] = {"worldToNDC", "worldToScreen"};
+    struct matrix to_camera, m = {{{0}}};
     if (!read_matrix(part, "worldToCamera", &to_camera))
         return;
-    bool columns = is_for_columns(&to_camera), ndc = read_matrix(part, "worldToNDC", &to_ndc);
+    bool columns = is_for_columns(&to_camera), projected = false;
     if (columns)
-        to_camera = transposed(&to_camera);
-    bool minus_z = false, projected = false;
-    struct matrix inverted;
-    if (ndc && inverse(to_camera, &to_world)) {
-        struct matrix rows = columns ? transposed(&to_ndc) : to_ndc;
-        struct matrix m = product(&to_world, &rows);
-        /* A camera at the origin does not tell rows from columns, but its w does: it is z alone. */
-        if (!has_translation(&to_camera) && fabs(fabs(m.m[2][3]) - 1.0) > 1e-3 &&
-            inverse(transposed(&to_camera), &inverted)) {
-            struct matrix turned = transposed(&to_ndc);
-            struct matrix other = product(&inverted, &turned);
-            if (fabs(fabs(other.m[2][3]) - 1.0) < 1e-3) {
-                to_camera = transposed(&to_camera);
-                m = other;
-            }
-        }
-        projected = take_ndc(&m, camera);
-        minus_z = projected && camera->type == CAMERA_PERSPECTIVE && m.m[2][3] < 0;
-    }
-    take_world_to_camera(&to_camera, minus_z, camera);
+        to_camera = matrix_transposed(&to_camera);
+    for (size_t i = 0; !projected && i < sizeof names / sizeof *names; i++)
+        projected = take_projection(part, names[i], columns, &to_camera, &m, camera);
     camera->axis_certain = projected && camera->type == CAMERA_PERSPECTIVE;
+    take_world_to_camera(&to_camera, camera->axis_certain && m.m[2][3] < 0, "worldToCamera",
+                         camera);
+}
+
+/* --- Rotations that renderers write in their own ways --- */
+
+/* camera to world; the rows of its rotation are the axes of the camera, whether the translation
+ * stands in the last row or in the last column. */
+static void take_camera_transform(const struct exr_part *part, const char *name,
+                                  struct camera *camera)
+{
+    struct matrix to_world, to_camera;
+    if (camera->has_rotation || !read_matrix(part, name, &to_world))
+        return;
+    if (is_for_columns(&to_world))
+        to_world = matrix_transposed(&to_world);
+    if (matrix_inverse(to_world, &to_camera))
+        take_world_to_camera(&to_camera, true, name, camera);
+}
+
+/* Unreal's world is left-handed, with x forwards, y to the right and z up. Roll turns round x, pitch
+ * round y, yaw round z, in this order. */
+static void take_unreal_rotation(const struct exr_part *part, struct camera *camera)
+{
+    double pitch, yaw, roll;
+    if (camera->has_rotation || !read_number(part, "unreal/camera/*curRot/pitch", 0, &pitch) ||
+        !read_number(part, "unreal/camera/*curRot/yaw", 0, &yaw) ||
+        !read_number(part, "unreal/camera/*curRot/roll", 0, &roll))
+        return;
+    const double cp = cos(pitch * degree), sp = sin(pitch * degree), cy = cos(yaw * degree),
+                 sy = sin(yaw * degree), cr = cos(roll * degree), sr = sin(roll * degree);
+    const double rows[9] = {
+        sr * sp * cy - cr * sy,
+        sr * sp * sy + cr * cy,
+        -sr * cp, /* right */
+        -(cr * sp * cy + sr * sy),
+        cy * sr - cr * sp * sy,
+        cr * cp, /* up */
+        -cp * cy,
+        -cp * sy,
+        -sp, /* backwards */
+    };
+    memcpy(camera->world_to_view, rows, sizeof rows);
+    camera->has_rotation = camera->axis_certain = true;
+    snprintf(camera->rotation_source, sizeof camera->rotation_source, "unreal/camera/curRot");
 }
 
 /* --- Fields of view --- */
 
 struct fov_row {
     const char *fov;            /* degrees, horizontal */
-    const char *focal, *sensor; /* millimetres, if fov is NULL */
-    bool sensor_may_be_inches;
+    const char *focal, *sensor; /* of one unit, if fov is NULL */
+    bool sensor_may_be_inches;  /* or of millimetres and inches */
 };
 
 /* In this order: V-Ray's fov includes focus breathing, so it comes before its lens. */
 static const struct fov_row fov_table[] = {
     {.fov = "cameraFov"},
+    {.fov = "CameraFov"},
     {.fov = "rs/camera/fov"},
     {.fov = "unreal/camera/*/fov"},
     {.fov = "arnold/camera/fov"},
@@ -246,40 +297,91 @@ static const struct fov_row fov_table[] = {
     {.focal = "cameraFocalLength", .sensor = "cameraAperture"},
 };
 
+/* Half widths by one row, 0 if it has none. Arnold 7 has one unit for both; Maya has inches and
+ * millimetres (1.417 = 36 mm), and no lens of 8 mm has a film of 3 mm. */
+static double half_width_by(const struct exr_part *part, const struct fov_row *row)
+{
+    if (row->fov) {
+        double fov = number(part, row->fov, 0);
+        return fov > 0 && fov < 179.9 ? tan(fov * degree / 2.0) : 0;
+    }
+    double focal = number(part, row->focal, 0), sensor = number(part, row->sensor, 0);
+    if (row->sensor_may_be_inches && sensor < 3.0 && focal > 8.0)
+        sensor *= 25.4;
+    return focal > 0 && sensor > 0 ? sensor / (2.0 * focal) : 0;
+}
+
+/* Focus breathing makes a lens some per cent longer than it says. */
+static bool agree(const struct fov_row *row, double a, double b)
+{
+    return fabs(log(a / b)) < (row->fov ? 0.01 : 0.06);
+}
+
+/* What the rows say comes before a matrix, which may be for another window, but a matrix that
+ * agrees has the lens shift too. */
 static void take_fov(const struct exr_part *part, struct camera *camera)
 {
+    const struct fov_row *taken = NULL;
+    const bool by_matrix = camera->type != CAMERA_UNKNOWN;
     for (size_t i = 0; i < sizeof fov_table / sizeof *fov_table; i++) {
         const struct fov_row *row = &fov_table[i];
-        double half = 0;
-        if (row->fov) {
-            double fov = number(part, row->fov, 0);
-            half = fov > 0 && fov < 179.9 ? tan(fov * degree / 2.0) : 0;
-        } else {
-            double focal = number(part, row->focal, 0), sensor = number(part, row->sensor, 0);
-            /* Maya has inches here (1.417 = 36 mm); no film is 5 mm wide. */
-            if (row->sensor_may_be_inches && sensor < 5.0)
-                sensor *= 25.4;
-            half = focal > 0 && sensor > 0 ? sensor / (2.0 * focal) : 0;
-        }
-        if (half > 0) {
-            camera->type = CAMERA_PERSPECTIVE;
-            camera->half_width = half;
-            snprintf(camera->source, sizeof camera->source, "%s", row->fov ? row->fov : row->focal);
-            return;
-        }
+        const char *name = row->fov ? row->fov : row->focal;
+        double half = half_width_by(part, row);
+        if (!(half > 0))
+            continue;
+        if (camera->type == CAMERA_ORTHOGRAPHIC)
+            return; /* renderers write a field of view beside it, which means nothing */
+        if (camera->type != CAMERA_UNKNOWN && agree(row, half, camera->half_width))
+            continue;
+        bool take = !taken && (row->fov || !by_matrix);
+        if (camera->type != CAMERA_UNKNOWN)
+            remark(camera, "%s says %.4g degrees, %s %.4g: %s is taken", name, fov_of(half),
+                   camera->source, fov_of(camera->half_width), take ? name : camera->source);
+        if (!take)
+            continue;
+        taken = row;
+        camera->type = CAMERA_PERSPECTIVE;
+        camera->half_width = half;
+        camera->half_height = camera->shift_x = camera->shift_y = 0;
+        snprintf(camera->source, sizeof camera->source, "%s", name);
     }
+}
+
+/* --- The whole header --- */
+
+/* A panorama's texels are no plane's. */
+static void find_unsupported(const struct exr_part *part, struct camera *camera)
+{
+    double projection = number(part, "cameraProjection", 0);
+    if (fabs(projection) > 0)
+        snprintf(camera->unsupported, sizeof camera->unsupported, "cameraProjection is %g",
+                 projection);
+    if (find(part, "envmap"))
+        snprintf(camera->unsupported, sizeof camera->unsupported, "envmap is set");
 }
 
 void camera_from_header(const struct exr_part *part, struct camera *camera)
 {
     *camera = (struct camera){0};
     take_matrices(part, camera);
-    if (camera->type == CAMERA_UNKNOWN)
+    take_camera_transform(part, "cameraTransform", camera);
+    take_camera_transform(part, "rs/camera/transform", camera);
+    take_unreal_rotation(part, camera);
+    find_unsupported(part, camera);
+    if (!camera->unsupported[0])
         take_fov(part, camera);
-    static const char *const near_names[] = {"near", "nearPlane", "cameraNearClip",
-                                             "arnold/camera/near_clip", "rs/camera/nearPlane"};
-    static const char *const far_names[] = {"far", "farPlane", "cameraFarClip",
-                                            "arnold/camera/far_clip", "rs/camera/farPlane"};
+    static const char *const near_names[] = {"near",
+                                             "nearPlane",
+                                             "clipNear",
+                                             "cameraNearClip",
+                                             "arnold/camera/near_clip",
+                                             "rs/camera/nearPlane"};
+    static const char *const far_names[] = {"far",
+                                            "farPlane",
+                                            "clipFar",
+                                            "cameraFarClip",
+                                            "arnold/camera/far_clip",
+                                            "rs/camera/farPlane"};
     for (size_t i = 0; i < sizeof near_names / sizeof *near_names; i++) {
         double n = number(part, near_names[i], 0), f = number(part, far_names[i], 0);
         if (n > 0 && !(camera->near_plane > 0))

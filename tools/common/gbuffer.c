@@ -220,6 +220,12 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
     g->display_window = part->display_window;
     g->pixel_aspect = part->pixel_aspect;
     camera_resolve(&options->camera, camera_file, info, depth->part, &g->camera);
+    if (g->camera.unsupported[0]) {
+        fail_hint(err, "if it is one after all: --fov, --ortho or --camera");
+        return fail(err, EXIT_CHANNELS,
+                    "%s: %s in the header: no perspective and no orthographic camera took this",
+                    info->path, g->camera.unsupported);
+    }
     g->depth_type = options->depth_type != DEPTH_AUTO ? options->depth_type
                     : depth->depth_type != DEPTH_AUTO ? depth->depth_type
                                                       : DEPTH_PLANAR;
@@ -243,6 +249,8 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     struct gbuffer *g = gbuffer;
     if (!resolve(info, options, camera_file, g, err))
         return false;
+    if (g->camera.remark[0])
+        report_warn(report, "camera remark", "%s: %s", info->path, g->camera.remark);
     if (!g->camera.source[0])
         report_warn(report, "camera",
                     "%s: no camera in the header; assuming 40 degrees horizontal field of view "
