@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: MIT
 """One scene in every convention that renderers have gives one result; and every option does
 something."""
+import re
+
 import numpy as np
 
 from cli import (case, cases, check, check_close, equal, main, matches, oiio, read_ao,
@@ -324,6 +326,48 @@ def auto_radius_is_five_percent_of_the_median_distance(scratch):
     got = scratch.render('in.exr', '-o', 'ao.exr')
     matches(r'radius=0\.1[67] \(auto\)', got.stderr, 'the summary')
     equal(got.stderr.count('vkao: using: '), 1, 'number of summaries')
+
+
+def summary_radius(run):
+    return re.search(r'radius=(\S+)', run.stderr).group(1)
+
+
+@case
+def radius_in_percent_is_of_the_median_distance(scratch):
+    write_exr(scratch.path('in.exr'), {'Z': np.full((16, 16), 3.3, np.float32)})
+    for option, wanted in (('5%', '0.165'), ('12.5%', '0.412'), ('200%', '6.6')):
+        run = scratch.render('in.exr', '-o', 'ao.exr', '--overwrite', 'always', '-r', option)
+        equal(summary_radius(run), wanted, option)
+
+
+@case
+def radius_in_pixels_is_rows_at_the_median_distance(scratch):
+    # 90 degrees over 32 columns: at a distance of 8 a texel is half a unit wide.
+    planes = {'Z': np.full((16, 32), 8, np.float32)}
+    for aspect, wanted in ((1.0, '1.5'), (2.0, '0.75')):
+        write_exr(scratch.path('in.exr'), planes, attributes=(('PixelAspectRatio', aspect),))
+        run = scratch.render('in.exr', '-o', 'ao.exr', '--overwrite', 'always', '-r', '3px',
+                             '--fov', 90)
+        equal(summary_radius(run), wanted, f'pixel aspect {aspect}')
+    run = scratch.render('in.exr', '-o', 'ao.exr', '--overwrite', 'always', '-r', '3px',
+                         '--ortho', 64)
+    equal(summary_radius(run), '3', 'orthographic')
+
+
+@cases(['auto', '25px', '7.77%'])
+def printed_radius_makes_the_same_of_other_frames(scratch, radius):
+    for frame, eye in ((1, 0.0), (2, 0.4)):
+        scene = Scene(96, 54, eye=eye)
+        planes = {'Z': scene.depth() * np.float32(frame), **scene.normals()}
+        write_exr(scratch.path(f'in.{frame}.exr'), planes)
+    run = scratch.render('in.@.exr', '-o', 'whole.@.exr', '-r', radius, '--fov', FOV)
+    printed = re.search(r'--radius (\S+)$', run.stderr, re.M).group(1)
+    scratch.render('in.2.exr', '-o', 'chunk.exr', '--radius', printed, '--fov', FOV)
+    check_close(read_ao(scratch.path('chunk.exr')), read_ao(scratch.path('whole.2.exr')), 0, 0,
+                radius)
+    scratch.render('in.2.exr', '-o', 'own.exr', '--radius', radius, '--fov', FOV)
+    check(np.abs(read_ao(scratch.path('own.exr')) - read_ao(scratch.path('chunk.exr'))).max() > 0,
+          'the frame alone has the radius of the first')
 
 
 @case

@@ -357,9 +357,9 @@ def output_must_not_be_the_input(scratch):
 @case
 def output_must_not_be_the_camera(scratch):
     gbuffer(scratch)
-    write_camera(scratch.path('camera.json'))
-    scratch.fails(USAGE, 'are the same file', 'in.exr', '-o', 'camera.json', '--camera',
-                  'camera.json', '--overwrite', 'always')
+    write_camera(scratch.path('camera.exr'))
+    scratch.fails(USAGE, 'are the same file', 'in.exr', '-o', 'camera.exr', '--camera',
+                  'camera.exr', '--overwrite', 'always')
 
 
 @case

@@ -15,7 +15,8 @@ WRONG_VALUES = [
     ('--quality', ('ultra', '1'), 'want fast, default, high or best'),
     ('--samples', ('0', '1025', '-1', '1.5', 'many', '1e9', '99999999999999999999'),
      'whole number'),
-    ('--radius', ('0', '-1', 'nan', 'inf', '1e-50', '1e39', 'far', '1m'), 'finite number > 0'),
+    ('--radius', ('0', '-1', 'nan', 'inf', '1e-50', '1e39', 'far', '1m', '0px', '-5%',
+                  'px', '%', '25 px', '5%%', '1e39px'), 'finite number > 0'),
     ('--bias', ('-0.1', '1.1', 'nan', 'x'), '>= 0 and <= 1'),
     ('--blocking-scale', ('0', '-3', 'inf'), '> 0'),
     ('--noise-index', ('-1', '4294967296', '0.5'), 'whole number >= 0 and <= 4294967295'),
@@ -85,6 +86,21 @@ def misspelt_options_are_suggested(scratch, wrong, right):
         return
     fails(scratch, rf"unknown option '{wrong}' \(did you mean {right}\?\)", 'in.exr', '-o',
           'out.exr', wrong, '0.5', hint=EXAMPLE)
+
+
+@cases([('png', 'ao.png', '-o ao.exr --preview ao.png'), ('upper case', 'AO.PNG', '--preview'),
+        ('directory', 'out/x.tif', '-o out/x.tif.exr'), ('none', 'ao', '-o ao.exr'),
+        ('pipe', '-', '-o ao.exr'), ('dots alone', '.exr', '-o ao.exr')])
+def output_must_be_called_exr(scratch, _, name, remedy):
+    fails(scratch, f"--output is '{name}', want a name that ends in .exr", 'in.exr', '-o', name,
+          hint=re.escape(remedy))
+
+
+@case
+def extension_may_be_upper_case(scratch):
+    write_exr(scratch.path('in.exr'), {'Z': Scene(32, 18).depth()})
+    scratch.render('in.exr', '-o', 'AO.EXR')
+    equal(scratch.files(), ['AO.EXR', 'in.exr'], 'files')
 
 
 @case

@@ -1,17 +1,31 @@
 /* SPDX-License-Identifier: MIT */
 #include "automatic.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
-float automatic_radius(const struct gbuffer *gbuffer)
+/* How high a texel is at the median distance. */
+static double row_height(const struct gbuffer *g)
 {
+    const double rows = (double)g->display_window.y_max - g->display_window.y_min + 1;
+    const double half = g->camera.half_height;
+    return 2 * half / rows * (g->camera.type == CAMERA_ORTHOGRAPHIC ? 1 : g->median_z);
+}
+
+float relative_radius_of(const struct relative_radius *relative, const struct gbuffer *gbuffer)
+{
+    const bool is_auto = !(relative->amount > 0);
+    const double percent = is_auto ? 5 : relative->amount;
     char digits[32];
     if (!(gbuffer->median_z > 0))
         return 1.0f;
-    snprintf(digits, sizeof digits, "%.2g", gbuffer->median_z * 0.05);
-    float radius = strtof(digits, NULL);
-    return radius > 1e-18f ? radius : 1e-18f; /* its square must not be 0 */
+    snprintf(digits, sizeof digits, "%.*g", is_auto ? 2 : 3,
+             relative->in_pixels ? relative->amount * row_height(gbuffer)
+                                 : percent / 100 * gbuffer->median_z);
+    const float radius = strtof(digits, NULL);
+    /* Its square must neither be 0 nor infinite. */
+    return radius > 1e-18f ? fminf(radius, 1e18f) : 1e-18f;
 }
 
 float automatic_bias(const struct gbuffer *gbuffer, float radius, float bias)

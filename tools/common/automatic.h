@@ -6,8 +6,17 @@
 
 #include "gbuffer.h"
 
-/* 5 % of the median distance, to two digits; 1 without any foreground. */
-float automatic_radius(const struct gbuffer *gbuffer);
+/* A radius that depends on what is seen. Zero-initialised it is the automatic one, 5 %. */
+struct relative_radius {
+    /* (0,inf): rows of the image at the median distance, if in_pixels; else percent of the median
+     * distance. 0: 5 %, in two digits. */
+    double amount;
+    bool in_pixels;
+};
+
+/* Scene units, in three digits, so that who reads them can ask for the same. 1 where nothing is
+ * seen. */
+float relative_radius_of(const struct relative_radius *relative, const struct gbuffer *gbuffer);
 /* bias, or what keeps steps of half depth from occluding one another if that is more. */
 float automatic_bias(const struct gbuffer *gbuffer, float radius, float bias);
 

@@ -6,6 +6,7 @@
 #ifndef VKAO_TOOLS_OPTIONS_H_
 #define VKAO_TOOLS_OPTIONS_H_
 
+#include "automatic.h"
 #include "error.h"
 #include "frames.h"
 #include "gbuffer.h"
@@ -47,7 +48,8 @@ struct options {
     struct setting asked; /* members that options gave; the others mean nothing */
     /* What is left to the file: options_settle tells. */
     bool radius_is_auto, bias_is_given;
-    struct setting setting; /* by options, preset and record */
+    struct relative_radius relative_radius; /* what radius_is_auto stands for */
+    struct setting setting;                 /* by options, preset and record */
 
     const char *device;
     bool validation;
@@ -86,6 +88,7 @@ struct option_row {
      * library's. */
     const char *automatic;
     bool has_off;                    /* of a parameter: the word off is 0 */
+    bool is_radius;                  /* of a parameter: px or % may follow the number */
     struct option_range range;       /* not of parameters */
     const struct option_word *words; /* ends with a NULL word; likewise */
 };
@@ -111,8 +114,8 @@ void options_help(struct text *text);
 void options_man(struct text *text);
 
 /* Values of apply. */
-option_apply apply_parameter, apply_flag, apply_text, apply_word, apply_double, apply_uint,
-    apply_count, apply_bytes, apply_fov, apply_normal, apply_layer, apply_compression,
+option_apply apply_parameter, apply_flag, apply_text, apply_exr, apply_word, apply_double,
+    apply_uint, apply_count, apply_bytes, apply_fov, apply_normal, apply_layer, apply_compression,
     apply_verbose, apply_quiet;
 
 #endif

@@ -58,6 +58,36 @@ bool apply_text(struct options *options, const struct option_row *row, const cha
     return true;
 }
 
+static bool ends_in(const char *path, const char *extension)
+{
+    const size_t length = strlen(path), end = strlen(extension);
+    return length > end && text_equal_nocase(path + length - end, extension);
+}
+
+/* What the name of a file says of its contents must be true. */
+bool apply_exr(struct options *options, const struct option_row *row, const char *argument,
+               struct tool_error *err)
+{
+    if (!ends_in(argument, ".exr")) {
+        const char *name = strrchr(argument, '/') ? strrchr(argument, '/') + 1 : argument;
+        const size_t stem = strcspn(name, ".");
+        if (ends_in(argument, ".png"))
+            fail_hint(err, "-o %.*s.exr --preview %s writes both", (int)stem, name, argument);
+        else if (stem > 0 && strcmp(argument, "-") != 0)
+            fail_hint(err, "-o %s.exr; oiiotool and ImageMagick make other formats of it",
+                      argument);
+        else
+            fail_hint(err, "give a file: -o ao.exr");
+        return !*argument ? apply_text(options, row, argument, err)
+                          : fail(err, EXIT_USAGE,
+                                 "--%s is '%s', want a name that ends in .exr: EXR is what is "
+                                 "written%s",
+                                 row->name, argument,
+                                 strcmp(argument, "-") == 0 ? ", and not to a pipe" : "");
+    }
+    return apply_text(options, row, argument, err);
+}
+
 bool apply_word(struct options *options, const struct option_row *row, const char *argument,
                 struct tool_error *err)
 {
@@ -91,6 +121,8 @@ static bool fail_range(const struct option_row *row, const char *argument, bool 
     else
         snprintf(wanted, sizeof wanted, "%s %.10g and <= %.10g",
                  r.low_is_excluded ? ">" : ">=", r.low, r.high);
+    if (row->is_radius)
+        fail_hint(err, "3.5 is scene units, 3.5px rows of the image, 3.5%% of the median distance");
     return fail(err, EXIT_USAGE, "--%s is %s, want a %s %s", row->name, argument, noun, wanted);
 }
 
@@ -199,6 +231,22 @@ static bool read_choice(const struct option_row *row, const vkao_parameter *p, c
     return false;
 }
 
+/* '25px' and '5%': settled when the depth is known. */
+static bool read_relative_radius(const struct option_row *row, const char *argument, bool *is_one,
+                                 struct relative_radius *radius, struct tool_error *err)
+{
+    char number[64];
+    radius->in_pixels = text_ends_with(argument, "px");
+    *is_one = radius->in_pixels || text_ends_with(argument, "%");
+    if (!*is_one)
+        return true;
+    snprintf(number, sizeof number, "%.*s", (int)strlen(argument) - (radius->in_pixels ? 2 : 1),
+             argument);
+    return (text_to_number(number, &radius->amount) &&
+            in_range(row, (double)(float)radius->amount)) ||
+           fail_range(row, argument, false, err);
+}
+
 bool apply_parameter(struct options *options, const struct option_row *row, const char *argument,
                      struct tool_error *err)
 {
@@ -209,8 +257,15 @@ bool apply_parameter(struct options *options, const struct option_row *row, cons
     bool ok = true;
     if (!p)
         return fail(err, EXIT_BUG, "--%s is no parameter", row->name);
-    options->automatic[row - option_table] = row->automatic && strcmp(argument, "auto") == 0;
-    if (options->automatic[row - option_table])
+    bool *automatic = &options->automatic[row - option_table];
+    *automatic = row->automatic && strcmp(argument, "auto") == 0;
+    if (row->is_radius) {
+        options->relative_radius = (struct relative_radius){0};
+        if (!*automatic &&
+            !read_relative_radius(row, argument, automatic, &options->relative_radius, err))
+            return false;
+    }
+    if (*automatic)
         return true;
     if (row->has_off && strcmp(argument, "off") == 0)
         argument = "0";
@@ -357,7 +412,7 @@ static const struct option_word qualities[] = {{"fast", VKAO_QUALITY_FAST},
 const struct option_row option_table[] = {
     {.heading = "Files", .name = "output", .letter = 'o', .argument = "FILE",
      .help = "EXR file to write; with a frame token if INPUT has one",
-     .commands = RENDER, .apply = apply_text, .offset = AT(output),
+     .commands = RENDER, .apply = apply_exr, .offset = AT(output),
      .more = "It appears whole or not at all, and must not be the input."},
     {.name = "mode", .argument = "MODE", .fallback = "ao",
      .help = "ao: a file with channel AO alone; append: all of INPUT, untouched, and a new part "
@@ -490,8 +545,12 @@ const struct option_row option_table[] = {
      .help = "as channels bent.X, .Y, .Z in the space of the normals"},
     {PARAMETER("sphere-form", effect.sphere_form), .argument = "FORM"},
     {PARAMETER("radius", params.radius), .letter = 'r', .argument = "R",
-     .automatic = "5 % of the median distance of the first frame, kept for the others",
-     .more = "Give it when parts of a sequence are computed by several processes."},
+     .is_radius = true,
+     .help = "or Npx: so many rows of the image at the median distance; N%: percent of that "
+             "distance. Both by the first frame, and kept for the others",
+     .automatic = "5%, in two digits",
+     .more = "What px, % and auto make is rounded to three digits and printed: give that number "
+             "to all when parts of a sequence are computed by several processes."},
     {PARAMETER("falloff", effect.falloff), .argument = "NAME",
      .help = "smooth is weight 1 - (t/R)^2, threshold weight 1 up to R"},
     {PARAMETER("samples", effect.sample_count), .letter = 's', .argument = "N"},

@@ -303,7 +303,7 @@ static bool split(struct arguments *a, int argc, char **argv, struct words *word
 static bool parse_words(struct words words, char *input, struct options *options,
                         struct tool_error *err)
 {
-    static char name[] = "vkao", output[] = "--output=none", none[] = "none", end[] = "--";
+    static char name[] = "vkao", output[] = "--output=none.exr", none[] = "none", end[] = "--";
     char *list[MAX_WORDS + 8] = {name};
     size_t count = 1;
     for (size_t i = 0; i < words.count; i++)
@@ -340,6 +340,12 @@ static bool parse_versus(struct arguments *a, struct words words, char *input,
             return false;
     if (!parse_words(words, input, &options, err))
         return false;
+    if (options.relative_radius.amount > 0 &&
+        memcmp(&options.relative_radius, &a->options.relative_radius,
+               sizeof options.relative_radius) != 0) {
+        fail(err, EXIT_USAGE, "--versus has a --radius of its own in px or %%, want scene units");
+        return fail_usage(err);
+    }
     a->settings[1] = setting_of(&options);
     a->bias_is_given[1] = options.bias_is_given;
     return true;

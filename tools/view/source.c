@@ -197,8 +197,9 @@ bool source_load(struct source *source, size_t frame, size_t view, struct report
     s->now = l;
     s->frame = frame;
     if (!(s->radius > 0))
-        s->radius = s->options.radius_is_auto ? automatic_radius(&s->now.gbuffer)
-                                              : s->options.setting.params.radius;
+        s->radius = s->options.radius_is_auto
+                        ? relative_radius_of(&s->options.relative_radius, &s->now.gbuffer)
+                        : s->options.setting.params.radius;
     return true;
 }
 

@@ -24,7 +24,7 @@ struct session {
     struct gpu gpu;
     struct ao_session *ao; /* NULL until the driver has started, beside the first view */
     float auto_radius;     /* 0 = not known yet */
-    bool summarised;
+    bool summarised, is_sequence;
 };
 
 struct times {
@@ -84,10 +84,10 @@ static float choose_radius(struct session *s, const struct options *o, const str
         return o->setting.params.radius;
     if (s->auto_radius > 0)
         return s->auto_radius;
-    if (!(g->median_z > 0))
-        return 1.0f;
-    s->auto_radius = automatic_radius(g);
-    return s->auto_radius;
+    const float radius = relative_radius_of(&o->relative_radius, g);
+    if (g->median_z > 0)
+        s->auto_radius = radius;
+    return radius;
 }
 
 static float choose_bias(const struct session *s, const struct options *o, const struct gbuffer *g,
@@ -120,10 +120,19 @@ static void summarise(struct session *s, const struct options *o, const struct r
     else
         snprintf(camera, sizeof camera, "fov=%.3gh (%s)", camera_fov_x_deg(&g->camera), source);
     device_name(s, device, sizeof device);
-    report_note(s->report, "using: depth=%s (%s, %s) normal=%s %s radius=%g%s device=%s",
+    struct text radius = {0};
+    text_add_float(&radius, view->setting.params.radius);
+    const char *digits = radius.data ? radius.data : "";
+    report_note(s->report, "using: depth=%s (%s, %s) normal=%s %s radius=%s%s device=%s",
                 depth->label, depth_type_name(g->depth_type),
-                pixel_type_name(depth->channels[0]->type), normals, camera,
-                (double)view->setting.params.radius, o->radius_is_auto ? " (auto)" : "", device);
+                pixel_type_name(depth->channels[0]->type), normals, camera, digits,
+                !o->radius_is_auto              ? ""
+                : o->relative_radius.amount > 0 ? " (by --radius)"
+                                                : " (auto)",
+                device);
+    if (o->radius_is_auto && s->is_sequence)
+        report_note(s->report, "other parts of the sequence get the same with --radius %s", digits);
+    text_free(&radius);
 }
 
 static void tell_details(const struct session *s, const struct frame_source *source,
@@ -371,6 +380,7 @@ int command_render(const struct options *options, struct report *report)
         report_error(&err);
         return err.code;
     }
+    session.is_sequence = plan.is_sequence;
     int code = render_plan(&session, &plan);
     session_end(&session);
     plan_free(&plan);
