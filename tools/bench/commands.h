@@ -5,6 +5,7 @@
 #ifndef VKAO_BENCH_COMMANDS_H_
 #define VKAO_BENCH_COMMANDS_H_
 
+int command_copy(int argc, char **argv);
 int command_quality(int argc, char **argv);
 int command_speed(int argc, char **argv);
 

@@ -16,6 +16,7 @@ static const struct command {
     int (*run)(int argc, char **argv);
 } commands[] = {
     {"quality", "error against ray-traced truth over a folder of G-buffers", command_quality},
+    {"copy", "how fast the device moves bytes: the floor under every stage", command_copy},
     {"speed", "time of every stage, at any size, beside other programs", command_speed},
 };
 enum { COMMAND_COUNT = sizeof commands / sizeof commands[0] };

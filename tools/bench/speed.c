@@ -11,6 +11,7 @@
 #include "rival.h"
 #include "room.h"
 #include "scaling.h"
+#include "sizes.h"
 #include "start.h"
 #include "timings.h"
 
@@ -18,7 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { THREADS_AS_THEY_ARE = 1 << 16, MAX_SIZES = 16 };
+enum { THREADS_AS_THEY_ARE = 1 << 16 };
 
 struct speed_options {
     const char *size, *configs, *preset, *method, *vs, *json, *dump, *device;
@@ -91,8 +92,7 @@ struct bench {
     const struct speed_options *options;
     struct report report;
     struct config_list configs;
-    VkExtent2D sizes[MAX_SIZES];
-    size_t size_count;
+    struct size_list sizes;
     struct engine engine;
     struct timings timings;
     struct rivals rivals;
@@ -100,46 +100,6 @@ struct bench {
 };
 
 /* --- What to measure --- */
-
-static bool parse_size(const char *name, VkExtent2D *size)
-{
-    static const struct {
-        const char *name;
-        VkExtent2D size;
-    } known[] = {
-        {"720p", {1280, 720}},
-        {"1080p", {1920, 1080}},
-        {"2160p", {3840, 2160}},
-        {"8k", {7680, 4320}},
-    };
-    int end = 0;
-    for (size_t i = 0; i < sizeof known / sizeof known[0]; i++) {
-        if (text_equal_nocase(known[i].name, name)) {
-            *size = known[i].size;
-            return true;
-        }
-    }
-    return sscanf(name, "%5ux%5u%n", &size->width, &size->height, &end) == 2 && !name[end] &&
-           size->width >= 1 && size->width <= 65535 && size->height >= 1 && size->height <= 65535;
-}
-
-static bool choose_sizes(struct bench *b, const char *names, struct tool_error *err)
-{
-    while (*names) {
-        char name[64];
-        size_t length = strcspn(names, ",");
-        snprintf(name, sizeof name, "%.*s", (int)length, names);
-        names += length + (names[length] == ',');
-        if (!*name)
-            continue;
-        if (b->size_count == MAX_SIZES)
-            return fail(err, EXIT_USAGE, "--size names more than %d sizes", (int)MAX_SIZES);
-        if (!parse_size(name, &b->sizes[b->size_count++]))
-            return fail(err, EXIT_USAGE, "--size is '%s', want WxH, 720p, 1080p, 2160p or 8k",
-                        name);
-    }
-    return b->size_count > 0 || fail(err, EXIT_USAGE, "--size names nothing");
-}
 
 /* --method and its numbers, in the names of settings. */
 static bool name_methods(const struct speed_options *o, struct text *names, struct tool_error *err)
@@ -219,18 +179,18 @@ static bool measure_size(struct bench *b, VkExtent2D size, struct tool_error *er
 /* A size that the device cannot hold is left out, if there are others. */
 static bool measure_sizes(struct bench *b, struct tool_error *err)
 {
-    for (size_t i = 0; i < b->size_count; i++) {
+    for (size_t i = 0; i < b->sizes.count; i++) {
         struct tool_error once = {0};
         size_t before = b->timings.count;
-        if (measure_size(b, b->sizes[i], &once))
+        if (measure_size(b, b->sizes.sizes[i], &once))
             continue;
         bool is_limit = once.code == EXIT_MEMORY || once.code == EXIT_DEVICE;
-        if (!is_limit || b->size_count == 1 || b->timings.count != before) {
+        if (!is_limit || b->sizes.count == 1 || b->timings.count != before) {
             *err = once;
             return false;
         }
-        report_note(&b->report, "%u x %u left out: %s", b->sizes[i].width, b->sizes[i].height,
-                    once.message);
+        report_note(&b->report, "%u x %u left out: %s", b->sizes.sizes[i].width,
+                    b->sizes.sizes[i].height, once.message);
     }
     if (b->timings.count == 0)
         return fail(err, EXIT_DEVICE, "no size fits the device");
@@ -266,7 +226,7 @@ static bool measure_starts(struct bench *b, struct tool_error *err)
     char device[256];
     for (size_t c = 0; c < b->configs.count; c++) {
         report_note(&b->report, "%s: %u starts", b->configs.rows[c].name, 2 * o->runs);
-        if (!start_measure(o->device, &b->configs.rows[c], b->sizes[0], o->runs, device,
+        if (!start_measure(o->device, &b->configs.rows[c], b->sizes.sizes[0], o->runs, device,
                            &b->starts[c], err))
             return false;
         name_device(b, device);
@@ -282,8 +242,8 @@ static bool measure(struct bench *b, struct tool_error *err)
     if (!open_device(b, err))
         return false;
     if (o->scaling)
-        return scaling_measure(&b->engine, &b->configs.rows[0], b->sizes[0], o->sky, &b->timings,
-                               err);
+        return scaling_measure(&b->engine, &b->configs.rows[0], b->sizes.sizes[0], o->sky,
+                               &b->timings, err);
     return measure_sizes(b, err);
 }
 
@@ -300,11 +260,11 @@ static bool check(const struct bench *b, struct tool_error *err)
                     "--vs and --dump do not go with --start, --scaling or --memory");
     if (o->json && o->memory)
         return fail(err, EXIT_USAGE, "--json does not go with --memory");
-    if (o->vs && b->size_count > 1)
+    if (o->vs && b->sizes.count > 1)
         return fail(err, EXIT_USAGE, "--vs compares at one --size");
-    if (o->dump && b->size_count > 1)
+    if (o->dump && b->sizes.count > 1)
         return fail(err, EXIT_USAGE, "--dump writes one --size");
-    if ((o->start || o->scaling) && b->size_count > 1)
+    if ((o->start || o->scaling) && b->sizes.count > 1)
         return fail(err, EXIT_USAGE, "--start and --scaling take one --size");
     if (o->scaling && b->configs.count > 1)
         return fail(err, EXIT_USAGE, "--scaling takes one setting");
@@ -315,7 +275,7 @@ static bool prepare(struct bench *b, struct tool_error *err)
 {
     const struct speed_options *o = b->options;
     const char *sizes = o->memory ? "720p,1080p,2160p,8k" : "1080p";
-    if (!choose_sizes(b, o->size ? o->size : sizes, err) || !choose_configs(b, err) ||
+    if (!sizes_choose(o->size ? o->size : sizes, &b->sizes, err) || !choose_configs(b, err) ||
         !check(b, err))
         return false;
     if (o->threads != THREADS_AS_THEY_ARE) {
@@ -334,10 +294,10 @@ static bool add_report(const struct bench *b, bool markdown, struct text *text,
 {
     const struct speed_options *o = b->options;
     if (o->memory)
-        return memory_report(o->device, b->sizes, b->size_count, markdown, text, err);
+        return memory_report(o->device, b->sizes.sizes, b->sizes.count, markdown, text, err);
     if (o->start)
-        start_report(b->starts, b->configs.count, b->timings.device, b->sizes[0], o->runs, markdown,
-                     text);
+        start_report(b->starts, b->configs.count, b->timings.device, b->sizes.sizes[0], o->runs,
+                     markdown, text);
     else if (o->scaling)
         scaling_report(&b->timings, markdown, text);
     else if (markdown)

@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * vkao-bench copy: how fast the device moves bytes. No stage that reads and writes as many can be
+ * faster. */
+#include "commands.h"
+
+#include "arguments.h"
+#include "gpu.h"
+#include "json.h"
+#include "report.h"
+#include "runs.h"
+#include "sizes.h"
+#include "stage_clock.h"
+#include "text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <vulkan/vulkan.h>
+
+struct copy_options {
+    const char *size, *json, *device;
+    unsigned runs;
+    bool text, help;
+};
+
+#define AT(member) offsetof(struct copy_options, member)
+
+static const struct argument rows[] = {
+    {"size", "LIST", "comma-separated: WxH, 720p, 1080p, 2160p or 8k (1080p,2160p,8k)",
+     ARGUMENT_TEXT, AT(size), 0, 0, NULL},
+    {"runs", "N", "of each size, after one that does not count (99)", ARGUMENT_COUNT, AT(runs), 1,
+     MAX_RUNS, NULL},
+    {"text", NULL, "print a table (default, unless JSON goes there)", ARGUMENT_FLAG, AT(text), 0, 0,
+     NULL},
+    {"json", "FILE", "write the device, its driver and the times; - = standard output",
+     ARGUMENT_TEXT, AT(json), 0, 0, NULL},
+    {"device", "NAME", "auto, cpu, a number from 'vkao devices' or part of a name", ARGUMENT_TEXT,
+     AT(device), 0, 0, NULL},
+    {"help", NULL, "print this", ARGUMENT_FLAG, AT(help), 0, 0, NULL},
+};
+static const struct argument_list arguments = {rows, sizeof rows / sizeof rows[0]};
+
+static const struct copy_options default_options = {
+    .size = "1080p,2160p,8k", .runs = 99, .device = "auto"};
+
+enum { BYTES_PER_TEXEL = 8 }; /* of R32_SFLOAT, read and written */
+
+struct copy_bench {
+    const struct copy_options *options;
+    struct size_list sizes;
+    double median_ms[MAX_SIZES], least_ms[MAX_SIZES]; /* NAN = does not fit the device */
+    struct gpu gpu;
+    struct stage_clock clock;
+    char driver[VK_MAX_DRIVER_NAME_SIZE + VK_MAX_DRIVER_INFO_SIZE];
+};
+
+/* --- Measuring --- */
+
+/* Timed as vkao-bench speed times a stage: one command between two timestamps, and a wait. */
+static bool copy_once(struct copy_bench *b, const struct gpu_image *from,
+                      const struct gpu_image *to, double *ms, struct tool_error *err)
+{
+    const VkImageSubresourceLayers color = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+    const VkImageCopy region = {.srcSubresource = color,
+                                .dstSubresource = color,
+                                .extent = {from->extent.width, from->extent.height, 1}};
+    double stages[STAGES];
+    VkCommandBuffer cmd = gpu_begin(&b->gpu, err);
+    if (!cmd)
+        return false;
+    stage_clock_start(&b->clock, cmd);
+    vkCmdCopyImage(cmd, from->image, VK_IMAGE_LAYOUT_GENERAL, to->image, VK_IMAGE_LAYOUT_GENERAL, 1,
+                   &region);
+    stage_clock_stop(&b->clock);
+    const double start = runs_now_ms();
+    const bool submitted = gpu_submit(&b->gpu, cmd, err);
+    const double wall = runs_now_ms() - start;
+    if (!submitted || !stage_clock_read(&b->clock, wall, stages, err))
+        return false;
+    *ms = stages[STAGE_TOTAL];
+    return true;
+}
+
+static bool copy_runs(struct copy_bench *b, size_t i, const struct gpu_image *from,
+                      const struct gpu_image *to, struct tool_error *err)
+{
+    float values[MAX_RUNS];
+    const unsigned runs = b->options->runs;
+    b->least_ms[i] = INFINITY;
+    for (int run = -1; run < (int)runs; run++) {
+        double ms;
+        if (!copy_once(b, from, to, &ms, err))
+            return false;
+        if (run < 0)
+            continue;
+        values[run] = (float)ms;
+        b->least_ms[i] = fmin(b->least_ms[i], ms);
+    }
+    b->median_ms[i] = runs_median(values, runs);
+    return true;
+}
+
+static bool copy_size(struct copy_bench *b, size_t i, struct tool_error *err)
+{
+    struct gpu_image from = {0}, to = {0};
+    const VkExtent2D size = b->sizes.sizes[i];
+    const VkImageUsageFlags usage = VK_IMAGE_USAGE_STORAGE_BIT;
+    const bool ok = gpu_image_create(&b->gpu, VK_FORMAT_R32_SFLOAT, size, usage, &from, err) &&
+                    gpu_image_create(&b->gpu, VK_FORMAT_R32_SFLOAT, size, usage, &to, err) &&
+                    copy_runs(b, i, &from, &to, err);
+    gpu_image_destroy(&b->gpu, &from);
+    gpu_image_destroy(&b->gpu, &to);
+    return ok;
+}
+
+/* A size that the device cannot hold is left out, if there are others. */
+static bool copy_sizes(struct copy_bench *b, struct tool_error *err)
+{
+    struct tool_error last = {0};
+    size_t done = 0;
+    for (size_t i = 0; i < b->sizes.count && !last.ends_run; i++) {
+        struct tool_error once = {0};
+        b->median_ms[i] = b->least_ms[i] = NAN;
+        if (copy_size(b, i, &once))
+            done++;
+        else
+            last = once;
+    }
+    if (done > 0 && !last.ends_run)
+        return true;
+    *err = last;
+    return false;
+}
+
+/* "NVIDIA 570.86.15"; the number alone of a driver that does not say more. */
+static void name_driver(struct copy_bench *b)
+{
+    VkExtensionProperties extensions[512];
+    uint32_t count = sizeof extensions / sizeof extensions[0];
+    VkPhysicalDeviceDriverProperties driver = {
+        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
+    snprintf(b->driver, sizeof b->driver, "0x%x", b->gpu.properties.driverVersion);
+    vkEnumerateDeviceExtensionProperties(b->gpu.physical_device, NULL, &count, extensions);
+    for (uint32_t i = 0; i < count; i++) {
+        if (strcmp(extensions[i].extensionName, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME) != 0)
+            continue;
+        vkGetPhysicalDeviceProperties2(
+            b->gpu.physical_device,
+            &(VkPhysicalDeviceProperties2){.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                           .pNext = &driver});
+        snprintf(b->driver, sizeof b->driver, "%s %s", driver.driverName, driver.driverInfo);
+    }
+}
+
+static bool measure(struct copy_bench *b, struct tool_error *err)
+{
+    const struct gpu_options options = {.device = b->options->device};
+    if (!sizes_choose(b->options->size, &b->sizes, err) || !gpu_create(&options, &b->gpu, err))
+        return false;
+    name_driver(b);
+    return stage_clock_create(&b->gpu, &b->clock, err) && copy_sizes(b, err);
+}
+
+/* --- Results --- */
+
+static double gb_per_s(const struct copy_bench *b, size_t i)
+{
+    const VkExtent2D size = b->sizes.sizes[i];
+    return BYTES_PER_TEXEL * (double)size.width * size.height / (b->median_ms[i] * 1e6);
+}
+
+static bool print_table(const struct copy_bench *b, struct tool_error *err)
+{
+    struct text text = {0};
+    text_add(&text,
+             "%s, %s: an R32_SFLOAT image to another, medians of %u runs; GB are 10^9 bytes, read "
+             "and written\n",
+             b->gpu.properties.deviceName, b->driver, b->options->runs);
+    for (size_t i = 0; i < b->sizes.count; i++) {
+        const VkExtent2D size = b->sizes.sizes[i];
+        char ms[32];
+        runs_format_ms(b->median_ms[i], ms, sizeof ms);
+        text_add(&text, "%5u x %-5u %10s ms", size.width, size.height, ms);
+        if (isnan(b->median_ms[i]))
+            text_add(&text, ": does not fit the device\n");
+        else
+            text_add(&text, " %8.1f GB/s\n", gb_per_s(b, i));
+    }
+    const bool ok =
+        text.out_of_memory ? fail(err, EXIT_MEMORY, "out of memory") : report_text(text.data, err);
+    text_free(&text);
+    return ok;
+}
+
+static cJSON *to_json(const struct copy_bench *b)
+{
+    cJSON *root = cJSON_CreateObject();
+    cJSON_AddStringToObject(root, "device", b->gpu.properties.deviceName);
+    cJSON_AddStringToObject(root, "device_type",
+                            gpu_device_type_name(b->gpu.properties.deviceType));
+    cJSON_AddStringToObject(root, "driver", b->driver);
+    cJSON_AddNumberToObject(root, "runs", b->options->runs);
+    cJSON *list = cJSON_AddArrayToObject(root, "copies");
+    for (size_t i = 0; i < b->sizes.count; i++) {
+        cJSON *object = cJSON_CreateObject();
+        cJSON_AddItemToArray(list, object);
+        cJSON_AddNumberToObject(object, "width", b->sizes.sizes[i].width);
+        cJSON_AddNumberToObject(object, "height", b->sizes.sizes[i].height);
+        json_add_number(object, "median_ms", b->median_ms[i]);
+        json_add_number(object, "least_ms", b->least_ms[i]);
+        json_add_number(object, "gb_per_s", gb_per_s(b, i));
+    }
+    return root;
+}
+
+static bool put_out(const struct copy_bench *b, struct tool_error *err)
+{
+    const struct copy_options *o = b->options;
+    const bool json_on_stdout = o->json && strcmp(o->json, "-") == 0;
+    if ((o->text || !json_on_stdout) && !print_table(b, err))
+        return false;
+    const unsigned begun = json_begin();
+    return !o->json || json_write(o->json, to_json(b), begun, err);
+}
+
+static void print_help(void)
+{
+    struct text text = {0};
+    text_add(&text, "Usage: vkao-bench copy [OPTION]...\n\n"
+                    "Device time of copying an R32_SFLOAT image, as 'speed' measures a stage.\n\n");
+    arguments_help(&arguments, &text);
+    if (text.data && !text.out_of_memory)
+        fputs(text.data, stdout);
+    text_free(&text);
+}
+
+int command_copy(int argc, char **argv)
+{
+    struct copy_options options = default_options;
+    struct copy_bench b = {.options = &options};
+    struct tool_error err = {0};
+    const char *positional;
+    bool ok = arguments_parse(&arguments, argc, argv, &options, &positional, &err);
+    if (ok && options.help) {
+        print_help();
+        return EXIT_OK;
+    }
+    if (ok && positional)
+        ok = fail(&err, EXIT_USAGE, "'%s' is no option", positional);
+    ok = ok && measure(&b, &err) && put_out(&b, &err);
+    if (!ok && err.code == EXIT_USAGE)
+        fail_hint(&err, "'vkao-bench copy --help' explains the options");
+    if (!ok)
+        report_error(&err);
+    if (b.gpu.device)
+        stage_clock_destroy(&b.clock);
+    gpu_destroy(&b.gpu);
+    return ok ? EXIT_OK : err.code;
+}
