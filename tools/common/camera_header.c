@@ -247,7 +247,7 @@ static void take_camera_transform(const struct exr_part *part, const char *name,
         take_world_to_camera(&to_camera, true, name, camera);
 }
 
-/* Unreal's world is left-handed, with x forwards, y to the right and z up. Roll turns round x, pitch
+/* Unreal's world is left-handed: x forwards, y to the right, z up. Roll turns round x, pitch
  * round y, yaw round z, in this order. */
 static void take_unreal_rotation(const struct exr_part *part, struct camera *camera)
 {

@@ -251,21 +251,19 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         return false;
     if (g->camera.remark[0])
         report_warn(report, "camera remark", "%s: %s", info->path, g->camera.remark);
-    if (!g->camera.source[0])
-        report_warn(report, "camera",
-                    "%s: no camera in the header; assuming 40 degrees horizontal field of view "
-                    "(--fov or --camera sets it)",
-                    info->path);
-    if (!read_depth(info, g, err) || !read_behind(info, g, ROLE_THICKNESS, &g->thickness, err) ||
-        (!g->thickness && !read_behind(info, g, ROLE_BACK_DEPTH, &g->thickness, err)) ||
-        !read_behind(info, g, ROLE_LAYER2, &g->second_depth, err) ||
-        !gbuffer_prepare_depth(g, options, info->path, report, err))
+    if (!read_depth(info, g, err))
         goto failed;
     if (g->roles.kind[ROLE_NORMAL].found) {
         g->normals = read_role(info, g, &g->roles.kind[ROLE_NORMAL], 4, 0.0f, err);
         if (!g->normals)
             goto failed;
     }
+    if (!gbuffer_find_camera(g, options, info->path, report, err) ||
+        !read_behind(info, g, ROLE_THICKNESS, &g->thickness, err) ||
+        (!g->thickness && !read_behind(info, g, ROLE_BACK_DEPTH, &g->thickness, err)) ||
+        !read_behind(info, g, ROLE_LAYER2, &g->second_depth, err) ||
+        !gbuffer_prepare_depth(g, options, info->path, report, err))
+        goto failed;
     if (!gbuffer_prepare_normals(g, options, info->path, report, err))
         goto failed;
     if (options->want_color && !read_color(info, g, err))

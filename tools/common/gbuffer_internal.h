@@ -26,6 +26,10 @@ static inline bool gbuffer_is_foreground(const struct gbuffer *g, size_t texel)
     return !(g->depth[texel] <= g->background_depth && g->depth[texel] >= g->background_depth);
 }
 
+/* What is not known of the camera by now, and of the type of depth, from depth and normals as read;
+ * and says so. Errors: EXIT_MEMORY. */
+bool gbuffer_find_camera(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
+                         struct report *report, struct tool_error *err);
 /* Depth, thickness and second depth as read become what the library takes; fills projection and
  * statistics, which are those of the depth. */
 bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *options,

@@ -1,0 +1,185 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""The camera where nobody tells it: from depth and normals, or plainly not."""
+import json
+
+import numpy as np
+
+from cli import (case, cases, check, check_close, equal, main, matches, read_ao, write_exr)
+from scene import FOV, NEAR, RADIUS, TURN, Scene, write_camera
+
+BASE = ('--radius', RADIUS, '--pixel-type', 'float', '--overwrite', 'always')
+
+
+def half_width(fov):
+    return np.tan(np.radians(fov) / 2)
+
+
+def inspect(scratch, *options):
+    got = scratch.run('inspect', 'in.exr', '--json', '-v', *options)
+    equal(got.code, 0, str(got))
+    return json.loads(got.stdout)['views'][0], got.stderr
+
+
+def check_same_ao(scratch, explicit, what):
+    """AO by what is found against AO by what is so: RMSE as a person would see it."""
+    results = []
+    for options in ((), explicit):
+        scratch.render('in.exr', '-o', 'ao.exr', *BASE, *options)
+        results.append(read_ao(scratch.path('ao.exr')).astype(np.float64))
+    rmse = np.sqrt(np.mean((results[0] - results[1]) ** 2))
+    check(rmse < 0.01, f'{what}: RMSE {rmse} between the AO of the estimate and that of the truth')
+
+
+# --- Found ---
+
+# Name, channel, kind of depth, size, field of view, space of the normals, pixel aspect.
+FOUND = [
+    ('usual', 'Z', 'planar', (160, 90), 60, 'world', 1),
+    ('narrow', 'Z', 'planar', (200, 120), 33, 'world', 1),
+    ('wide', 'Z', 'planar', (160, 100), 94, 'world', 1),
+    ('square and small', 'Z', 'planar', (96, 96), 50, 'world', 1),
+    ('pixels not square', 'Z', 'planar', (160, 120), 47, 'world', 1.5),
+    ('camera normals', 'Z', 'planar', (160, 90), 71, 'camera', 1),
+    ('radial', 'Z', 'radial', (160, 90), 65, 'world', 1),
+    ('inverse', 'Z', 'inverse', (160, 90), 55, 'world', 1),
+    ('Mitsuba', 'dd.y.T', 'radial-near', (160, 90), 62, 'world', 1),
+]
+
+
+@cases(FOUND)
+def camera_is_found(scratch, name, channel, kind, size, fov, space, aspect):
+    scene = Scene(*size, fov, aspect)
+    write_exr(scratch.path('in.exr'), {channel: scene.depth(kind), **scene.normals(space=space)},
+              attributes=[('PixelAspectRatio', float(aspect))])
+    view, said = inspect(scratch)
+    camera = view['camera']
+    matches(r'^estimated, \+-0?\.?\d+ %$', camera['source'], 'the source')
+    error = half_width(camera['fov_x_deg']) / half_width(fov) - 1
+    check(abs(error) < 0.01, f'{name}: {camera["fov_x_deg"]} degrees, want {fov}')
+    equal(view['conventions']['depth_type'], kind, 'depth type')
+    equal(view['conventions']['normal_space'], space, 'normal space')
+    equal(camera['rotation'], 'estimated' if space == 'world' else 'unknown', 'rotation')
+    matches(r'warning: in\.exr: no camera in the header; by depth and normals it is \d', said,
+            'the warning')
+    near = ('--near', NEAR) if kind == 'radial-near' else ()
+    if near:
+        check(abs(camera['near'] / NEAR - 1) < 0.05, f'near is {camera["near"]}, want {NEAR}')
+    write_camera(scratch.path('c.json'), {
+        'fov_x_deg': fov, 'world_to_view': [[*row, 0] for row in TURN] + [[0, 0, 0, 1]]})
+    check_same_ao(scratch, ('--camera', 'c.json', '--depth-type', kind, *near), name)
+
+
+def corners(width, height, half, space):
+    """Boxes' corners seen by a parallel camera: z is the nearest of planes."""
+    x = ((np.arange(width) + 0.5) / width * 2 - 1) * half
+    y = (1 - (np.arange(height) + 0.5) / height * 2) * half * height / width
+    x, y = np.meshgrid(x, y)
+    z, normals = np.full_like(x, np.inf), np.zeros((height, width, 3))
+    for a, b, c in ((0.7, 0.1, 5), (-0.6, 0.3, 5), (0.1, -0.9, 4.6), (0.2, 0.8, 5.2)):
+        plane = a * x + b * y + c
+        normal = np.array([a, b, 1]) / np.sqrt(a * a + b * b + 1)
+        nearer = plane < z
+        z = np.where(nearer, plane, z)
+        normals = np.where(nearer[..., None], normal, normals)
+    if space == 'world':
+        normals = normals @ TURN
+    return {'Z': z.astype(np.float32),
+            **{f'N.{c}': normals[..., i].astype(np.float32) for i, c in enumerate('XYZ')}}
+
+
+@cases([('world',), ('camera',)])
+def parallel_camera_is_found(scratch, space):
+    write_exr(scratch.path('in.exr'), corners(160, 100, 2.4, space))
+    view, said = inspect(scratch)
+    equal(view['camera']['type'], 'orthographic', 'type')
+    check(abs(view['camera']['ortho_width'] / 4.8 - 1) < 0.01,
+          f'width {view["camera"]["ortho_width"]}, want 4.8')
+    matches('orthographic, width 4.8', said, 'the warning')
+
+
+@case
+def cut_data_window_is_seen_in_its_display(scratch):
+    scene, cut = Scene(200, 120, 66), (slice(30, 120), slice(20, 170))
+    channels = {'Z': scene.depth(), **scene.normals(space='world')}
+    write_exr(scratch.path('in.exr'), {k: v[cut] for k, v in channels.items()}, x=20, y=30,
+              display=(0, 0, 199, 119))
+    camera = inspect(scratch)[0]['camera']
+    check(abs(half_width(camera['fov_x_deg']) / half_width(66) - 1) < 0.01,
+          f'{camera["fov_x_deg"]} degrees, want 66')
+
+
+@case
+def half_floats_are_enough(scratch):
+    scene = Scene(240, 160, 52)
+    channels = {'Z': scene.depth(), **scene.normals(space='world')}
+    channels = {k: np.where(np.isfinite(v), np.minimum(v, 65504), v).astype(np.float16)
+                for k, v in channels.items()}
+    write_exr(scratch.path('in.exr'), channels)
+    camera = inspect(scratch)[0]['camera']
+    check(abs(half_width(camera['fov_x_deg']) / half_width(52) - 1) < 0.02
+          or camera['source'] == 'assumed', f'{camera["fov_x_deg"]} degrees, want 52 or nothing')
+
+
+@case
+def rotation_is_found_for_a_given_field_of_view(scratch):
+    scene = Scene()
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **scene.normals(space='world')})
+    view, _ = inspect(scratch, '--fov', FOV)
+    equal((view['camera']['source'], view['camera']['rotation'],
+           view['conventions']['normal_space']), ('--fov', 'estimated', 'world'), 'what is used')
+    write_camera(scratch.path('c.json'))
+    results = []
+    for options in (('--fov', FOV), ('--camera', 'c.json')):
+        scratch.render('in.exr', '-o', 'ao.exr', *BASE, *options)
+        results.append(read_ao(scratch.path('ao.exr')))
+    check_close(results[0], results[1], 0.07, 1e-3, 'AO')
+
+
+# --- Not found, and not asked ---
+
+def one_plane():
+    scene = Scene()
+    floor = scene.normal[..., 1] > 0.999
+    depth = np.where(floor, scene.depth(), np.float32(1e10))
+    return {'Z': depth, **scene.normals(space='world')}
+
+
+def noisy_normals():
+    scene = Scene()
+    noise = np.random.default_rng(5).normal(0, 1, scene.normal.shape)
+    noise /= np.linalg.norm(noise, axis=-1, keepdims=True)
+    return {'Z': scene.depth(),
+            **{f'N.{c}': noise[..., i].astype(np.float32) for i, c in enumerate('XYZ')}}
+
+
+@cases([('one plane', one_plane), ('normals of something else', noisy_normals)])
+def cannot_tell_is_said(scratch, _, make):
+    write_exr(scratch.path('in.exr'), make())
+    view, said = inspect(scratch)
+    equal((view['camera']['source'], view['camera']['fov_x_deg']), ('assumed', 40), 'the camera')
+    matches(r'no camera in the header, and the image does not tell it: .+; assuming 40 degrees.*'
+            r'--fov or --camera', said, 'the warning')
+
+
+@case
+def depth_alone_assumes_a_camera(scratch):
+    write_exr(scratch.path('in.exr'), {'Z': Scene().depth()})
+    view, said = inspect(scratch)
+    equal(view['camera']['source'], 'assumed', 'source')
+    matches('no camera in the header; assuming 40 degrees', said, 'the warning')
+
+
+@case
+def explicit_cameras_and_headers_come_first(scratch):
+    scene = Scene()
+    channels = {'Z': scene.depth(), **scene.normals(space='world')}
+    write_exr(scratch.path('in.exr'), channels, attributes=[('cameraFov', 50.0)])
+    for options, source, fov in (((), 'cameraFov', 50), (('--fov', 70), '--fov', 70)):
+        camera = inspect(scratch, *options)[0]['camera']
+        equal(camera['source'], source, 'source')
+        check(abs(camera['fov_x_deg'] - fov) < 1e-4, f'{camera["fov_x_deg"]}, want {fov}')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,604 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The search for the model, field of view and rotation that explain the stored normals, and the
+ * verdict on what is found. The limits are those that neither crops of real G-buffers nor
+ * made-up ones led astray. */
+#include "camera_fit_internal.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_FOUND = 64, MOST_RIVALS = 8, SEARCH_SAMPLES = 1500, FIELDS_OF_VIEW = 15 };
+
+static const double sharpest_sigma = 0.0005, least_sigma = 0.004, most_sigma = 0.12;
+
+/* --- Search --- */
+
+struct found {
+    struct fit_solution list[MOST_FOUND];
+    size_t count;
+};
+
+static void sort(struct found *f)
+{
+    for (size_t i = 1; i < f->count; i++) {
+        const struct fit_solution x = f->list[i];
+        size_t j = i;
+        for (; j > 0 && f->list[j - 1].cost > x.cost; j--)
+            f->list[j] = f->list[j - 1];
+        f->list[j] = x;
+    }
+}
+
+static void keep(struct found *f, const struct fit_solution *solution)
+{
+    if (f->count < MOST_FOUND)
+        f->list[f->count++] = *solution;
+}
+
+struct starts {
+    double offsets[4];
+    size_t count;
+};
+
+/* Values of c to begin with. */
+static struct starts starts_of(enum fit_model model)
+{
+    switch (model) {
+    case FIT_RADIAL_NEAR:
+        return (struct starts){{0, 0.02, 0.1}, 3};
+    case FIT_DEVICE:
+        return (struct starts){{-0.001, 1.0001, 1.01}, 3};
+    case FIT_PLANAR_NORMALIZED:
+    case FIT_RADIAL_NORMALIZED:
+        return (struct starts){{0.003, 0.03, 0.3, 2}, 4};
+    case FIT_PLANAR_REVERSED:
+        return (struct starts){{1.001, 1.03, 1.3, 3}, 4};
+    default:
+        return (struct starts){{0}, 1};
+    }
+}
+
+static bool has_offset(enum fit_model model)
+{
+    return model == FIT_RADIAL_NEAR || model == FIT_DEVICE || model == FIT_PLANAR_NORMALIZED ||
+           model == FIT_RADIAL_NORMALIZED || model == FIT_PLANAR_REVERSED;
+}
+
+/* The i-th value of ln k to try; fields of view from 6 to 140 degrees. */
+static double trial(const struct fit_samples *s, enum fit_model model, int i, int count)
+{
+    const double t = (double)i / (count - 1);
+    if (fit_model_is_ortho(model))
+        return s->log_slope + (t - 0.5) * 5.0;
+    const double degrees = exp(log(6.0) + t * (log(140.0) - log(6.0)));
+    return log(tan(degrees * PI / 360.0));
+}
+
+/* Where half of the normals are turned away, as of leaves, the closed form starts nowhere: 24 turns
+ * of a cube instead, whichever way normals point. */
+static void search_turns(const struct fit_samples *s, const struct fit_solution *from,
+                         struct found *out)
+{
+    static const double sigmas[] = {0.5, 0.25, 0.12};
+    const struct vec3 axes[3] = {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)};
+    struct fit_solution best = *from;
+    for (int turn = 0; turn < 24; turn++) {
+        const int first = turn / 8, second = (first + 1 + turn % 2) % 3;
+        const struct vec3 x = scale(axes[first], turn & 2 ? -1.0 : 1.0);
+        const struct vec3 y = scale(axes[second], turn & 4 ? -1.0 : 1.0);
+        struct fit_solution at = *from;
+        at.rotation = (struct mat3){x, y, cross(x, y)};
+        for (size_t i = 0; i < sizeof sigmas / sizeof *sigmas; i++)
+            at.rotation = fit_improve_rotation(s, &at, sigmas[i], 2);
+        at.cost = fit_cost(s, &at, 0.1);
+        if (at.cost < best.cost)
+            best = at;
+    }
+    keep(out, &best);
+}
+
+/* The three best minima of one model over all fields of view, or at the one that is known. */
+static void search_model(const struct fit_samples *s, const struct fit_input *input,
+                         enum fit_model model, struct found *out)
+{
+    struct found minima = {.count = 0};
+    const struct starts starts = starts_of(model);
+    const bool is_known = input->half_width > 0;
+    const int count = is_known ? 1 : FIELDS_OF_VIEW;
+    struct fit_solution row[FIELDS_OF_VIEW];
+    for (size_t start = 0; start < starts.count; start++) {
+        for (int i = 0; i < count; i++) {
+            row[i] =
+                (struct fit_solution){.model = model, .free = {!is_known, false, false, false}};
+            row[i].free[FIT_C] = has_offset(model);
+            row[i].p[FIT_LN_K] = is_known ? log(input->half_width)
+                                 : input->near_half_width > 0
+                                     ? log(input->near_half_width) + (i - count / 2) * 0.02
+                                     : trial(s, model, i, count);
+            row[i].p[FIT_C] = starts.offsets[start];
+            row[i].rotation = fit_start_rotation(s, &row[i]);
+            row[i].cost = fit_cost(s, &row[i], 0.1);
+        }
+        for (int i = 0; i < count; i++)
+            if ((i == 0 || row[i].cost <= row[i - 1].cost) &&
+                (i == count - 1 || row[i].cost < row[i + 1].cost))
+                keep(&minima, &row[i]);
+    }
+    sort(&minima);
+    for (size_t i = 0; i < minima.count && i < 3; i++)
+        keep(out, &minima.list[i]);
+}
+
+static bool is_inside(const struct fit_samples *s, const struct fit_solution *at)
+{
+    double low, high;
+    fit_model_range(s, at->model, &low, &high);
+    return isfinite(at->cost) &&
+           (!at->free[FIT_LN_K] || (at->p[FIT_LN_K] > low + 0.02 && at->p[FIT_LN_K] < high - 0.02));
+}
+
+static void drop_outside(const struct fit_samples *s, struct found *f)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < f->count; i++)
+        if (is_inside(s, &f->list[i]))
+            f->list[kept++] = f->list[i];
+    f->count = kept;
+    sort(f);
+}
+
+static void merge_doubles(struct found *f)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < f->count && kept < MOST_RIVALS; i++) {
+        const struct fit_solution *x = &f->list[i];
+        bool is_double = false;
+        for (size_t j = 0; j < kept; j++)
+            is_double |= f->list[j].model == x->model &&
+                         fabs(f->list[j].p[FIT_LN_K] - x->p[FIT_LN_K]) < 0.01 &&
+                         fabs(f->list[j].p[FIT_C] - x->p[FIT_C]) < 0.01;
+        if (!is_double)
+            f->list[kept++] = *x;
+    }
+    f->count = kept;
+}
+
+static bool search(const struct fit_samples *s, const struct fit_input *input, struct found *f)
+{
+    struct fit_samples few;
+    const bool in_unit_range = s->least >= -1e-6 && s->most <= 1.0001;
+    if (!fit_samples_thin(s, SEARCH_SAMPLES, &few))
+        return false;
+    f->count = 0;
+    for (int model = 0; model < FIT_MODELS; model++)
+        if ((input->models >> model & 1u) && (model < FIT_DEVICE || in_unit_range))
+            search_model(&few, input, (enum fit_model)model, f);
+    sort(f);
+    const size_t plain = f->count;
+    for (size_t i = 0; i < plain && f->list[0].cost > 0.6; i++)
+        search_turns(&few, &f->list[i], f);
+    sort(f);
+    /* Between two trials the cost falls by less than this. */
+    while (f->count > 1 && f->list[f->count - 1].cost > f->list[0].cost + 0.4)
+        f->count--;
+    for (size_t i = 0; i < f->count; i++) {
+        fit_descend(&few, &f->list[i], 0.1, 12);
+        fit_descend(&few, &f->list[i], 0.05, 12);
+    }
+    drop_outside(&few, f);
+    merge_doubles(f);
+    fit_samples_free(&few);
+    return true;
+}
+
+/* --- Refinement --- */
+
+/* Twice the weighted median of the sines: what most of the image stays below. */
+static double robust_scale(const struct fit_samples *s, const struct fit_solution *at)
+{
+    enum { BINS = 512 };
+    double histogram[BINS] = {0}, sum = 0, cosine;
+    for (size_t i = 0; i < s->count; i++) {
+        const double e = sqrt(fit_error(s, &s->list[i], at, &cosine));
+        const int bin = (int)(e * 2.0 / most_sigma * BINS); /* nothing beyond matters */
+        histogram[bin < BINS ? bin : BINS - 1] += s->list[i].weight;
+    }
+    int bin = 0;
+    while (bin < BINS - 1 && (sum += histogram[bin]) < 0.5 * s->total_weight)
+        bin++;
+    const double median = (bin + 0.5) * most_sigma / 2.0 / BINS;
+    return fmin(fmax(2.0 * median, least_sigma), most_sigma);
+}
+
+/* All rivals at one scale, at that of the best. */
+static void refine_all(const struct fit_samples *s, struct found *f, double *sigma)
+{
+    *sigma = robust_scale(s, &f->list[0]);
+    for (int again = 0; again < 2 && f->count > 0; again++) {
+        for (size_t i = 0; i < f->count; i++)
+            fit_refine(s, &f->list[i], *sigma);
+        drop_outside(s, f);
+        if (f->count == 0)
+            return;
+        const double better = robust_scale(s, &f->list[0]);
+        if (better > 0.7 * *sigma || *sigma <= least_sigma)
+            return;
+        *sigma = better; /* the best fits better than the search knew */
+    }
+}
+
+/* Smaller and smaller scales, as long as they make the field of view surer: flat faces decide and
+ * smooth shading drops out. */
+static struct fit_solution sharpened(const struct fit_samples *s, const struct fit_solution *from)
+{
+    struct fit_solution best = *from, t = *from;
+    while (t.sigma > sharpest_sigma) {
+        fit_refine(s, &t, fmax(t.sigma * 0.5, sharpest_sigma));
+        const double moved = fabs(t.p[FIT_LN_K] - best.p[FIT_LN_K]);
+        if (t.inlier_weight < 0.25 || moved > 3.0 * best.deviation[FIT_LN_K] + 0.005)
+            break;
+        if (t.deviation[FIT_LN_K] < 0.9 * best.deviation[FIT_LN_K])
+            best = t;
+    }
+    return best;
+}
+
+/* How surely one is better than the other, from their costs by tiles. */
+static double paired_z(const struct fit_solution *better, const struct fit_solution *worse)
+{
+    double sum = 0, squares = 0;
+    for (int i = 0; i < FIT_TILES; i++) {
+        const double d = worse->tile_cost[i] - better->tile_cost[i];
+        sum += d;
+        squares += d * d;
+    }
+    const double spread = (squares - sum * sum / FIT_TILES) * FIT_TILES / (FIT_TILES - 1.0);
+    return sum / sqrt(fmax(spread, 1e-24));
+}
+
+static struct fit_solution refined(const struct fit_samples *s, const struct fit_solution *from,
+                                   double sigma)
+{
+    struct fit_solution t = *from;
+    fit_refine(s, &t, sigma);
+    return t;
+}
+
+/* A lens shift has to win clearly at the same scale. What is neither won nor lost is doubt. */
+static void try_shift(const struct fit_samples *s, const struct fit_solution *coarse, double sigma,
+                      struct fit_solution *best)
+{
+    struct fit_solution t = *coarse;
+    t.free[FIT_CX] = t.free[FIT_CY] = true;
+    fit_refine(s, &t, fmax(sigma, 0.03));
+    t = sharpened(s, &t);
+    const double scale = fmax(t.sigma, best->sigma);
+    struct fit_solution with = refined(s, &t, scale), without = refined(s, best, scale);
+    const double *p = with.p, *deviation = with.deviation;
+    const double z = paired_z(&with, &without);
+    const double ratio = with.cost / fmax(without.cost, 1e-12);
+    const double sigmas = fmax(fabs(p[FIT_CX]) / fmax(deviation[FIT_CX], 0.002),
+                               fabs(p[FIT_CY]) / fmax(deviation[FIT_CY], 0.002));
+    if (sigmas <= 5 || fmax(fabs(p[FIT_CX]), fabs(p[FIT_CY])) <= 0.01 || ratio >= 0.95 ||
+        (z <= 3 && ratio >= 0.6) || without.cost - with.cost <= 0.01)
+        return;
+    if (ratio < 0.6 && fmax(deviation[FIT_CX], deviation[FIT_CY]) < 0.03) {
+        *best = t;
+        best->shifted = true;
+    } else {
+        best->doubt = fabs(p[FIT_LN_K] - without.p[FIT_LN_K]);
+    }
+}
+
+/* Whether the offset is better by enough, at one scale. */
+static bool earns(const struct fit_samples *s, const struct fit_solution *plain,
+                  const struct fit_solution *offset, double sigma)
+{
+    struct fit_solution without = refined(s, plain, sigma), with = refined(s, offset, sigma);
+    return fabs(with.p[FIT_C]) > fmax(5.0 * with.deviation[FIT_C], 0.001) &&
+           without.cost - with.cost > 0.01 && paired_z(&with, &without) > 2.5;
+}
+
+static enum fit_model without_offset(enum fit_model model)
+{
+    return model == FIT_RADIAL_NEAR || model == FIT_RADIAL_NORMALIZED ? FIT_RADIAL
+           : model == FIT_PLANAR_NORMALIZED                           ? FIT_PLANAR
+           : model == FIT_DEVICE                                      ? FIT_INVERSE
+                                                                      : model;
+}
+
+/* The near plane has to earn its place, at the sharp scale and, since what is exact there may be
+ * the few that bend the same way, at a common one. */
+static void settle_offset(const struct fit_samples *s, const struct fit_input *input,
+                          struct fit_solution *best)
+{
+    struct fit_solution plain = *best, offset = *best;
+    plain.model = without_offset(best->model);
+    plain.p[FIT_C] = 0;
+    plain.free[FIT_C] = false;
+    best->near_known = true;
+    if (plain.model == FIT_RADIAL && best->model == FIT_RADIAL) {
+        offset.model = FIT_RADIAL_NEAR;
+        offset.p[FIT_C] = 0.01;
+        offset.free[FIT_C] = true;
+    } else if (plain.model == best->model || !(input->models >> plain.model & 1u)) {
+        return;
+    }
+    const double common = fmax(best->sigma, least_sigma);
+    fit_refine(s, &offset, common);
+    const bool earned = earns(s, &plain, &offset, common) && earns(s, &plain, &offset, best->sigma);
+    plain = earned ? offset : plain;
+    fit_refine(s, &plain, common);
+    *best = sharpened(s, &plain);
+    best->near_known = earned;
+}
+
+/* Normals that face the eye tell R from -R; where too many do not, the world is right-handed. A
+ * mirrored world must be in the data. */
+static void settle_sign(const struct fit_samples *s, struct fit_solution *best)
+{
+    double balance = 0, values[3], cosine;
+    struct vec3 weakest;
+    for (size_t i = 0; i < s->count; i++) {
+        fit_error(s, &s->list[i], best, &cosine);
+        balance += cosine < 0 ? -s->list[i].weight : s->list[i].weight;
+    }
+    balance /= s->total_weight;
+    struct mat3 *r = &best->rotation;
+    if (balance < -0.5 || (fabs(balance) <= 0.5 && dot(cross(r->x, r->y), r->z) < 0))
+        *r = (struct mat3){scale(r->x, -1), scale(r->y, -1), scale(r->z, -1)};
+    best->hand_unknown = fabs(balance) <= 0.5;
+    if (dot(cross(r->x, r->y), r->z) > 0)
+        return;
+    fit_directions(s, best, values, &weakest);
+    struct fit_solution t = *best;
+    const struct vec3 rows[3] = {r->x, r->y, r->z};
+    const double along[3] = {weakest.x, weakest.y, weakest.z};
+    struct vec3 reflected = {0, 0, 0}, out[3];
+    for (int i = 0; i < 3; i++)
+        reflected = mad(rows[i], along[i], reflected);
+    for (int i = 0; i < 3; i++)
+        out[i] = mad(reflected, -2.0 * along[i], rows[i]);
+    t.rotation = (struct mat3){out[0], out[1], out[2]};
+    fit_refine(s, &t, best->sigma);
+    if (t.cost - best->cost < 0.01 || (t.cost - best->cost < 0.05 && paired_z(best, &t) < 3)) {
+        t.hand_unknown = true;
+        *best = t;
+    }
+}
+
+/* --- Verdict --- */
+
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static bool is_to_scale(enum fit_model model)
+{
+    return model == FIT_PLANAR || model == FIT_RADIAL || model == FIT_RADIAL_NEAR ||
+           model == FIT_ORTHO;
+}
+
+/* By how much two solutions differ as geometry: ln of what a texel spans, 90th percentile. False if
+ * memory runs out. */
+static bool difference(const struct fit_samples *s, const struct fit_solution *a,
+                       const struct fit_solution *b, double *most)
+{
+    double *logs = malloc(s->count * sizeof *logs), middle = 0;
+    if (!logs)
+        return false;
+    for (size_t i = 0; i < s->count; i++)
+        logs[i] = log(fit_model_scale(s, &s->list[i], a->model, a->p) /
+                      fit_model_scale(s, &s->list[i], b->model, b->p));
+    qsort(logs, s->count, sizeof *logs, compare);
+    if (!is_to_scale(a->model) || !is_to_scale(b->model))
+        middle = logs[s->count / 2];
+    for (size_t i = 0; i < s->count; i++)
+        logs[i] = fabs(logs[i] - middle);
+    qsort(logs, s->count, sizeof *logs, compare);
+    *most = logs[s->count * 9 / 10];
+    free(logs);
+    return true;
+}
+
+static const char *model_name(enum fit_model model)
+{
+    static const char *const names[FIT_MODELS] = {"planar",
+                                                  "radial",
+                                                  "radial from a near plane",
+                                                  "inverse",
+                                                  "orthographic",
+                                                  "device",
+                                                  "normalized planar",
+                                                  "reversed planar",
+                                                  "normalized radial",
+                                                  "reversed orthographic"};
+    return names[model];
+}
+
+/* Another solution that fits as well and is not the same geometry; fit->why says which. */
+static bool find_rival(const struct fit_samples *s, const struct found *f, double sigma,
+                       const struct fit_solution *best, struct fit *fit)
+{
+    const struct fit_solution at = refined(s, best, sigma);
+    for (size_t i = 0; i < f->count; i++) {
+        struct fit_solution rival = f->list[i];
+        double apart;
+        if (without_offset(rival.model) == without_offset(best->model) &&
+            fabs(rival.p[FIT_LN_K] - best->p[FIT_LN_K]) < 0.05)
+            continue; /* the same, or its near plane */
+        if (best->shifted) {
+            rival.free[FIT_CX] = rival.free[FIT_CY] = !fit_model_is_ortho(rival.model);
+            fit_refine(s, &rival, sigma);
+        }
+        const double worse = rival.cost - at.cost;
+        if (!(worse < 0.03 || (worse < 0.15 && paired_z(&at, &rival) < 3)))
+            continue;
+        if (!difference(s, best, &rival, &apart))
+            return false;
+        if (apart > 0.03 && !fit->why[0])
+            snprintf(fit->why, sizeof fit->why, "%s depth of %.4g degrees fits as well",
+                     model_name(rival.model), 2.0 * atan(exp(rival.p[FIT_LN_K])) * 180.0 / PI);
+    }
+    return true;
+}
+
+/* Shares of the weight: within 10 degrees; of flat faces, and of those within 3 degrees. */
+struct shares {
+    double near, flat, flat_near;
+};
+
+static struct shares find_shares(const struct fit_samples *s, const struct fit_solution *at)
+{
+    struct shares shares = {0};
+    double flat = 0, cosine;
+    for (size_t i = 0; i < s->count; i++) {
+        const struct fit_sample *p = &s->list[i];
+        const double e2 = fit_error(s, p, at, &cosine);
+        shares.near += e2 < 0.03 ? p->weight : 0;
+        flat += p->flat ? p->weight : 0;
+        shares.flat_near += p->flat && e2 < 0.0027 ? p->weight : 0;
+    }
+    shares.near /= s->total_weight;
+    shares.flat = flat / s->total_weight;
+    shares.flat_near = flat > 0 ? shares.flat_near / flat : 1.0;
+    return shares;
+}
+
+static bool judge(const struct fit_samples *s, const struct found *f, double sigma,
+                  const struct fit_solution *best, struct fit *fit)
+{
+    const struct shares shares = find_shares(s, best);
+    double values[3];
+    struct vec3 weakest;
+    /* No less than what the differences of a coarse image leave out of curved surfaces. */
+    fit->bound = fmax(2.5 * best->deviation[FIT_LN_K] + best->doubt +
+                          (best->sigma > least_sigma ? 0.15 * best->sigma : 0),
+                      0.005);
+    if (shares.near < 0.4)
+        snprintf(fit->why, sizeof fit->why, "normals do not follow the depth: %.0f %% do",
+                 shares.near * 100.0);
+    else if (shares.flat > 0.2 && shares.flat_near < 0.7)
+        snprintf(fit->why, sizeof fit->why, "flat faces contradict each other: %.0f %% agree",
+                 shares.flat_near * 100.0);
+    else if (fit->bound > 0.02)
+        snprintf(fit->why, sizeof fit->why, "the field of view is uncertain by %.2g %%",
+                 fit->bound * 100.0);
+    else if (best->shifted && fmax(best->deviation[FIT_CX], best->deviation[FIT_CY]) > 0.02)
+        snprintf(fit->why, sizeof fit->why, "the lens shift is uncertain");
+    if (!fit->why[0] && !find_rival(s, f, sigma, best, fit))
+        return false;
+    fit_directions(s, best, values, &weakest);
+    fit->rotation_known = values[1] > 0.035 && best->rotation_deviation < 1.0;
+    if (!fit->rotation_known && !fit->why[0])
+        snprintf(fit->why, sizeof fit->why, "nearly all normals are parallel");
+    fit->is_sure = !fit->why[0];
+    return true;
+}
+
+/* --- The whole --- */
+
+struct attempt {
+    struct fit_solution best;
+    struct fit fit;
+    double near_share;
+};
+
+static void describe(const struct fit_samples *s, const struct fit_input *input,
+                     const struct fit_solution *best, struct fit *fit)
+{
+    const double width = (double)input->display_window.x_max - input->display_window.x_min + 1.0;
+    const double height = (double)input->display_window.y_max - input->display_window.y_min + 1.0;
+    const struct vec3 rows[3] = {best->rotation.x, best->rotation.y, best->rotation.z};
+    fit->model = best->model;
+    fit->half_width = exp(best->p[FIT_LN_K]);
+    fit->shift_x = -best->p[FIT_CX] / 2.0;
+    fit->shift_y = -best->p[FIT_CY] / 2.0 * width / height * input->pixel_aspect;
+    fit->near_plane = best->model == FIT_RADIAL_NEAR ? best->p[FIT_C] * s->median : 0;
+    fit->near_known = best->near_known;
+    for (int i = 0; i < 3; i++) {
+        fit->rotation[i * 3] = rows[i].x;
+        fit->rotation[i * 3 + 1] = rows[i].y;
+        fit->rotation[i * 3 + 2] = rows[i].z;
+    }
+}
+
+/* One attempt with normals averaged over a patch. *tried is false if there is too little to go by.
+ */
+static bool attempt(const struct fit_input *input, unsigned blur, struct attempt *a, bool *tried)
+{
+    struct fit_samples s;
+    struct found f;
+    double sigma;
+    *a = (struct attempt){.near_share = 0};
+    *tried = false;
+    if (!fit_samples_take(input, blur, &s))
+        return false;
+    bool ok = s.count == 0 || search(&s, input, &f);
+    if (ok && s.count > 0 && f.count > 0) {
+        refine_all(&s, &f, &sigma);
+        if (f.count > 0) {
+            const struct fit_solution coarse = f.list[0];
+            a->best = coarse;
+            if (coarse.free[FIT_LN_K]) {
+                a->best = sharpened(&s, &coarse);
+                if (!fit_model_is_ortho(coarse.model))
+                    try_shift(&s, &coarse, sigma, &a->best);
+            }
+            settle_offset(&s, input, &a->best);
+            settle_sign(&s, &a->best);
+            a->near_share = find_shares(&s, &a->best).near;
+            describe(&s, input, &a->best, &a->fit);
+            ok = judge(&s, &f, sigma, &a->best, &a->fit);
+            *tried = true;
+        }
+    }
+    fit_samples_free(&s);
+    return ok;
+}
+
+static bool contradict(const struct attempt *a, const struct attempt *b)
+{
+    const double spread = b->best.deviation[FIT_LN_K];
+    return spread < 0.03 && b->near_share > 0.25 && a->best.model == b->best.model &&
+           fabs(a->best.p[FIT_LN_K] - b->best.p[FIT_LN_K]) >
+               3.0 * (spread + a->best.deviation[FIT_LN_K]) + 0.02;
+}
+
+bool camera_fit(const struct fit_input *input, struct fit *fit, struct tool_error *err)
+{
+    /* The sure one of the least error counts; bump maps need patches. */
+    static const unsigned blurs[] = {0, 3, 8};
+    struct attempt attempts[3], *best = NULL;
+    size_t count = 0;
+    *fit = (struct fit){.model = FIT_PLANAR};
+    snprintf(fit->why, sizeof fit->why, "no smooth surface has normals");
+    for (size_t i = 0; i < 3; i++) {
+        bool tried;
+        if (!attempt(input, blurs[i], &attempts[count], &tried))
+            return fail(err, EXIT_MEMORY, "out of memory for the estimate of the camera");
+        count += tried;
+        if (tried && attempts[count - 1].fit.is_sure && attempts[count - 1].fit.bound < 0.008)
+            break;
+    }
+    for (size_t i = 0; i < count; i++) {
+        const struct attempt *a = &attempts[i];
+        if (!best || (a->fit.is_sure && !best->fit.is_sure) ||
+            (a->fit.is_sure == best->fit.is_sure &&
+             a->best.deviation[FIT_LN_K] < best->best.deviation[FIT_LN_K]))
+            best = &attempts[i];
+    }
+    if (!best)
+        return true;
+    *fit = best->fit;
+    for (size_t i = 0; i < count && fit->is_sure; i++)
+        if (contradict(best, &attempts[i])) {
+            fit->is_sure = false;
+            snprintf(fit->why, sizeof fit->why, "fine and coarse normals contradict each other");
+        }
+    return true;
+}

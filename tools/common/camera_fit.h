@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The camera of an image, estimated from its depth and its normals alone.
+ *
+ * On a plane, 1/z is linear in the image. So differences of 1/z give the normal of the plane for
+ * each field of view that one may assume, and only the true one gives normals that are a rotation
+ * of the stored ones: exactly, at any distance and slant. Curved surfaces and bumps follow less
+ * well, so flat faces decide. */
+#ifndef VKAO_TOOLS_CAMERA_FIT_H_
+#define VKAO_TOOLS_CAMERA_FIT_H_
+
+#include "error.h"
+#include "exr_file.h"
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* What depth may measure, and through which kind of camera. */
+enum fit_model {
+    FIT_PLANAR,
+    FIT_RADIAL,
+    FIT_RADIAL_NEAR, /* radial from the near plane, whose distance is estimated too */
+    FIT_INVERSE,
+    FIT_ORTHO,
+    /* Values in [0,1] whose scale the image does not hold; only to be told from the others. */
+    FIT_DEVICE,
+    FIT_PLANAR_NORMALIZED,
+    FIT_PLANAR_REVERSED,
+    FIT_RADIAL_NORMALIZED,
+    FIT_ORTHO_REVERSED,
+    FIT_MODELS
+};
+
+struct fit_input {
+    const float *depth;   /* width * height, as stored */
+    const float *normals; /* width * height * 4, signed, as stored; 0: none */
+    uint32_t width, height;
+    struct exr_box data_window, display_window;
+    double pixel_aspect;
+    unsigned models;   /* 1 << enum fit_model or-ed: what the depth may be */
+    double half_width; /* what of the camera is known, as struct camera has it; 0: nothing */
+    /* Where to look first, and not far from it; 0: everywhere. */
+    double near_half_width;
+};
+
+struct fit {
+    bool is_sure;        /* of model, half_width and shift */
+    bool rotation_known; /* else all normals are parallel, or nearly */
+    bool near_known;     /* of FIT_RADIAL and FIT_RADIAL_NEAR */
+    enum fit_model model;
+    double half_width;       /* at distance 1; FIT_ORTHO: scene units */
+    double shift_x, shift_y; /* as struct camera has them */
+    double near_plane;       /* of FIT_RADIAL_NEAR, scene units */
+    double rotation[9];      /* of the stored normals to view space, m[row * 3 + column] */
+    double bound;            /* relative error of half_width that is not exceeded, surely not */
+    char why[192];           /* not sure: because ... */
+};
+
+/* False only if memory runs out; *fit tells all else. */
+bool camera_fit(const struct fit_input *input, struct fit *fit, struct tool_error *err);
+
+#endif

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * The steps of camera_fit: samples of the image, and models that are held against them.
+ *
+ * Image plane: x right, y up, in half widths of the display window, principal point (cx, cy);
+ * k = half_width. A point at z is z (k (x - cx), k (y - cy), -1). */
+#ifndef VKAO_TOOLS_CAMERA_FIT_INTERNAL_H_
+#define VKAO_TOOLS_CAMERA_FIT_INTERNAL_H_
+
+#include "camera_fit.h"
+#include "vec3.h"
+
+enum {
+    FIT_CUBE = 6, /* cells of the direction of normals: a cube map of 6 x 6 a side */
+    FIT_CELLS = 6 * FIT_CUBE * FIT_CUBE,
+    FIT_TILES_X = 8,
+    FIT_TILES_Y = 6,
+    FIT_TILES = FIT_TILES_X * FIT_TILES_Y,
+    FIT_PARAMETERS = 7 /* rotation vector, ln k, cx, cy, c */
+};
+
+/* A texel and its neighbours at the baseline: itself, left, right, below, above. */
+struct fit_sample {
+    double x, y, d[5];
+    struct vec3 m; /* the stored normal, normalised */
+    double weight;
+    bool flat; /* the stored normal does not turn here */
+    uint8_t tile, cell;
+};
+
+struct fit_samples {
+    struct fit_sample *list;
+    size_t count;
+    double step_x, step_y; /* baseline, in the unit of x and y */
+    double median;         /* of depth: the unit of c */
+    double least, most;    /* of depth */
+    double log_slope;      /* ln of the median slope of depth: where orthographic widths lie */
+    double total_weight;
+};
+
+/* blur: half size of the patch over which normals are averaged, 0 = none, for bump maps. count is
+ * 0 if there is not enough to go by. False if memory runs out. */
+bool fit_samples_take(const struct fit_input *input, unsigned blur, struct fit_samples *samples);
+/* Every so-maniest, so that at most `most` are left; shares nothing with all. */
+bool fit_samples_thin(const struct fit_samples *all, size_t most, struct fit_samples *samples);
+void fit_samples_free(struct fit_samples *samples);
+
+/* p: ln k, cx, cy, c. c is the near plane in medians of depth, or an offset of the stored value. */
+enum { FIT_LN_K, FIT_CX, FIT_CY, FIT_C };
+struct fit_solution {
+    enum fit_model model;
+    struct mat3 rotation;
+    double p[4];
+    bool free[4];
+    double sigma; /* robust scale, sine of an angle */
+    double cost;  /* [0,1], weighted mean of e^2 / (e^2 + sigma^2) */
+    double tile_cost[FIT_TILES];
+    double inlier_weight;      /* share, [0,1] */
+    double deviation[4];       /* standard errors of p */
+    double rotation_deviation; /* degrees */
+    bool shifted, hand_unknown, near_known;
+    double doubt; /* of ln k: by a shift that is not accepted, and not excluded */
+};
+
+bool fit_model_is_ortho(enum fit_model model);
+/* Unit normal of the surface at a sample, by the depth alone. */
+struct vec3 fit_model_normal(const struct fit_samples *s, const struct fit_sample *sample,
+                             enum fit_model model, const double p[4]);
+/* Scene units across one unit of the image plane at a sample. */
+double fit_model_scale(const struct fit_samples *s, const struct fit_sample *sample,
+                       enum fit_model model, const double p[4]);
+/* ln k may lie between these. */
+void fit_model_range(const struct fit_samples *s, enum fit_model model, double *low, double *high);
+
+/* The rotation that turns the stored normals into the model's best, from nothing. */
+struct mat3 fit_start_rotation(const struct fit_samples *s, const struct fit_solution *at);
+struct mat3 fit_improve_rotation(const struct fit_samples *s, const struct fit_solution *at,
+                                 double sigma, int rounds);
+/* Singular values of the correlation of normals, shares of 1: whether the rotation is fixed by
+ * them; and the direction that is fixed least. */
+void fit_directions(const struct fit_samples *s, const struct fit_solution *at, double values[3],
+                    struct vec3 *weakest);
+
+double fit_cost(const struct fit_samples *s, const struct fit_solution *at, double sigma);
+/* The square of the sine between model and stored normal, whichever way that points, and the
+ * cosine. */
+double fit_error(const struct fit_samples *s, const struct fit_sample *sample,
+                 const struct fit_solution *at, double *cosine);
+/* Gauss-Newton at one robust scale; fills cost and p alone. */
+void fit_descend(const struct fit_samples *s, struct fit_solution *at, double sigma, int rounds);
+/* The same, and everything else of the solution. */
+void fit_refine(const struct fit_samples *s, struct fit_solution *at, double sigma);
+
+#endif
