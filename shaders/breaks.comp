@@ -1,53 +1,81 @@
 /* SPDX-License-Identifier: MIT
  *
- * Where depth breaks between a texel and the next one of its row, or column, in words of 32 bits:
- * what width.comp counts. An invocation has a word. */
+ * Where depth breaks between a texel and the next one of its row, and of its column, in words of
+ * 32 bits: what width.comp counts. A bit stands for 1 << shift texels, so that the words of a row
+ * are those of one, two, four ... groups side by side, which share out the rows; likewise
+ * columns. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #define VKAO_GLSL
 #include "params.h"
 
-layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
+const int WORD = 32;
+const int THREADS = VKAO_BREAKS_WIDTH * VKAO_BREAKS_HEIGHT;
+layout(local_size_x = VKAO_BREAKS_WIDTH, local_size_y = VKAO_BREAKS_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_dispatch here; };
 #include "settings.glsl"
 #include "view_z.glsl"
 #include "thickness.glsl"
-layout(binding = VKAO_BINDING_BREAKS_WRITE) uniform writeonly uimage2D breaks_image;
+layout(binding = VKAO_BINDING_BREAKS_X_WRITE) uniform writeonly uimage2D breaks_x_image;
+layout(binding = VKAO_BINDING_BREAKS_Y_WRITE) uniform writeonly uimage2D breaks_y_image;
 
-float depth_at(ivec2 texel)
+/* Of the rows, or columns, that the group has. */
+shared uint words[WORD];
+
+float depth_at(ivec2 texel, ivec2 low, ivec2 high)
 {
+    if (any(lessThan(texel, low)) || any(greaterThanEqual(texel, high)))
+        return NOTHING;
     float z = fetch_view_z(texel);
     return z > 0.0 ? z : NOTHING;
+}
+
+/* along: the direction of the words, x or y; across: the other one. */
+void find_breaks(bool vertical, int shift, ivec2 low, ivec2 high, ivec2 first)
+{
+    const ivec2 along = vertical ? ivec2(0, 1) : ivec2(1, 0), across = ivec2(1) - along;
+    ivec2 block = ivec2(gl_WorkGroupID.xy), blocks = ((high - first - 1) >> 5) + 1;
+    int at = vertical ? block.y : block.x, count = vertical ? blocks.y : blocks.x;
+    int line = WORD * (vertical ? block.x : block.y);
+    int word = at >> shift, sharing = min(1 << shift, count - (word << shift));
+    int lines = (WORD + sharing - 1) / sharing, begin = (at - (word << shift)) * lines;
+    int length = WORD << shift, thread = int(gl_LocalInvocationIndex);
+
+    if (thread < WORD)
+        words[thread] = 0u;
+    barrier();
+    for (int i = thread; i < lines * length; i += THREADS) {
+        /* Threads side by side have texels side by side. */
+        int k = vertical ? i % lines : i >> (5 + shift),
+            step = vertical ? i / lines : i & (length - 1);
+        ivec2 texel = first + (line + begin + k) * across + ((word << 5 << shift) + step) * along;
+        if (begin + k >= WORD || any(lessThan(texel, low)) ||
+            any(greaterThanEqual(texel + along, high)))
+            continue;
+        float before = depth_at(texel - along, low, high), z = depth_at(texel, low, high),
+              next = depth_at(texel + along, low, high),
+              behind = depth_at(texel + 2 * along, low, high);
+        if (break_between(before, z, next, behind) > 0.0)
+            atomicOr(words[k], 1u << (step >> shift));
+    }
+    barrier();
+    ivec2 to = (line + begin + thread) * across + word * along;
+    if (thread < lines && begin + thread < WORD &&
+        all(lessThan((first + to) * across, high * across + along))) {
+        if (vertical)
+            imageStore(breaks_y_image, to, uvec4(words[thread]));
+        else
+            imageStore(breaks_x_image, to, uvec4(words[thread]));
+    }
 }
 
 void main()
 {
     ivec2 low = ivec2(params.valid.x & 0xffffu, params.valid.x >> 16), first = low & ivec2(~3, ~0);
-    ivec2 size = ivec2(params.valid.y & 0xffffu, params.valid.y >> 16) - first;
+    ivec2 high = ivec2(params.valid.y & 0xffffu, params.valid.y >> 16);
     Reach reach = width_reach();
-    int shift = VERTICAL ? reach.shift.y : reach.shift.x;
-    ivec2 word = ivec2(gl_GlobalInvocationID.xy), axis = VERTICAL ? ivec2(0, 1) : ivec2(1, 0);
-    ivec2 texel = word * (VERTICAL ? ivec2(1, 32 << shift) : ivec2(32 << shift, 1));
-    if (any(greaterThanEqual(texel, size)))
-        return;
-    /* Along the axis: texels before these that are not valid, and up to the last valid one. */
-    int begin = VERTICAL ? 0 : low.x - first.x - texel.x;
-    int left = VERTICAL ? size.y - texel.y : size.x - texel.x;
-    ivec2 at = first + texel;
-    bool is_first = VERTICAL ? texel.y == 0 : begin >= 0;
-    float before = is_first ? NOTHING : depth_at(at - axis);
-    float z = begin > 0 ? NOTHING : depth_at(at);
-    float next = left > 1 && begin < 2 ? depth_at(at + axis) : NOTHING;
-    uint bits = 0u;
-    int count = min(left - 1, 32 << shift);
-    for (int i = 0; i < count; ++i) {
-        float behind = i + 2 < left && i + 2 >= begin ? depth_at(at + (i + 2) * axis) : NOTHING;
-        bool is_break = i >= begin && break_between(before, z, next, behind) > 0.0;
-        bits |= is_break ? 1u << (i >> shift) : 0u;
-        before = z;
-        z = next;
-        next = behind;
-    }
-    imageStore(breaks_image, word, uvec4(bits));
+    find_breaks(false, reach.shift.x, low, high, first);
+    barrier();
+    find_breaks(true, reach.shift.y, low, high, first);
 }

@@ -44,7 +44,8 @@
 #define VKAO_BINDING_OUTPUT 14
 #define VKAO_BINDING_BREAKS_X 15 /* where depth breaks, in words along rows, and along columns */
 #define VKAO_BINDING_BREAKS_Y 16
-#define VKAO_BINDING_BREAKS_WRITE 17
+#define VKAO_BINDING_BREAKS_X_WRITE 17
+#define VKAO_BINDING_BREAKS_Y_WRITE 20
 #define VKAO_BINDING_THICKNESS 18
 #define VKAO_BINDING_SECOND_Z 19
 #define VKAO_BINDING_CPU 32 /* the first of the CPU's */
@@ -75,6 +76,10 @@
 #define VKAO_SETTING_TONED 20    /* of the form: intensity or power is not 1 */
 #define VKAO_SETTING_COPIED 21   /* of the form, the CPU's own */
 #define VKAO_SETTING_COUNT 22
+
+/* Threads of a group of breaks.comp, each for 4 x 2 texels. */
+#define VKAO_BREAKS_WIDTH 8
+#define VKAO_BREAKS_HEIGHT 16
 
 /* Samples or steps in a row: loops longer than that take long to compile, and their overhead is
  * small. */
