@@ -5,8 +5,8 @@ import json
 
 import numpy as np
 
-from cli import (case, cases, check, check_close, equal, main, matches, read_ao, write_exr)
-from scene import FOV, NEAR, RADIUS, TURN, Scene, write_camera
+from cli import (CHANNELS, case, cases, check, check_close, equal, main, matches, read_ao, write_exr)
+from scene import FOV, MOVE, NEAR, RADIUS, TURN, Scene, camera, write_camera
 
 BASE = ('--radius', RADIUS, '--pixel-type', 'float', '--overwrite', 'always')
 
@@ -134,6 +134,92 @@ def rotation_is_found_for_a_given_field_of_view(scratch):
         scratch.render('in.exr', '-o', 'ao.exr', *BASE, *options)
         results.append(read_ao(scratch.path('ao.exr')))
     check_close(results[0], results[1], 0.07, 1e-3, 'AO')
+
+
+# --- Positions ---
+
+def positions(scene, space='world', z=-1, parallel=0):
+    """Of every texel: in the world, or in camera space with z against (-1) or along the view."""
+    depth = np.where(scene.sky, 0, scene.z)
+    scale = parallel if parallel else depth
+    p = np.stack([scene.x * scale, scene.y * scale, -depth], axis=-1)
+    p = (p - MOVE) @ TURN if space == 'world' else p * [1, 1, -z]
+    p = np.where(scene.sky[..., None], 0, p)
+    return {f'P.{c}': p[..., i].astype(np.float32) for i, c in enumerate('XYZ')}
+
+
+def scene_normals(scene, space, z):
+    normals = scene.normals(space=space)
+    if space == 'camera' and z > 0:
+        normals['N.Z'] = -normals['N.Z']
+    return normals
+
+
+@cases([('world', 'world', -1), ('OpenGL', 'camera', -1), ('pbrt and RenderMan', 'camera', 1)])
+def positions_give_depth_and_camera(scratch, name, space, z):
+    scene = Scene(168, 96, 44, 1.25)
+    layout = {'attributes': [('PixelAspectRatio', 1.25)]}
+    write_camera(scratch.path('c.json'), camera(44))
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **scene.normals(space='world')},
+              **layout)
+    scratch.render('in.exr', '-o', 'wanted.exr', *BASE, '--camera', 'c.json')
+    write_exr(scratch.path('in.exr'),
+              {**positions(scene, space, z), **scene_normals(scene, space, z)}, **layout)
+    view, _ = inspect(scratch)
+    equal(view['camera']['source'], 'positions', 'source')
+    equal(view['conventions']['normal_space'], space, 'normal space')
+    check(abs(view['camera']['fov_x_deg'] - 44) < 1e-3, f'{view["camera"]["fov_x_deg"]} degrees')
+    scratch.render('in.exr', '-o', 'ao.exr', *BASE)
+    ao = read_ao(scratch.path('ao.exr'))
+    check_close(ao, read_ao(scratch.path('wanted.exr')), 0.07, 2e-4, name)
+    check((ao[scene.sky] == 1).all(), 'the background is not 1')
+    scratch.render('in.exr', '-o', 'again.exr', '--like', 'ao.exr')
+    check_close(read_ao(scratch.path('again.exr')), ao, 0, 0, '--like')
+
+
+@case
+def positions_give_the_camera_of_another_depth(scratch):
+    scene = Scene(160, 90, 73)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **positions(scene)})
+    camera = inspect(scratch)[0]['camera']
+    equal((camera['source'], camera['rotation']), ('positions', 'positions'), 'the camera')
+    check(abs(camera['fov_x_deg'] - 73) < 1e-3, f'{camera["fov_x_deg"]} degrees, want 73')
+
+
+@case
+def positions_of_a_parallel_camera(scratch):
+    scene = Scene(160, 90, 2 * np.degrees(np.arctan(2.0)))
+    write_exr(scratch.path('in.exr'), {**positions(scene, parallel=1.5)})
+    camera = inspect(scratch)[0]['camera']
+    equal(camera['type'], 'orthographic', 'type')
+    check(abs(camera['ortho_width'] - 6) < 1e-3, f'width {camera["ortho_width"]}, want 6')
+
+
+@case
+def positions_contradict_the_header(scratch):
+    write_exr(scratch.path('in.exr'), positions(Scene(160, 90, 60)),
+              attributes=[('cameraFov', 50.0)])
+    view, said = inspect(scratch)
+    equal(view['camera']['source'], 'positions', 'source')
+    matches('0.4663 by cameraFov and 0.5774 by the positions: that of the positions', said, 'words')
+    equal(inspect(scratch, '--fov', 50)[0]['camera']['source'], '--fov', 'source with --fov')
+
+
+@case
+def positions_of_a_plane_need_a_camera(scratch):
+    scene = Scene()
+    floor = scene.normal[..., 1] > 0.999
+    scene.sky = ~floor
+    scene.z = np.where(floor, scene.z, np.inf)
+    write_exr(scratch.path('in.exr'), positions(scene))
+    scratch.fails(CHANNELS, "no depth, and positions 'P' do not give it: they lie in a plane",
+                  'in.exr', '-o', 'ao.exr', hint='--camera FILE.json with .world_to_view')
+    write_camera(scratch.path('c.json'))
+    scratch.render('in.exr', '-o', 'ao.exr', *BASE, '--camera', 'c.json')
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth()})
+    scratch.render('in.exr', '-o', 'wanted.exr', *BASE, '--camera', 'c.json')
+    check_close(read_ao(scratch.path('ao.exr')), read_ao(scratch.path('wanted.exr')), 0.25, 2e-3,
+                'AO')
 
 
 # --- Not found, and not asked ---

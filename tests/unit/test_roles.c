@@ -175,7 +175,7 @@ static void other_renderers_are_found(void **state)
     /* pbrt: shading normals before geometric ones */
     expect_single(
         "R|G|B|Albedo.R|Albedo.G|Albedo.B|P.X|P.Y|P.Z|N.X|N.Y|N.Z|Ns.X|Ns.Y|Ns.Z|dzdx|dzdy|u|v",
-        "P.Z", "Ns", "(no layer)");
+        "P", "Ns", "(no layer)");
 }
 
 static void depth_type_and_normal_space_come_with_the_name(void **state)
@@ -188,7 +188,7 @@ static void depth_type_and_normal_space_come_with_the_name(void **state)
         {"dd.y.T|nn.X|nn.Y|nn.Z", DEPTH_RADIAL_NEAR, NORMAL_SPACE_AUTO},
         {"Z|Nn.X|Nn.Y|Nn.Z", DEPTH_AUTO, NORMAL_SPACE_CAMERA},
         {"Z|VRayNormals.R|VRayNormals.G|VRayNormals.B", DEPTH_AUTO, NORMAL_SPACE_CAMERA},
-        {"P.X|P.Y|P.Z|Ns.X|Ns.Y|Ns.Z|dzdx", DEPTH_PLANAR, NORMAL_SPACE_CAMERA},
+        {"P.X|P.Y|P.Z|Ns.X|Ns.Y|Ns.Z|dzdx", DEPTH_POSITION, NORMAL_SPACE_CAMERA},
         {"Z|__Nworld.R|__Nworld.G|__Nworld.B", DEPTH_AUTO, NORMAL_SPACE_WORLD},
     };
     (void)state;
@@ -223,7 +223,7 @@ static void vray_files_have_camera_space_normals(void **state)
 static void z_of_a_vector_is_never_depth(void **state)
 {
     static const char *const traps[] = {"nn.X|nn.Y|nn.Z",
-                                        "N.X|N.Y|N.Z|P.X|P.Y|P.Z",
+                                        "N.X|N.Y|N.Z|Pref.X|Pref.Y|Pref.Z",
                                         "depth.X|depth.Y|depth.Z",
                                         "X|Y|Z",
                                         "ViewLayer.Mist.Z",
@@ -238,6 +238,22 @@ static void z_of_a_vector_is_never_depth(void **state)
         const struct tool_error err = refuse(sheet, &(struct role_request){{NULL}, NULL, false});
         assert_int_equal(err.code, EXIT_CHANNELS);
         assert_non_null(strstr(err.message, "no depth channel found; channels: "));
+        free(sheet);
+    }
+}
+
+static void positions_stand_in_for_depth(void **state)
+{
+    const char *const P = "P";
+    (void)state;
+    expect_single("N.X|N.Y|N.Z|P.X|P.Y|P.Z", "P", "N", NULL);
+    for (int named = 0; named < 2; named++) {
+        struct sheet *sheet = new_sheet();
+        add_part(sheet, "", "", named ? "Z|P.X|P.Y|P.Z" : "P.X|P.Y|P.Z");
+        const struct roles roles =
+            resolve(sheet, &(struct role_request){{named ? P : NULL}, NULL, false});
+        assert_int_equal(roles.kind[ROLE_DEPTH].depth_type, DEPTH_POSITION);
+        assert_int_equal(roles.kind[ROLE_DEPTH].channel_count, 3);
         free(sheet);
     }
 }
@@ -442,6 +458,7 @@ int main(void)
         TEST(depth_type_and_normal_space_come_with_the_name),
         TEST(vray_files_have_camera_space_normals),
         TEST(z_of_a_vector_is_never_depth),
+        TEST(positions_stand_in_for_depth),
         TEST(missing_depth_lists_the_channels_with_their_parts),
         TEST(two_view_layers_are_ambiguous_and_named),
         TEST(two_mitsuba_depths_are_ambiguous),

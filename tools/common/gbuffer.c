@@ -12,8 +12,8 @@
 
 const char *depth_type_name(enum depth_type type)
 {
-    static const char *const names[] = {"auto",        "planar",  "radial",
-                                        "radial-near", "inverse", "device"};
+    static const char *const names[] = {"auto",    "planar", "radial",  "radial-near",
+                                        "inverse", "device", "position"};
     return names[type];
 }
 
@@ -123,10 +123,31 @@ static float *read_role(const struct exr_info *info, const struct gbuffer *g,
     return aligned;
 }
 
+/* Of a depth that is none, and where nothing else tells the camera. */
+static bool wants_positions(const struct gbuffer *g)
+{
+    return g->depth_type == DEPTH_POSITION ||
+           (g->roles.kind[ROLE_POSITION].found && !g->camera.source[0]);
+}
+
+static bool use_positions(const struct exr_info *info, struct gbuffer *g, struct report *report,
+                          struct tool_error *err)
+{
+    const enum role_kind kind = g->depth_type == DEPTH_POSITION ? ROLE_DEPTH : ROLE_POSITION;
+    if (!wants_positions(g))
+        return true;
+    float *positions = read_role(info, g, &g->roles.kind[kind], 4, 0.0f, err);
+    const bool ok = positions && gbuffer_use_positions(g, positions, info->path, report, err);
+    free(positions);
+    return ok;
+}
+
 static bool read_depth(const struct exr_info *info, struct gbuffer *g, struct tool_error *err)
 {
     const struct role *role = &g->roles.kind[ROLE_DEPTH];
     g->depth = allocate(gbuffer_texels(g), 1, info->path, err);
+    if (g->depth && g->depth_type == DEPTH_POSITION)
+        return true; /* filled when the camera is known */
     const struct exr_read read = {role->channels[0]->name, g->depth, 1};
     return g->depth && exr_read_channels(info, role->part, &read, 1, err);
 }
@@ -188,6 +209,8 @@ static bool check_budget(const struct exr_info *info, const struct gbuffer_optio
         return false;
     if (normal->found)
         add_role(info, g, normal, 4, &texel_bytes, &for_a_while);
+    if (wants_positions(g))
+        add_role(info, g, &g->roles.kind[ROLE_POSITION], 4, &texel_bytes, &for_a_while);
     if (options->want_color)
         add_role(info, g, color, 4, &texel_bytes, &for_a_while);
     for (int kind = ROLE_THICKNESS; kind < ROLE_KINDS; kind++)
@@ -229,6 +252,8 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
     g->depth_type = options->depth_type != DEPTH_AUTO ? options->depth_type
                     : depth->depth_type != DEPTH_AUTO ? depth->depth_type
                                                       : DEPTH_PLANAR;
+    if (depth->depth_type == DEPTH_POSITION)
+        g->depth_type = DEPTH_POSITION; /* whatever --depth-type says of numbers */
     if (options->want_color && !g->roles.kind[ROLE_COLOR].found) {
         fail_hint(err, "say which it is: --color NAME");
         return fail(err, EXIT_CHANNELS, "%s: no colour found, which --mode comp needs", info->path);
@@ -258,7 +283,8 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         if (!g->normals)
             goto failed;
     }
-    if (!gbuffer_find_camera(g, options, info->path, report, err) ||
+    if (!use_positions(info, g, report, err) ||
+        !gbuffer_find_camera(g, options, info->path, report, err) ||
         !read_behind(info, g, ROLE_THICKNESS, &g->thickness, err) ||
         (!g->thickness && !read_behind(info, g, ROLE_BACK_DEPTH, &g->thickness, err)) ||
         !read_behind(info, g, ROLE_LAYER2, &g->second_depth, err) ||

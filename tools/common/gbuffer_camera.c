@@ -2,11 +2,171 @@
  *
  * What neither options nor file nor header say of the camera, depth and normals may tell. */
 #include "camera_fit.h"
+#include "camera_positions.h"
 #include "gbuffer_internal.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+/* --- From positions --- */
+
+static double display_aspect(const struct gbuffer *g)
+{
+    const double width = (double)g->display_window.x_max - g->display_window.x_min + 1.0;
+    const double height = (double)g->display_window.y_max - g->display_window.y_min + 1.0;
+    return width * (double)g->pixel_aspect / height;
+}
+
+/* Of normals in camera space, with z towards the eye or away from it. */
+static bool is_camera_rotation(const double r[9])
+{
+    return r[0] > 0.9999 && r[4] > 0.9999 && fabs(r[8]) > 0.9999;
+}
+
+static bool is_explicit(const struct camera *camera)
+{
+    return camera->source[0] == '-' || strcmp(camera->source, "camera file") == 0;
+}
+
+/* The camera that is known, with positions in the world (0: looking along -z, 1: along +z) or in
+ * camera space (2, 3). */
+static bool known_camera(const struct camera *camera, int guess, struct position_camera *out)
+{
+    static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, nowhere[3] = {0};
+    const bool world = guess < 2;
+    if (!camera->source[0] || (world && !(camera->has_rotation && camera->has_translation)))
+        return false;
+    *out = (struct position_camera){
+        .is_orthographic = camera->type == CAMERA_ORTHOGRAPHIC,
+        .half_width = camera->half_width,
+        .shift_x = camera->shift_x,
+        .shift_y = camera->shift_y,
+    };
+    memcpy(out->rotation, world ? camera->world_to_view : identity, sizeof out->rotation);
+    memcpy(out->translation, world ? camera->translation : nowhere, sizeof out->translation);
+    for (int i = 6; guess % 2 == 1 && i < 9; i++)
+        out->rotation[i] = -out->rotation[i];
+    if (guess % 2 == 1)
+        out->translation[2] = -out->translation[2];
+    return true;
+}
+
+/* Where positions fix no camera, as those of a plane, the one that is known may see them where they
+ * are. */
+static bool find_known_camera(const struct gbuffer *g, const struct positions *p,
+                              struct position_camera *camera, bool *found, struct tool_error *err)
+{
+    double least = 2.0; /* texels */
+    *found = false;
+    for (int guess = 0; guess < 4; guess++) {
+        struct position_camera known;
+        double miss;
+        if (!known_camera(&g->camera, guess, &known))
+            continue;
+        if (!positions_miss(p, &known, &miss))
+            return fail(err, EXIT_MEMORY, "out of memory for the camera of the positions");
+        if (miss < least) {
+            least = miss;
+            *camera = known;
+            *found = true;
+        }
+    }
+    return true;
+}
+
+static void take_position_projection(struct gbuffer *g, const struct position_camera *camera,
+                                     const char *path, struct report *report)
+{
+    struct camera *c = &g->camera;
+    const double apart = c->source[0] ? fabs(log(c->half_width / camera->half_width)) : 0;
+    const bool keep = is_explicit(c);
+    if (apart > 0.01)
+        report_warn(report, "camera positions",
+                    "%s: half the width at distance 1 is %.4g by %s and %.4g by the positions: "
+                    "that of %s is taken",
+                    path, c->half_width, c->source, camera->half_width,
+                    keep ? c->source : "the positions");
+    if (keep)
+        return;
+    c->type = camera->is_orthographic ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE;
+    c->half_width = camera->half_width;
+    c->half_height = camera->half_width / display_aspect(g);
+    c->shift_x = camera->shift_x;
+    c->shift_y = camera->shift_y;
+    snprintf(c->source, sizeof c->source, "positions");
+}
+
+/* Normals are in the space of the positions more often than not; if not, what is known of the
+ * rotation stays. */
+static void take_position_rotation(struct gbuffer *g, const struct position_camera *camera)
+{
+    struct camera *c = &g->camera;
+    struct role *normal = &g->roles.kind[ROLE_NORMAL];
+    const bool in_camera_space = is_camera_rotation(camera->rotation);
+    /* pbrt's are, in either space. */
+    if (!in_camera_space && normal->follows_positions)
+        normal->normal_space = NORMAL_SPACE_WORLD;
+    if (c->has_rotation)
+        return;
+    if (in_camera_space) {
+        if (normal->normal_space == NORMAL_SPACE_AUTO)
+            normal->normal_space = NORMAL_SPACE_CAMERA;
+        return;
+    }
+    memcpy(c->world_to_view, camera->rotation, sizeof c->world_to_view);
+    memcpy(c->translation, camera->translation, sizeof c->translation);
+    c->has_rotation = c->axis_certain = c->has_translation = true;
+    snprintf(c->rotation_source, sizeof c->rotation_source, "positions");
+}
+
+static bool fail_positions(const struct gbuffer *g, const char *why, const char *path,
+                           struct tool_error *err)
+{
+    fail_hint(err, "add --camera FILE.json with \"world_to_view\", or --depth NAME");
+    return fail(err, EXIT_CHANNELS,
+                "%s: no depth, and positions '%s' do not give it: %s, and no camera that is known "
+                "sees them where they are",
+                path, g->roles.kind[ROLE_DEPTH].label, why);
+}
+
+bool gbuffer_use_positions(struct gbuffer *g, const float *positions, const char *path,
+                           struct report *report, struct tool_error *err)
+{
+    const struct positions p = {
+        .values = positions,
+        .width = g->width,
+        .height = g->height,
+        .data_window = g->data_window,
+        .display_window = g->display_window,
+        .pixel_aspect = (double)g->pixel_aspect,
+    };
+    struct position_camera camera;
+    bool found;
+    if (!camera_from_positions(&p, &camera, err))
+        return false;
+    found = camera.is_sure;
+    if (found) {
+        take_position_projection(g, &camera, path, report);
+        take_position_rotation(g, &camera);
+    }
+    if (g->depth_type != DEPTH_POSITION)
+        return true;
+    char why[sizeof camera.why];
+    memcpy(why, camera.why, sizeof why);
+    if (!found && !find_known_camera(g, &p, &camera, &found, err))
+        return false;
+    if (!found)
+        return fail_positions(g, why, path, err);
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        const float *position = positions + i * 4;
+        g->depth[i] = positions_are_there(position) ? (float)position_depth(&camera, position) : 0;
+    }
+    g->depth_type = DEPTH_PLANAR;
+    return true;
+}
+
+/* --- From depth and normals --- */
 
 /* As role and options have it, what the depth may be. 0: nothing that an image tells. */
 static unsigned possible_models(const struct gbuffer *g, const struct gbuffer_options *options)
@@ -61,28 +221,19 @@ static void take_depth_type(struct gbuffer *g, const struct fit *fit)
 static void take_projection(struct gbuffer *g, const struct fit *fit)
 {
     struct camera *c = &g->camera;
-    const double width = (double)g->display_window.x_max - g->display_window.x_min + 1.0;
-    const double height = (double)g->display_window.y_max - g->display_window.y_min + 1.0;
     c->type = fit->model == FIT_ORTHO ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE;
     c->half_width = fit->half_width;
-    c->half_height = fit->half_width * height / width / (double)g->pixel_aspect;
+    c->half_height = fit->half_width / display_aspect(g);
     c->shift_x = fit->shift_x;
     c->shift_y = fit->shift_y;
     snprintf(c->source, sizeof c->source, "estimated, +-%.1g %%", fit->bound * 100.0);
-}
-
-/* Normals in camera space need no rotation. */
-static bool is_camera_space(const struct fit *fit)
-{
-    const double *r = fit->rotation;
-    return r[0] > 0.9999 && r[4] > 0.9999 && fabs(r[8]) > 0.9999;
 }
 
 static void take_rotation(struct gbuffer *g, const struct fit *fit)
 {
     if (g->camera.has_rotation || !fit->rotation_known)
         return;
-    if (is_camera_space(fit)) {
+    if (is_camera_rotation(fit->rotation)) {
         g->roles.kind[ROLE_NORMAL].normal_space = NORMAL_SPACE_CAMERA;
         return;
     }

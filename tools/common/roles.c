@@ -263,7 +263,7 @@ static bool row_fits(const struct search *s, const struct role_row *row, size_t 
                              : name->bare && !part_name_forbids(name->leaf, row->kind);
     if (!layer || row->kind != ROLE_DEPTH)
         return layer;
-    return !channel_name_is_never_depth(name) && (row->in_vector || !is_vector(s, part, name));
+    return !channel_name_is_never_depth(name) && !is_vector(s, part, name);
 }
 
 /* Remembers the hit, or a better spelling of one in the same layer. */
@@ -458,6 +458,7 @@ static void take_hit(const struct search *s, const struct hit *hit, const struct
     role->channel_count = hit->channel_count;
     role->depth_type = row ? row->depth_type : DEPTH_AUTO;
     role->normal_space = row ? row->normal_space : NORMAL_SPACE_AUTO;
+    role->follows_positions = row && row->companion;
     make_label(s, hit, role->label);
 }
 
@@ -528,9 +529,31 @@ static bool fail_deep(const struct exr_info *info, size_t part, struct tool_erro
 
 /* --- One role --- */
 
+/* --depth P: positions, not one of their components. */
+static bool names_positions(struct search *s, const char *name, struct role *role)
+{
+    for (size_t i = 0; i < role_table_count; i++) {
+        if (role_table[i].kind != ROLE_POSITION)
+            continue;
+        search_row(s, &role_table[i]);
+        for (size_t h = 0; h < s->count; h++) {
+            char label[ROLE_LABEL_MAX];
+            make_label(s, &s->hits[h], label);
+            if (strcmp(label, name) != 0)
+                continue;
+            take_hit(s, &s->hits[h], NULL, role);
+            role->depth_type = DEPTH_POSITION;
+            return true;
+        }
+    }
+    return false;
+}
+
 static bool resolve_named(struct search *s, enum role_kind kind, const char *name,
                           struct role *role, struct tool_error *err)
 {
+    if (kind == ROLE_DEPTH && names_positions(s, name, role))
+        return true;
     search_named(s, kind, name);
     if (s->count == 0)
         return fail_missing(s->info, s->view, kind, name, err);
@@ -560,13 +583,25 @@ static bool resolve_found(struct search *s, enum role_kind kind, const struct ro
         search_row(s, &role_table[i]);
         if (s->count == 0)
             continue;
-        if (s->count > 1 && kind != ROLE_DEPTH)
+        if (s->count > 1 && kind != ROLE_DEPTH && depth->found)
             prefer_neighbours(s, depth);
         if (s->count > 1 && (kind == ROLE_DEPTH || kind == ROLE_NORMAL))
             return fail_ambiguous(s, kind, err);
         take_hit(s, &s->hits[0], &role_table[i], role);
         return true;
     }
+    return true;
+}
+
+/* Where all points are, depth is too. */
+static bool take_positions(struct roles *roles)
+{
+    const struct role *position = &roles->kind[ROLE_POSITION];
+    struct role *depth = &roles->kind[ROLE_DEPTH];
+    if (!position->found)
+        return false;
+    *depth = *position;
+    depth->depth_type = DEPTH_POSITION;
     return true;
 }
 
@@ -585,12 +620,11 @@ bool roles_resolve(const struct exr_info *info, const struct role_request *reque
                  : resolve_found(&s, (enum role_kind)kind, &roles->kind[ROLE_DEPTH], role, err);
         if (!ok)
             return false;
-        if (kind == ROLE_DEPTH && !role->found) {
-            for (size_t p = 0; p < info->part_count; p++)
-                if (info->parts[p].deep)
-                    return fail_deep(info, p, err);
-            return fail_missing(info, s.view, ROLE_DEPTH, NULL, err);
-        }
     }
-    return true;
+    if (roles->kind[ROLE_DEPTH].found || take_positions(roles))
+        return true;
+    for (size_t p = 0; p < info->part_count; p++)
+        if (info->parts[p].deep)
+            return fail_deep(info, p, err);
+    return fail_missing(info, s.view, ROLE_DEPTH, NULL, err);
 }

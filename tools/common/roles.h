@@ -36,7 +36,8 @@ enum depth_type {
     DEPTH_RADIAL,      /* distance from the eye */
     DEPTH_RADIAL_NEAR, /* distance along the ray from where it crosses the near plane (Mitsuba) */
     DEPTH_INVERSE,     /* 1 / planar, 0 = infinitely far (Nuke) */
-    DEPTH_DEVICE       /* what a rasteriser's depth buffer holds, in [0,1] */
+    DEPTH_DEVICE,      /* what a rasteriser's depth buffer holds, in [0,1] */
+    DEPTH_POSITION     /* none: positions, three numbers per texel, from which planar depth comes */
 };
 
 enum normal_space { NORMAL_SPACE_AUTO, NORMAL_SPACE_WORLD, NORMAL_SPACE_CAMERA };
@@ -63,7 +64,6 @@ struct role_row {
     /* Only in parts with this channel, or in files with an attribute that starts so; NULL = no
      * condition. */
     const char *companion, *attribute;
-    bool in_vector; /* the component may be one of a vector's: depth of pbrt, P.Z */
     enum depth_type depth_type;
     enum normal_space normal_space;
 };
@@ -86,6 +86,7 @@ struct role {
     size_t channel_count;                   /* without alpha */
     enum depth_type depth_type;             /* as the name implies, or AUTO */
     enum normal_space normal_space;         /* likewise */
+    bool follows_positions;     /* normals that are in the space of the positions beside them */
     char label[ROLE_LABEL_MAX]; /* the name, in the form that --depth, --normal and --color take */
 };
 
@@ -103,7 +104,7 @@ struct role_request {
 size_t roles_view_count(const struct exr_info *info);
 const char *roles_view_name(const struct exr_info *info, size_t index);
 
-/* Fails without depth or with several equally good hits; other roles may stay unfound, unless the
+/* Where there is no depth, positions take its place, as DEPTH_POSITION. Fails without either or with several equally good hits; other roles may stay unfound, unless the
  * request names them. Errors: EXIT_CHANNELS; EXIT_INPUT if all there is is deep data. */
 bool roles_resolve(const struct exr_info *info, const struct role_request *request,
                    struct roles *roles, struct tool_error *err);

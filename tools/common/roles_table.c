@@ -28,11 +28,9 @@ const struct role_row role_table[] = {
     /* Blender, for its denoiser */
     {.kind = ROLE_DEPTH, .layers = "Denoising Depth", .sets = {{"Z"}}},
     {.kind = ROLE_DEPTH, .layers = "linearZ", .sets = {{"R"}, {"Z"}}, .depth_type = DEPTH_PLANAR},
-    /* pbrt writes positions, in camera space unless told otherwise; nothing else writes dzdx */
-    {.kind = ROLE_DEPTH, .layers = "P", .sets = {{"Z"}}, .companion = "dzdx", .in_vector = true,
-     .depth_type = DEPTH_PLANAR},
 
-    /* pbrt: shading normals in the space of P */
+    /* pbrt: shading normals in the space of P, that of the camera unless told otherwise; nothing
+     * else writes dzdx */
     {.kind = ROLE_NORMAL, .layers = "Ns", .sets = VECTOR_COMPONENTS, .companion = "dzdx",
      .normal_space = NORMAL_SPACE_CAMERA},
     {.kind = ROLE_NORMAL, .layers = "N", .sets = VECTOR_COMPONENTS, .companion = "dzdx",
