@@ -101,7 +101,7 @@ static void expect_single(const char *channels, const char *depth, const char *n
     const char *const labels[] = {depth, normal, color};
     struct sheet *sheet = new_sheet();
     add_part(sheet, "", "", channels);
-    const struct roles roles = resolve(sheet, &(struct role_request){{NULL}, NULL, false});
+    const struct roles roles = resolve(sheet, &(struct role_request){{NULL}, NULL, false, {NULL}});
     for (int k = ROLE_DEPTH; k <= ROLE_COLOR; k++) {
         assert_int_equal(roles.kind[k].found, labels[k] != NULL);
         if (labels[k])
@@ -133,7 +133,7 @@ static void blender_5_parts_are_found(void **state)
     add_part(sheet, "ViewLayer.Depth", "", "ViewLayer.Depth.Z");
     add_part(sheet, "ViewLayer.Normal", "",
              "ViewLayer.Normal.X|ViewLayer.Normal.Y|ViewLayer.Normal.Z");
-    const struct roles roles = resolve(sheet, &(struct role_request){{NULL}, NULL, false});
+    const struct roles roles = resolve(sheet, &(struct role_request){{NULL}, NULL, false, {NULL}});
     assert_int_equal(roles.kind[ROLE_DEPTH].part, 1);
     assert_int_equal(roles.kind[ROLE_NORMAL].part, 2);
     assert_int_equal(roles.kind[ROLE_COLOR].part, 0);
@@ -195,7 +195,8 @@ static void depth_type_and_normal_space_come_with_the_name(void **state)
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct sheet *sheet = new_sheet();
         add_part(sheet, "", "", cases[i].channels);
-        const struct roles roles = resolve(sheet, &(struct role_request){{NULL}, NULL, false});
+        const struct roles roles =
+            resolve(sheet, &(struct role_request){{NULL}, NULL, false, {NULL}});
         assert_int_equal(roles.kind[ROLE_DEPTH].depth_type, cases[i].depth);
         assert_int_equal(roles.kind[ROLE_NORMAL].normal_space, cases[i].space);
         free(sheet);
@@ -207,16 +208,18 @@ static void vray_files_have_camera_space_normals(void **state)
     struct sheet *sheet = new_sheet();
     (void)state;
     add_part(sheet, "", "", "R|G|B|Z|normals.X|normals.Y|normals.Z");
-    assert_int_equal(
-        resolve(sheet, &(struct role_request){{NULL}, NULL, false}).kind[ROLE_NORMAL].normal_space,
-        NORMAL_SPACE_AUTO);
+    assert_int_equal(resolve(sheet, &(struct role_request){{NULL}, NULL, false, {NULL}})
+                         .kind[ROLE_NORMAL]
+                         .normal_space,
+                     NORMAL_SPACE_AUTO);
     snprintf(sheet->attribute_name, NAME_BYTES, "vrayInfo/vrayversion");
     sheet->attribute.name = sheet->attribute_name;
     sheet->parts[0].attributes = &sheet->attribute;
     sheet->parts[0].attribute_count = 1;
-    assert_int_equal(
-        resolve(sheet, &(struct role_request){{NULL}, NULL, false}).kind[ROLE_NORMAL].normal_space,
-        NORMAL_SPACE_CAMERA);
+    assert_int_equal(resolve(sheet, &(struct role_request){{NULL}, NULL, false, {NULL}})
+                         .kind[ROLE_NORMAL]
+                         .normal_space,
+                     NORMAL_SPACE_CAMERA);
     free(sheet);
 }
 
@@ -235,7 +238,8 @@ static void z_of_a_vector_is_never_depth(void **state)
     for (size_t i = 0; i < sizeof traps / sizeof *traps; i++) {
         struct sheet *sheet = new_sheet();
         add_part(sheet, "", "", traps[i]);
-        const struct tool_error err = refuse(sheet, &(struct role_request){{NULL}, NULL, false});
+        const struct tool_error err =
+            refuse(sheet, &(struct role_request){{NULL}, NULL, false, {NULL}});
         assert_int_equal(err.code, EXIT_CHANNELS);
         assert_non_null(strstr(err.message, "no depth channel found; channels: "));
         free(sheet);
@@ -251,7 +255,7 @@ static void positions_stand_in_for_depth(void **state)
         struct sheet *sheet = new_sheet();
         add_part(sheet, "", "", named ? "Z|P.X|P.Y|P.Z" : "P.X|P.Y|P.Z");
         const struct roles roles =
-            resolve(sheet, &(struct role_request){{named ? P : NULL}, NULL, false});
+            resolve(sheet, &(struct role_request){{named ? P : NULL}, NULL, false, {NULL}});
         assert_int_equal(roles.kind[ROLE_DEPTH].depth_type, DEPTH_POSITION);
         assert_int_equal(roles.kind[ROLE_DEPTH].channel_count, 3);
         free(sheet);
@@ -264,7 +268,8 @@ static void missing_depth_lists_the_channels_with_their_parts(void **state)
     (void)state;
     add_part(sheet, "beauty", "", "R|G|B|A");
     add_part(sheet, "normals", "", "N.X|N.Y|N.Z");
-    const struct tool_error err = refuse(sheet, &(struct role_request){{NULL}, NULL, false});
+    const struct tool_error err =
+        refuse(sheet, &(struct role_request){{NULL}, NULL, false, {NULL}});
     assert_string_equal(err.message,
                         "x.exr: no depth channel found; channels: A B G R (part \"beauty\"); N.X "
                         "N.Y N.Z (part \"normals\")");
@@ -278,11 +283,13 @@ static void two_view_layers_are_ambiguous_and_named(void **state)
     add_part(
         sheet, "", "",
         "A.Depth.Z|A.Normal.X|A.Normal.Y|A.Normal.Z|B.Depth.Z|B.Normal.X|B.Normal.Y|B.Normal.Z");
-    const struct tool_error err = refuse(sheet, &(struct role_request){{NULL}, NULL, false});
+    const struct tool_error err =
+        refuse(sheet, &(struct role_request){{NULL}, NULL, false, {NULL}});
     assert_int_equal(err.code, EXIT_CHANNELS);
     assert_string_equal(err.message, "x.exr: 2 depth candidates: 'A.Depth.Z', 'B.Depth.Z'");
     assert_string_equal(err.hint, "add --depth 'A.Depth.Z' or --depth 'B.Depth.Z'");
-    const struct roles roles = resolve(sheet, &(struct role_request){{"B.Depth.Z"}, NULL, false});
+    const struct roles roles =
+        resolve(sheet, &(struct role_request){{"B.Depth.Z"}, NULL, false, {NULL}});
     assert_string_equal(roles.kind[ROLE_NORMAL].label, "B.Normal");
     free(sheet);
 }
@@ -292,7 +299,7 @@ static void two_mitsuba_depths_are_ambiguous(void **state)
     struct sheet *sheet = new_sheet();
     (void)state;
     add_part(sheet, "", "", "a.T|b.T");
-    assert_int_equal(refuse(sheet, &(struct role_request){{NULL}, NULL, false}).code,
+    assert_int_equal(refuse(sheet, &(struct role_request){{NULL}, NULL, false, {NULL}}).code,
                      EXIT_CHANNELS);
     free(sheet);
 }
@@ -303,9 +310,11 @@ static void equal_names_in_two_parts_are_told_apart_by_part(void **state)
     (void)state;
     add_part(sheet, "one", "", "R|G|B|Z");
     add_part(sheet, "two", "", "R|G|B|Z");
-    const struct tool_error err = refuse(sheet, &(struct role_request){{NULL}, NULL, false});
+    const struct tool_error err =
+        refuse(sheet, &(struct role_request){{NULL}, NULL, false, {NULL}});
     assert_string_equal(err.hint, "add --depth 'one/Z' or --depth 'two/Z'");
-    const struct roles roles = resolve(sheet, &(struct role_request){{"two/Z"}, NULL, false});
+    const struct roles roles =
+        resolve(sheet, &(struct role_request){{"two/Z"}, NULL, false, {NULL}});
     assert_int_equal(roles.kind[ROLE_DEPTH].part, 1);
     assert_int_equal(roles.kind[ROLE_COLOR].part, 1);
     free(sheet);
@@ -319,7 +328,7 @@ static void parts_named_for_a_pass_hold_it(void **state)
     add_part(sheet, "N", "", "R|G|B");
     add_part(sheet, "C", "", "R|G|B|A");
     add_part(sheet, "depth", "", "Y");
-    const struct roles roles = resolve(sheet, &(struct role_request){{NULL}, NULL, false});
+    const struct roles roles = resolve(sheet, &(struct role_request){{NULL}, NULL, false, {NULL}});
     assert_int_equal(roles.kind[ROLE_DEPTH].part, 3);
     assert_int_equal(roles.kind[ROLE_NORMAL].part, 1);
     assert_int_equal(roles.kind[ROLE_COLOR].part, 2);
@@ -336,10 +345,12 @@ static void requests_take_channels_layers_and_parts(void **state)
     add_part(sheet, "pass", "", "my.pass.R");
     add_part(sheet, "p2", "", "depthish");
     for (size_t i = 0; i < 5; i++) {
-        const struct roles roles = resolve(sheet, &(struct role_request){{names[i]}, NULL, false});
+        const struct roles roles =
+            resolve(sheet, &(struct role_request){{names[i]}, NULL, false, {NULL}});
         assert_string_equal(roles.kind[ROLE_DEPTH].channels[0]->name, channels[i]);
     }
-    const struct tool_error err = refuse(sheet, &(struct role_request){{"beauty/Q"}, NULL, false});
+    const struct tool_error err =
+        refuse(sheet, &(struct role_request){{"beauty/Q"}, NULL, false, {NULL}});
     assert_int_equal(err.code, EXIT_CHANNELS);
     assert_non_null(strstr(err.message, "no channel or layer 'beauty/Q'; channels: B G R Z"));
     free(sheet);
@@ -356,14 +367,16 @@ static void views_of_parts_are_kept_apart(void **state)
     add_part(sheet, "mask_left", "left", "mask.a");
     assert_int_equal(roles_view_count(&sheet->info), 2);
     assert_string_equal(roles_view_name(&sheet->info, 0), "right");
-    const struct roles left = resolve(sheet, &(struct role_request){{NULL}, "left", false});
-    const struct roles right = resolve(sheet, &(struct role_request){{NULL}, "right", false});
+    const struct roles left = resolve(sheet, &(struct role_request){{NULL}, "left", false, {NULL}});
+    const struct roles right =
+        resolve(sheet, &(struct role_request){{NULL}, "right", false, {NULL}});
     assert_int_equal(left.kind[ROLE_DEPTH].part, 1);
     assert_int_equal(left.kind[ROLE_COLOR].part, 2);
     assert_int_equal(right.kind[ROLE_DEPTH].part, 3);
     assert_int_equal(right.kind[ROLE_COLOR].part, 0);
-    assert_int_equal(refuse(sheet, &(struct role_request){{"depth_left/Z"}, "right", false}).code,
-                     EXIT_CHANNELS);
+    assert_int_equal(
+        refuse(sheet, &(struct role_request){{"depth_left/Z"}, "right", false, {NULL}}).code,
+        EXIT_CHANNELS);
     free(sheet);
 }
 
@@ -375,13 +388,16 @@ static void views_in_channel_names_follow_both_customs(void **state)
              "VL.Depth.left.Z|VL.Depth.right.Z|VL.Normal.left.X|VL.Normal.left.Y|"
              "VL.Normal.left.Z|VL.Normal.right.X|VL.Normal.right.Y|VL.Normal.right.Z");
     set_multi_view(blender, "left", "right");
-    const struct roles right = resolve(blender, &(struct role_request){{NULL}, "right", false});
+    const struct roles right =
+        resolve(blender, &(struct role_request){{NULL}, "right", false, {NULL}});
     assert_string_equal(right.kind[ROLE_DEPTH].channels[0]->name, "VL.Depth.right.Z");
     assert_string_equal(right.kind[ROLE_NORMAL].channels[2]->name, "VL.Normal.right.Z");
     add_part(openexr, "", "", "R|G|B|Z|left.R|left.G|left.B|left.Z");
     set_multi_view(openexr, "right", "left");
-    const struct roles first = resolve(openexr, &(struct role_request){{NULL}, "right", false});
-    const struct roles second = resolve(openexr, &(struct role_request){{NULL}, "left", false});
+    const struct roles first =
+        resolve(openexr, &(struct role_request){{NULL}, "right", false, {NULL}});
+    const struct roles second =
+        resolve(openexr, &(struct role_request){{NULL}, "left", false, {NULL}});
     assert_string_equal(first.kind[ROLE_DEPTH].channels[0]->name, "Z");
     assert_string_equal(second.kind[ROLE_DEPTH].channels[0]->name, "left.Z");
     assert_string_equal(second.kind[ROLE_COLOR].channels[1]->name, "left.G");
@@ -395,7 +411,8 @@ static void deep_data_is_refused_as_such(void **state)
     (void)state;
     add_part(sheet, "", "", "A|Z|ZBack");
     sheet->parts[0].deep = true;
-    const struct tool_error err = refuse(sheet, &(struct role_request){{NULL}, NULL, false});
+    const struct tool_error err =
+        refuse(sheet, &(struct role_request){{NULL}, NULL, false, {NULL}});
     assert_int_equal(err.code, EXIT_INPUT);
     assert_non_null(strstr(err.message, "deep data is not supported"));
     free(sheet);
@@ -407,7 +424,7 @@ static void no_normals_means_none(void **state)
     (void)state;
     add_part(sheet, "", "", "Z|N.X|N.Y|N.Z");
     assert_false(
-        resolve(sheet, &(struct role_request){{NULL}, NULL, true}).kind[ROLE_NORMAL].found);
+        resolve(sheet, &(struct role_request){{NULL}, NULL, true, {NULL}}).kind[ROLE_NORMAL].found);
     free(sheet);
 }
 
@@ -417,7 +434,8 @@ static void existing_ao_is_reported(void **state)
     (void)state;
     add_part(sheet, "", "", "Z|AO.R|AO.G|AO.B");
     assert_string_equal(
-        resolve(sheet, &(struct role_request){{NULL}, NULL, false}).kind[ROLE_AO].label, "AO.R");
+        resolve(sheet, &(struct role_request){{NULL}, NULL, false, {NULL}}).kind[ROLE_AO].label,
+        "AO.R");
     free(sheet);
 }
 

@@ -35,14 +35,14 @@ const char *pixel_type_name(enum exr_pixel_type type)
     return names[type];
 }
 
-static bool check_role(const struct exr_info *info, const struct role *role, struct tool_error *err)
+static bool check_role(const struct role *role, struct tool_error *err)
 {
     for (size_t i = 0; i <= ROLE_MAX_COMPONENTS; i++) {
         const struct exr_channel *c = role->channels[i];
         if (c && (c->x_sampling != 1 || c->y_sampling != 1))
             return fail(err, EXIT_INPUT,
-                        "%s: channel '%s' is sub-sampled %dx%d, want full resolution", info->path,
-                        c->name, (int)c->x_sampling, (int)c->y_sampling);
+                        "%s: channel '%s' is sub-sampled %dx%d, want full resolution",
+                        role->info->path, c->name, (int)c->x_sampling, (int)c->y_sampling);
     }
     return true;
 }
@@ -90,10 +90,10 @@ static void fill(float *values, size_t count, float value)
 
 /* A role with so many floats per texel in the window of the depth; missing: what its own window
  * lacks, and a fourth component that is not there. */
-static float *read_role(const struct exr_info *info, const struct gbuffer *g,
-                        const struct role *role, size_t components, float missing,
-                        struct tool_error *err)
+static float *read_role(const struct gbuffer *g, const struct role *role, size_t components,
+                        float missing, struct tool_error *err)
 {
+    const struct exr_info *info = role->info;
     const struct exr_box *box = &info->parts[role->part].data_window;
     size_t width = (size_t)((int64_t)box->x_max - box->x_min + 1);
     size_t height = (size_t)((int64_t)box->y_max - box->y_min + 1), texels;
@@ -130,43 +130,43 @@ static bool wants_positions(const struct gbuffer *g)
            (g->roles.kind[ROLE_POSITION].found && !g->camera.source[0]);
 }
 
-static bool use_positions(const struct exr_info *info, struct gbuffer *g, struct report *report,
-                          struct tool_error *err)
+static bool use_positions(struct gbuffer *g, struct report *report, struct tool_error *err)
 {
-    const enum role_kind kind = g->depth_type == DEPTH_POSITION ? ROLE_DEPTH : ROLE_POSITION;
+    const struct role *role =
+        &g->roles.kind[g->depth_type == DEPTH_POSITION ? ROLE_DEPTH : ROLE_POSITION];
     if (!wants_positions(g))
         return true;
-    float *positions = read_role(info, g, &g->roles.kind[kind], 4, 0.0f, err);
-    const bool ok = positions && gbuffer_use_positions(g, positions, info->path, report, err);
+    float *positions = read_role(g, role, 4, 0.0f, err);
+    const bool ok = positions && gbuffer_use_positions(g, positions, role->info->path, report, err);
     free(positions);
     return ok;
 }
 
-static bool read_depth(const struct exr_info *info, struct gbuffer *g, struct tool_error *err)
+static bool read_depth(struct gbuffer *g, struct tool_error *err)
 {
     const struct role *role = &g->roles.kind[ROLE_DEPTH];
-    g->depth = allocate(gbuffer_texels(g), 1, info->path, err);
+    g->depth = allocate(gbuffer_texels(g), 1, role->info->path, err);
     if (g->depth && g->depth_type == DEPTH_POSITION)
         return true; /* filled when the camera is known */
     const struct exr_read read = {role->channels[0]->name, g->depth, 1};
-    return g->depth && exr_read_channels(info, role->part, &read, 1, err);
+    return g->depth && exr_read_channels(role->info, role->part, &read, 1, err);
 }
 
 /* What is known beside the depth. A window that lacks a texel knows nothing of it: NaN. */
-static bool read_behind(const struct exr_info *info, struct gbuffer *g, enum role_kind kind,
-                        float **values, struct tool_error *err)
+static bool read_behind(struct gbuffer *g, enum role_kind kind, float **values,
+                        struct tool_error *err)
 {
     const struct role *role = &g->roles.kind[kind];
     if (!role->found)
         return true;
-    *values = read_role(info, g, role, 1, NAN, err);
+    *values = read_role(g, role, 1, NAN, err);
     return *values != NULL;
 }
 
-static bool read_color(const struct exr_info *info, struct gbuffer *g, struct tool_error *err)
+static bool read_color(struct gbuffer *g, struct tool_error *err)
 {
     const struct role *role = &g->roles.kind[ROLE_COLOR];
-    g->color = read_role(info, g, role, 4, 0.0f, err);
+    g->color = read_role(g, role, 4, 0.0f, err);
     if (!g->color)
         return false;
     g->color_has_alpha = role->channels[ROLE_MAX_COMPONENTS] != NULL;
@@ -183,10 +183,10 @@ static uint64_t box_texels(const struct exr_box *box)
 
 /* Bytes per texel of a role with so many components, and what reading it takes for a while: the
  * decoder and, if its window is another, an image of that. */
-static void add_role(const struct exr_info *info, const struct gbuffer *g, const struct role *role,
-                     uint64_t components, uint64_t *texel_bytes, uint64_t *for_a_while)
+static void add_role(const struct gbuffer *g, const struct role *role, uint64_t components,
+                     uint64_t *texel_bytes, uint64_t *for_a_while)
 {
-    const struct exr_part *part = &info->parts[role->part];
+    const struct exr_part *part = &role->info->parts[role->part];
     const bool same = same_box(&part->data_window, &g->data_window);
     const uint64_t role_bytes = components * sizeof(float);
     const uint64_t bytes =
@@ -199,28 +199,56 @@ static void add_role(const struct exr_info *info, const struct gbuffer *g, const
 static bool check_budget(const struct exr_info *info, const struct gbuffer_options *options,
                          const struct gbuffer *g, struct tool_error *err)
 {
-    const struct role *normal = &g->roles.kind[ROLE_NORMAL], *color = &g->roles.kind[ROLE_COLOR];
+    const struct role *depth = &g->roles.kind[ROLE_DEPTH], *normal = &g->roles.kind[ROLE_NORMAL],
+                      *color = &g->roles.kind[ROLE_COLOR];
     const struct placement placement = placement_of(&g->data_window, &g->display_window);
     const uint64_t work_texels =
         ((uint64_t)g->width + placement.left) * (g->height + placement.top);
     uint64_t texel_bytes = sizeof(float),
-             for_a_while = info->parts[g->roles.kind[ROLE_DEPTH].part].decode_bytes;
+             for_a_while = depth->info->parts[depth->part].decode_bytes;
     if (!budget_allows_pixels(&options->budget, info->path, g->width, g->height, err))
         return false;
     if (normal->found)
-        add_role(info, g, normal, 4, &texel_bytes, &for_a_while);
+        add_role(g, normal, 4, &texel_bytes, &for_a_while);
     if (wants_positions(g))
-        add_role(info, g, &g->roles.kind[ROLE_POSITION], 4, &texel_bytes, &for_a_while);
+        add_role(g, &g->roles.kind[ROLE_POSITION], 4, &texel_bytes, &for_a_while);
     if (options->want_color)
-        add_role(info, g, color, 4, &texel_bytes, &for_a_while);
+        add_role(g, color, 4, &texel_bytes, &for_a_while);
     for (int kind = ROLE_THICKNESS; kind < ROLE_KINDS; kind++)
         if (g->roles.kind[kind].found)
-            add_role(info, g, &g->roles.kind[kind], 1, &texel_bytes, &for_a_while);
+            add_role(g, &g->roles.kind[kind], 1, &texel_bytes, &for_a_while);
     const uint64_t work = work_texels * (options->work_texel_bytes +
                                          (normal->found ? options->work_normals_texel_bytes : 0));
     const uint64_t bytes =
         options->held_bytes + work_texels * texel_bytes + (for_a_while > work ? for_a_while : work);
     return budget_allows_memory(&options->budget, info->path, g->width, g->height, bytes, err);
+}
+
+/* What lies in several files must be one picture. */
+static bool check_file(const struct exr_info *info, size_t part, const struct gbuffer *g,
+                       struct tool_error *err)
+{
+    const struct exr_box *is = &info->parts[part].display_window, *want = &g->display_window;
+    const char *depth = g->roles.kind[ROLE_DEPTH].info->path;
+    if (same_box(is, want))
+        return true;
+    fail_hint(err, "give files of one frame and size, rendered by one camera");
+    return fail(err, EXIT_INPUT,
+                "%s: display window (%d %d) - (%d %d), but the depth in %s has (%d %d) - (%d %d)",
+                info->path, is->x_min, is->y_min, is->x_max, is->y_max, depth, want->x_min,
+                want->y_min, want->x_max, want->y_max);
+}
+
+static bool check_files(const struct exr_info *info, const struct gbuffer_options *options,
+                        const struct gbuffer *g, struct tool_error *err)
+{
+    for (int kind = ROLE_DEPTH; kind < ROLE_FILES; kind++) {
+        const struct role *role = &g->roles.kind[kind];
+        const bool is_read = role->found && (kind != ROLE_COLOR || options->want_color);
+        if (is_read && role->info != info && !check_file(role->info, role->part, g, err))
+            return false;
+    }
+    return g->roles.kind[ROLE_DEPTH].info == info || check_file(info, 0, g, err);
 }
 
 /* Everything that the header alone decides. */
@@ -231,18 +259,20 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
     if (!roles_resolve(info, &options->roles, &g->roles, err))
         return false;
     const struct role *depth = &g->roles.kind[ROLE_DEPTH];
-    const struct exr_part *part = &info->parts[depth->part];
+    const struct exr_part *part = &depth->info->parts[depth->part];
     int64_t width = (int64_t)part->data_window.x_max - part->data_window.x_min + 1;
     int64_t height = (int64_t)part->data_window.y_max - part->data_window.y_min + 1;
     if (width < 1 || height < 1 || width > MAX_EXTENT || height > MAX_EXTENT)
         return fail(err, EXIT_INPUT, "%s: data window is %lld x %lld, want 1 to %d texels",
-                    info->path, (long long)width, (long long)height, MAX_EXTENT);
+                    depth->info->path, (long long)width, (long long)height, MAX_EXTENT);
     g->width = (uint32_t)width;
     g->height = (uint32_t)height;
     g->data_window = part->data_window;
     g->display_window = part->display_window;
     g->pixel_aspect = part->pixel_aspect;
-    camera_resolve(&options->camera, camera_file, info, depth->part, &g->camera);
+    camera_resolve(&options->camera, camera_file, depth->info, depth->part, &g->camera);
+    if (!g->camera.source[0] && depth->info != info)
+        camera_resolve(&options->camera, camera_file, info, 0, &g->camera);
     if (g->camera.unsupported[0]) {
         fail_hint(err, "if it is one after all: --fov, --ortho or --camera");
         return fail(err, EXIT_CHANNELS,
@@ -259,10 +289,11 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
         return fail(err, EXIT_CHANNELS, "%s: no colour found, which --mode comp needs", info->path);
     }
     for (int kind = ROLE_THICKNESS; kind < ROLE_KINDS; kind++)
-        if (!check_role(info, &g->roles.kind[kind], err))
+        if (!check_role(&g->roles.kind[kind], err))
             return false;
-    return check_role(info, depth, err) && check_role(info, &g->roles.kind[ROLE_NORMAL], err) &&
-           (!options->want_color || check_role(info, &g->roles.kind[ROLE_COLOR], err)) &&
+    return check_files(info, options, g, err) && check_role(depth, err) &&
+           check_role(&g->roles.kind[ROLE_NORMAL], err) &&
+           (!options->want_color || check_role(&g->roles.kind[ROLE_COLOR], err)) &&
            check_budget(info, options, g, err);
 }
 
@@ -274,25 +305,27 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     struct gbuffer *g = gbuffer;
     if (!resolve(info, options, camera_file, g, err))
         return false;
+    const struct role *depth = &g->roles.kind[ROLE_DEPTH], *normal = &g->roles.kind[ROLE_NORMAL];
+    const struct exr_info *normals = normal->found ? normal->info : info;
     if (g->camera.remark[0])
         report_warn(report, "camera remark", "%s: %s", info->path, g->camera.remark);
-    if (!read_depth(info, g, err))
+    if (!read_depth(g, err))
         goto failed;
-    if (g->roles.kind[ROLE_NORMAL].found) {
-        g->normals = read_role(info, g, &g->roles.kind[ROLE_NORMAL], 4, 0.0f, err);
+    if (normal->found) {
+        g->normals = read_role(g, normal, 4, 0.0f, err);
         if (!g->normals)
             goto failed;
     }
-    if (!use_positions(info, g, report, err) ||
-        !gbuffer_find_camera(g, options, info->path, report, err) ||
-        !read_behind(info, g, ROLE_THICKNESS, &g->thickness, err) ||
-        (!g->thickness && !read_behind(info, g, ROLE_BACK_DEPTH, &g->thickness, err)) ||
-        !read_behind(info, g, ROLE_LAYER2, &g->second_depth, err) ||
-        !gbuffer_prepare_depth(g, options, info->path, report, err))
+    if (!use_positions(g, report, err) ||
+        !gbuffer_find_camera(g, options, depth->info->path, report, err) ||
+        !read_behind(g, ROLE_THICKNESS, &g->thickness, err) ||
+        (!g->thickness && !read_behind(g, ROLE_BACK_DEPTH, &g->thickness, err)) ||
+        !read_behind(g, ROLE_LAYER2, &g->second_depth, err) ||
+        !gbuffer_prepare_depth(g, options, depth->info->path, report, err))
         goto failed;
-    if (!gbuffer_prepare_normals(g, options, info->path, report, err))
+    if (!gbuffer_prepare_normals(g, options, normals->path, report, err))
         goto failed;
-    if (options->want_color && !read_color(info, g, err))
+    if (options->want_color && !read_color(g, err))
         goto failed;
     return true;
 failed:

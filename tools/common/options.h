@@ -28,6 +28,7 @@ struct options {
     enum command command;
     bool help, version;
     const char *input;
+    const char *file[ROLE_FILES]; /* of what is not in input; may hold a frame token */
 
     const char *output, *frames, *part_name, *preview;
     const char *like; /* EXR file whose record holds the settings; may hold a frame token */

@@ -462,6 +462,12 @@ const struct option_row option_table[] = {
      .help = "channel, layer or part/channel. Default: found by the names that renderers use",
      .commands = RENDER | INSPECT, .apply = apply_text,
      .offset = AT(gbuffer.roles.name[ROLE_DEPTH])},
+    {.name = "depth-file", .argument = "FILE",
+     .help = "EXR file that the depth is in, if not in INPUT; with a frame token if INPUT has one",
+     .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(file[ROLE_DEPTH]),
+     .more = "For renderers that write a file for each element. What is alone in such a file "
+             "needs no name: R of a grey depth pass is depth. Its display window must be that "
+             "of INPUT. The camera is that of this file's header, or else of INPUT's."},
     {.name = "depth-type", .argument = "TYPE", .fallback = "auto",
      .help = "planar: along the view axis; radial: from the eye; radial-near: along the ray from"
              " the near plane (Mitsuba); inverse: 1/planar (Nuke); device: a depth buffer. auto:"
@@ -474,6 +480,10 @@ const struct option_row option_table[] = {
      .help = "layer of the normals, or none: derive them from depth",
      .commands = RENDER | INSPECT, .apply = apply_normal,
      .offset = AT(gbuffer.roles.name[ROLE_NORMAL])},
+    {.name = "normal-file", .argument = "FILE",
+     .help = "EXR file that the normals are in, likewise",
+     .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(file[ROLE_NORMAL]),
+     .more = "R, G and B alone in it are normals."},
     {.name = "normal-space", .argument = "SPACE", .fallback = "auto",
      .help = "world or camera. auto: by name, camera and looks",
      .commands = RENDER | INSPECT, .apply = apply_word, .offset = AT(gbuffer.normal_space),
@@ -489,6 +499,9 @@ const struct option_row option_table[] = {
      .help = "layer of the colour, for --mode comp",
      .commands = RENDER | INSPECT, .apply = apply_text,
      .offset = AT(gbuffer.roles.name[ROLE_COLOR])},
+    {.name = "color-file", .argument = "FILE",
+     .help = "EXR file that the colour is in, likewise",
+     .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(file[ROLE_COLOR])},
     {.name = "thickness-channel", .argument = "NAME",
      .help = "channel of how thick things are at each texel, along the view axis, in scene units; "
              "for vbao and raymarch",

@@ -29,11 +29,12 @@ static void ao_part_name(const struct options *o, const char *view, char name[NA
     snprintf(name, NAME_BYTES, "%s%s%s", base, *view ? "." : "", view);
 }
 
-static void color_part_name(const struct options *o, const struct exr_info *info,
-                            const struct rendered_view *view, size_t view_count,
-                            char name[NAME_BYTES])
+static void color_part_name(const struct options *o, const struct rendered_view *view,
+                            size_t view_count, char name[NAME_BYTES])
 {
-    const struct exr_part *part = &info->parts[view->gbuffer.roles.kind[ROLE_COLOR].part];
+    const struct role *color = &view->gbuffer.roles.kind[ROLE_COLOR];
+    const struct exr_info *info = color->info;
+    const struct exr_part *part = &info->parts[color->part];
     const char *base = o->part_name ? o->part_name : part->name ? part->name : "";
     bool shared =
         view_count > 1 && (o->part_name || info->part_count == 1 || !part->view || !*part->view);
@@ -142,6 +143,7 @@ static bool fill_part(const struct options *o, const struct frame_source *source
                       struct tool_error *err)
 {
     const struct gbuffer *g = &view->gbuffer;
+    const struct role *likeness = &g->roles.kind[o->mode == OUTPUT_COMP ? ROLE_COLOR : ROLE_DEPTH];
     version_string(storage->version);
     storage->params = record_write(o, &view->setting, view->name, g, device);
     if (!storage->params)
@@ -150,7 +152,7 @@ static bool fill_part(const struct options *o, const struct frame_source *source
     storage->strings[1] = (struct exr_string){"vkao/params", storage->params};
     storage->strings[2] = (struct exr_string){"vkao/source", file_name(source->info.path)};
     if (o->mode == OUTPUT_COMP)
-        color_part_name(o, &source->info, view, source->view_count, storage->name);
+        color_part_name(o, view, source->view_count, storage->name);
     else
         ao_part_name(o, view->name, storage->name);
     /* A file that names its views in channels must not name them in parts as well. */
@@ -166,8 +168,8 @@ static bool fill_part(const struct options *o, const struct frame_source *source
         .channel_count = fill_channels(o, view, storage->channels),
         .strings = storage->strings,
         .string_count = STRINGS,
-        .attributes_from = &source->info,
-        .attributes_from_part = g->roles.kind[ROLE_DEPTH].part,
+        .attributes_from = likeness->info,
+        .attributes_from_part = likeness->part,
     };
     return true;
 }

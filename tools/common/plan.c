@@ -1,25 +1,68 @@
 /* SPDX-License-Identifier: MIT */
 #include "plan.h"
 
+#include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-enum path_kind { PATH_INPUT, PATH_OUTPUT, PATH_CAMERA, PATH_LIKE, PATH_PREVIEW, PATH_KINDS };
+enum path_kind {
+    PATH_INPUT,
+    PATH_OUTPUT,
+    PATH_PREVIEW,
+    PATH_CAMERA,
+    PATH_LIKE,
+    PATH_DEPTH,
+    PATH_NORMAL,
+    PATH_COLOR,
+    PATH_KINDS
+};
 
 struct patterns {
     struct frame_pattern of[PATH_KINDS];
     bool given[PATH_KINDS];
 };
 
-static const char *const path_names[PATH_KINDS] = {"INPUT", "--output", "--camera", "--like",
-                                                   "--preview"};
+/* one_for_all: one file may serve all frames. */
+static const struct {
+    const char *name;
+    bool is_written, one_for_all;
+} path_table[PATH_KINDS] = {
+    [PATH_INPUT] = {"INPUT", false, false},          [PATH_OUTPUT] = {"--output", true, false},
+    [PATH_PREVIEW] = {"--preview", true, false},     [PATH_CAMERA] = {"--camera", false, true},
+    [PATH_LIKE] = {"--like", false, true},           [PATH_DEPTH] = {"--depth-file", false, false},
+    [PATH_NORMAL] = {"--normal-file", false, false}, [PATH_COLOR] = {"--color-file", false, false},
+};
+
+/* What the options say. */
+static const char *given_path(const struct options *o, enum path_kind kind)
+{
+    const char *const paths[PATH_KINDS] = {
+        [PATH_INPUT] = o->input,
+        [PATH_OUTPUT] = o->output,
+        [PATH_PREVIEW] = o->preview,
+        [PATH_CAMERA] = o->camera_file,
+        [PATH_LIKE] = o->like,
+        [PATH_DEPTH] = o->file[ROLE_DEPTH],
+        [PATH_NORMAL] = o->file[ROLE_NORMAL],
+        [PATH_COLOR] = o->file[ROLE_COLOR],
+    };
+    return paths[kind];
+}
 
 static char **path_of(struct plan_frame *frame, enum path_kind kind)
 {
-    char **paths[PATH_KINDS] = {&frame->input, &frame->output, &frame->camera, &frame->like,
-                                &frame->preview};
+    char **paths[PATH_KINDS] = {
+        [PATH_INPUT] = &frame->input,
+        [PATH_OUTPUT] = &frame->output,
+        [PATH_PREVIEW] = &frame->preview,
+        [PATH_CAMERA] = &frame->camera,
+        [PATH_LIKE] = &frame->like,
+        [PATH_DEPTH] = &frame->file[ROLE_DEPTH],
+        [PATH_NORMAL] = &frame->file[ROLE_NORMAL],
+        [PATH_COLOR] = &frame->file[ROLE_COLOR],
+    };
     return paths[kind];
 }
 
@@ -42,19 +85,18 @@ static bool parse_pattern(const char *path, bool is_read, struct frame_pattern *
 static bool parse_patterns(const struct options *o, struct patterns *patterns,
                            struct tool_error *err)
 {
-    const char *paths[PATH_KINDS] = {o->input, o->output, o->camera_file, o->like, o->preview};
     *patterns = (struct patterns){0};
     for (int k = 0; k < PATH_KINDS; k++) {
-        patterns->given[k] = paths[k] != NULL;
-        bool is_read = k == PATH_INPUT || k == PATH_CAMERA || k == PATH_LIKE;
-        if (paths[k] && !parse_pattern(paths[k], is_read, &patterns->of[k], err))
+        const char *path = given_path(o, (enum path_kind)k);
+        patterns->given[k] = path != NULL;
+        if (path && !parse_pattern(path, !path_table[k].is_written, &patterns->of[k], err))
             return false;
     }
     bool sequence = frame_pattern_has_token(&patterns->of[PATH_INPUT]);
     for (int k = PATH_OUTPUT; k < PATH_KINDS; k++)
         if (!sequence && patterns->given[k] && frame_pattern_has_token(&patterns->of[k]))
             return fail(err, EXIT_USAGE, "%s '%s' has a frame token, but INPUT '%s' has none",
-                        path_names[k], paths[k], o->input);
+                        path_table[k].name, given_path(o, (enum path_kind)k), o->input);
     return true;
 }
 
@@ -64,19 +106,17 @@ static void free_patterns(struct patterns *patterns)
         frame_pattern_free(&patterns->of[k]);
 }
 
-/* Many frames written to one file would leave the last alone. */
+/* Many frames written to one file would leave the last alone, and one depth is not that of all. */
 static bool check_tokens(const struct options *o, const struct patterns *patterns, size_t frames,
                          struct tool_error *err)
 {
-    static const enum path_kind needed[] = {PATH_INPUT, PATH_OUTPUT, PATH_PREVIEW};
-    const char *paths[PATH_KINDS] = {o->input, o->output, o->camera_file, o->like, o->preview};
-    for (size_t i = 0; frames > 1 && i < sizeof needed / sizeof *needed; i++) {
-        enum path_kind k = needed[i];
-        if (!patterns->given[k] || frame_pattern_has_token(&patterns->of[k]))
+    for (int k = 0; frames > 1 && k < PATH_KINDS; k++) {
+        if (!patterns->given[k] || path_table[k].one_for_all ||
+            frame_pattern_has_token(&patterns->of[k]))
             continue;
         fail_hint(err, "put #### where the frame number belongs");
         return fail(err, EXIT_USAGE, "%s '%s' has no frame token, but there are %zu frames",
-                    path_names[k], paths[k], frames);
+                    path_table[k].name, given_path(o, (enum path_kind)k), frames);
     }
     return true;
 }
@@ -191,15 +231,14 @@ static bool same_file(const char *a, const char *b)
 
 static bool check_distinct(struct plan_frame *frame, struct tool_error *err)
 {
-    static const enum path_kind written[] = {PATH_OUTPUT, PATH_PREVIEW};
-    for (size_t w = 0; w < sizeof written / sizeof *written; w++) {
-        const char *path = *path_of(frame, written[w]);
+    for (int w = 0; w < PATH_KINDS; w++) {
+        const char *path = path_table[w].is_written ? *path_of(frame, (enum path_kind)w) : NULL;
         for (int k = 0; path && k < PATH_KINDS; k++) {
             const char *other = *path_of(frame, (enum path_kind)k);
-            if (k != (int)written[w] && other && same_file(path, other)) {
+            if (k != w && other && same_file(path, other)) {
                 fail_hint(err, "write to another file; --mode append keeps all of the input in it");
                 return fail(err, EXIT_USAGE, "%s: %s and %s are the same file", path,
-                            path_names[written[w]], path_names[k]);
+                            path_table[w].name, path_table[k].name);
             }
         }
     }
@@ -237,6 +276,25 @@ bool plan_check_outputs(const struct options *options, const struct plan_frame *
     return true;
 }
 
+/* A camera that the hundredth frame lacks is found before the first is computed. The input may be
+ * missing: what there is of a sequence is told when its frame comes. */
+static bool check_there(const struct plan *plan, struct tool_error *err)
+{
+    for (int k = PATH_INPUT + 1; k < PATH_KINDS; k++) {
+        for (size_t i = 0; !path_table[k].is_written && i < plan->count; i++) {
+            const char *path = *path_of(&plan->frames[i], (enum path_kind)k);
+            struct stat s;
+            if (!path || stat(path, &s) == 0)
+                continue;
+            if (plan->is_sequence)
+                fail_hint(err, "it is %s of frame %" PRId64 ", input %s", path_table[k].name,
+                          plan->frames[i].number, plan->frames[i].input);
+            return fail(err, EXIT_INPUT, "%s: cannot open: %s", path, strerror(errno));
+        }
+    }
+    return true;
+}
+
 bool plan_make(const struct options *options, struct plan *plan, struct tool_error *err)
 {
     struct patterns patterns;
@@ -246,6 +304,7 @@ bool plan_make(const struct options *options, struct plan *plan, struct tool_err
         ok = check_distinct(&plan->frames[i], err);
     for (size_t i = 0; ok && options->output && !options->continue_on_error && i < plan->count; i++)
         ok = plan_check_outputs(options, &plan->frames[i], err);
+    ok = ok && (options->continue_on_error || check_there(plan, err));
     free_patterns(&patterns);
     if (!ok)
         plan_free(plan);

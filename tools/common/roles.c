@@ -321,10 +321,13 @@ static void search_row(struct search *s, const struct role_row *row)
 
 /* --- Names given by the user --- */
 
+/* wanted: NULL stands for every layer. */
 static bool names_layer(const struct search *s, size_t part_index,
                         const struct exr_channel *channel, const struct channel_name *name,
                         const char *wanted)
 {
+    if (!wanted)
+        return true;
     const struct exr_part *part = &s->info->parts[part_index];
     size_t length = strlen(wanted);
     return strcmp(name->layer, wanted) == 0 ||
@@ -402,6 +405,8 @@ static size_t common_prefix(const char *a, const char *b)
 /* Two view layers each have normals: those that go with the depth are meant. */
 static void prefer_neighbours(struct search *s, const struct role *depth)
 {
+    if (depth->info != s->info)
+        return;
     size_t best = 0, kept = 0;
     const char *near_name = depth->channels[0]->name;
     for (size_t i = 0; i < s->count; i++) {
@@ -453,6 +458,7 @@ static void take_hit(const struct search *s, const struct hit *hit, const struct
                      struct role *role)
 {
     role->found = true;
+    role->info = s->info;
     role->part = hit->part;
     memcpy(role->channels, hit->channels, sizeof role->channels);
     role->channel_count = hit->channel_count;
@@ -512,9 +518,9 @@ static bool fail_missing(const struct exr_info *info, const char *view, enum rol
              *view ? " in view " : "", view, channels);
         fail_hint(err, "--%s takes a channel, a layer or part/channel", kind_names[kind]);
     } else {
-        fail(err, EXIT_CHANNELS, "%s: no depth channel found%s%s; channels: %s", info->path,
-             *view ? " in view " : "", view, channels);
-        fail_hint(err, "say which it is: --depth NAME");
+        fail(err, EXIT_CHANNELS, "%s: no %s channel found%s%s; channels: %s", info->path,
+             kind_names[kind], *view ? " in view " : "", view, channels);
+        fail_hint(err, "say which it is: --%s NAME", kind_names[kind]);
     }
     text_free(&list);
     return false;
@@ -605,6 +611,24 @@ static bool take_positions(struct roles *roles)
     return true;
 }
 
+/* In a file of its own a role needs no name: R, G and B of a normal pass are normals. */
+static bool resolve_alone(struct search *s, enum role_kind kind, struct role *role,
+                          struct tool_error *err)
+{
+    if (!resolve_found(s, kind, &(struct role){0}, role, err) || role->found)
+        return role->found;
+    s->count = 0;
+    for (size_t p = 0; p < s->info->part_count; p++)
+        if (part_has_view(&s->info->parts[p], s->view))
+            search_layer(s, kind, p, NULL);
+    if (s->count == 0)
+        return fail_missing(s->info, s->view, kind, NULL, err);
+    if (s->count > 1)
+        return fail_ambiguous(s, kind, err);
+    take_hit(s, &s->hits[0], NULL, role);
+    return true;
+}
+
 bool roles_resolve(const struct exr_info *info, const struct role_request *request,
                    struct roles *roles, struct tool_error *err)
 {
@@ -615,9 +639,12 @@ bool roles_resolve(const struct exr_info *info, const struct role_request *reque
         const char *name = request->name[kind];
         if (kind == ROLE_NORMAL && request->no_normals)
             continue;
-        bool ok =
-            name ? resolve_named(&s, (enum role_kind)kind, name, role, err)
-                 : resolve_found(&s, (enum role_kind)kind, &roles->kind[ROLE_DEPTH], role, err);
+        const bool is_alone = kind < ROLE_FILES && request->file[kind];
+        s.info = is_alone ? request->file[kind] : info;
+        bool ok = name       ? resolve_named(&s, (enum role_kind)kind, name, role, err)
+                  : is_alone ? resolve_alone(&s, (enum role_kind)kind, role, err)
+                             : resolve_found(&s, (enum role_kind)kind, &roles->kind[ROLE_DEPTH],
+                                             role, err);
         if (!ok)
             return false;
     }

@@ -23,6 +23,8 @@ enum role_kind {
     ROLE_LAYER2,
     ROLE_KINDS
 };
+/* Depth, normals and colour may each lie in a file of its own. */
+enum { ROLE_FILES = ROLE_COLOR + 1 };
 /* One number per texel. */
 static inline bool role_is_scalar(enum role_kind kind)
 {
@@ -80,6 +82,7 @@ extern const size_t role_never_depth_count;
 /* A role as found. Pointers lead into the exr_info. */
 struct role {
     bool found;
+    const struct exr_info *info; /* the file it is in */
     size_t part;
     const struct exr_channel
         *channels[ROLE_MAX_COMPONENTS + 1]; /* the last: alpha of colour, or NULL */
@@ -98,6 +101,9 @@ struct role_request {
     const char *name[ROLE_KINDS]; /* channel, layer or part/channel; NULL = find it */
     const char *view;             /* NULL or "" in files without views */
     bool no_normals;              /* --normal none */
+    /* Where the role is, if not in the file that is resolved. What lies in a file of its own is
+     * found there by any name, if only one thing can be meant. */
+    const struct exr_info *file[ROLE_FILES];
 };
 
 /* Views of a file in its order: of its parts, or of a single part's multiView attribute. */

@@ -29,7 +29,16 @@ struct gbuffer_options view_options(const struct options *options, const struct 
 {
     struct gbuffer_options g = options->gbuffer;
     g.roles.view = view->name;
+    memcpy(g.roles.file, view->file, sizeof g.roles.file);
     return g;
+}
+
+static struct view view_of(const struct frame_source *source, const char *name)
+{
+    struct view view = {.name = name};
+    for (int kind = 0; kind < ROLE_FILES; kind++)
+        view.file[kind] = source->files[kind].path ? &source->files[kind] : NULL;
+    return view;
 }
 
 /* camera_name differs from name where a mono image was made by one camera of a stereo pair. */
@@ -40,7 +49,8 @@ static bool add_view(struct frame_source *source, const char *name, const char *
         return fail(err, EXIT_CHANNELS, "%s: more than %d views; choose one with --view",
                     source->info.path, MAX_VIEWS);
     struct view *view = &source->views[source->view_count++];
-    *view = (struct view){.name = name, .record = record_set_find(&source->records, camera_name)};
+    *view = view_of(source, name);
+    view->record = record_set_find(&source->records, camera_name);
     if (source->records.count > 0 && !view->record) {
         fail_hint(err, "choose a view with --view NAME");
         return fail(err, EXIT_CHANNELS, "%s: the file of --like has no record of view '%s'",
@@ -73,12 +83,13 @@ static bool add_views_with_depth(const struct options *options, const char *came
 {
     const struct exr_info *info = &source->info;
     for (size_t i = 0; i < roles_view_count(info); i++) {
-        const struct view view = {.name = roles_view_name(info, i)};
+        const struct view view = view_of(source, roles_view_name(info, i));
         struct role_request request = view_options(options, &view).roles;
         struct roles *roles = &(struct roles){0};
         struct tool_error unseen = {0};
         for (int kind = ROLE_DEPTH + 1; kind < ROLE_KINDS; kind++)
             request.name[kind] = NULL;
+        request.file[ROLE_NORMAL] = request.file[ROLE_COLOR] = NULL;
         request.no_normals = true;
         if (roles_resolve(info, &request, roles, &unseen) &&
             !add_view(source, view.name, view.name, camera_path, err))
@@ -154,6 +165,15 @@ bool frame_source_read_header(const char *path, struct frame_source *source, str
     return exr_info_read(path, &source->info, err);
 }
 
+bool frame_source_read_files(const char *const paths[ROLE_FILES], struct frame_source *source,
+                             struct tool_error *err)
+{
+    for (int kind = 0; kind < ROLE_FILES; kind++)
+        if (paths[kind] && !exr_info_read(paths[kind], &source->files[kind], err))
+            return false;
+    return true;
+}
+
 bool frame_source_read_like(const char *like_path, struct frame_source *source,
                             struct tool_error *err)
 {
@@ -170,6 +190,8 @@ bool frame_source_open(const struct options *options, const char *path, const ch
 void frame_source_close(struct frame_source *source)
 {
     exr_info_free(&source->info);
+    for (int kind = 0; kind < ROLE_FILES; kind++)
+        exr_info_free(&source->files[kind]);
     camera_set_free(&source->cameras);
     record_set_free(&source->records);
     *source = (struct frame_source){0};

@@ -16,13 +16,15 @@
 enum { MAX_VIEWS = 16 };
 
 struct view {
-    const char *name;            /* "" in files without views */
-    const struct camera *camera; /* of the camera file or of the record, or NULL */
-    const struct record *record; /* of --like, or NULL */
+    const char *name;                        /* "" in files without views */
+    const struct camera *camera;             /* of the camera file or of the record, or NULL */
+    const struct record *record;             /* of --like, or NULL */
+    const struct exr_info *file[ROLE_FILES]; /* as role_request.file */
 };
 
 struct frame_source {
     struct exr_info info;
+    struct exr_info files[ROLE_FILES]; /* of what lies in a file of its own */
     struct camera_set cameras;
     struct record_set records;
     struct view views[MAX_VIEWS];
@@ -35,6 +37,9 @@ bool frame_source_open(const struct options *options, const char *path, const ch
 /* As above, up to the header alone. */
 bool frame_source_read_header(const char *path, struct frame_source *source,
                               struct tool_error *err);
+/* The other files of the frame, by role; NULL: none of its own. */
+bool frame_source_read_files(const char *const paths[ROLE_FILES], struct frame_source *source,
+                             struct tool_error *err);
 /* Before the views are chosen: what of them the record tells. */
 bool frame_source_read_like(const char *like_path, struct frame_source *source,
                             struct tool_error *err);

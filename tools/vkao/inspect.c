@@ -61,6 +61,7 @@ static void add_roles(cJSON *object, const struct roles *roles)
         }
         cJSON *entry = cJSON_AddObjectToObject(list, kind_names[k]);
         cJSON_AddStringToObject(entry, "name", role->label);
+        cJSON_AddStringToObject(entry, "file", role->info->path);
         cJSON_AddNumberToObject(entry, "part", (double)role->part);
         cJSON_AddStringToObject(entry, "type", pixel_type_name(role->channels[0]->type));
         cJSON *channels = cJSON_AddArrayToObject(entry, "channels");
@@ -143,7 +144,8 @@ static cJSON *describe(const struct options *options, const struct plan_frame *f
 {
     struct frame_source source = {0};
     struct tool_error views_err = {0};
-    if (!frame_source_read_header(frame->input, &source, err))
+    if (!frame_source_read_header(frame->input, &source, err) ||
+        !frame_source_read_files((const char *const *)frame->file, &source, err))
         return NULL;
     const unsigned begun = json_begin();
     cJSON *root = cJSON_CreateObject();

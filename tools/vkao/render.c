@@ -143,8 +143,8 @@ static void tell_details(const struct session *s, const struct frame_source *sou
     const struct gbuffer *g = &view->gbuffer;
     for (int k = 0; k < ROLE_KINDS; k++)
         if (g->roles.kind[k].found)
-            report_detail(s->report, "%s: %s%s%s: %s (part %zu)", source->info.path, view->name,
-                          *view->name ? ": " : "", names[k], g->roles.kind[k].label,
+            report_detail(s->report, "%s: %s%s%s: %s (part %zu)", g->roles.kind[k].info->path,
+                          view->name, *view->name ? ": " : "", names[k], g->roles.kind[k].label,
                           g->roles.kind[k].part);
     report_detail(s->report, "%s: view z %.5g to %.5g, median %.5g; background %.3g %%",
                   source->info.path, g->min_z, g->max_z, g->median_z, g->background_share * 100.0);
@@ -302,12 +302,22 @@ static bool open_frame(const struct plan_frame *frame, struct options *options,
 {
     if (!plan_check_outputs(options, frame, err) ||
         !frame_source_read_header(frame->input, source, err) ||
+        !frame_source_read_files((const char *const *)frame->file, source, err) ||
         (frame->like && !frame_source_read_like(frame->like, source, err)) ||
         !frame_source_choose_views(options, frame->camera, source, err))
         return false;
     const struct record *record = source->views[0].record;
     return (!record || options_take_record(options, record, err)) &&
            output_check_names(options, frame, source, err);
+}
+
+/* A message names the file it is about, which is the input if nothing else is. */
+static bool fail_of_frame(const struct plan_frame *frame, struct tool_error *err)
+{
+    for (int kind = 0; kind < ROLE_FILES; kind++)
+        if (frame->file[kind] && text_starts_with(err->message, frame->file[kind]))
+            return false;
+    return fail_of(err, frame->input);
 }
 
 static bool render_frame(struct session *s, const struct plan_frame *frame, struct tool_error *err)
@@ -323,7 +333,7 @@ static bool render_frame(struct session *s, const struct plan_frame *frame, stru
     for (size_t i = 0; ok && i < source.view_count; i++)
         ok = render_view(s, &options, &source, &source.views[i], held_by(views, i), &views[i],
                          &times, err) ||
-             fail_of(err, frame->input);
+             fail_of_frame(frame, err);
     start = now_ms();
     char device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
     device_name(s, device, sizeof device);
