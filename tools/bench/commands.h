@@ -6,6 +6,7 @@
 #define VKAO_BENCH_COMMANDS_H_
 
 int command_copy(int argc, char **argv);
+int command_cost(int argc, char **argv);
 int command_quality(int argc, char **argv);
 int command_speed(int argc, char **argv);
 

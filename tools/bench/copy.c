@@ -5,6 +5,7 @@
 #include "commands.h"
 
 #include "arguments.h"
+#include "driver.h"
 #include "gpu.h"
 #include "json.h"
 #include "report.h"
@@ -15,7 +16,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <vulkan/vulkan.h>
 
@@ -53,7 +53,7 @@ struct copy_bench {
     double median_ms[MAX_SIZES], least_ms[MAX_SIZES]; /* NAN = does not fit the device */
     struct gpu gpu;
     struct stage_clock clock;
-    char driver[VK_MAX_DRIVER_NAME_SIZE + VK_MAX_DRIVER_INFO_SIZE];
+    struct driver_name driver;
 };
 
 /* --- Measuring --- */
@@ -134,32 +134,12 @@ static bool copy_sizes(struct copy_bench *b, struct tool_error *err)
     return false;
 }
 
-/* "NVIDIA 570.86.15"; the number alone of a driver that does not say more. */
-static void name_driver(struct copy_bench *b)
-{
-    VkExtensionProperties extensions[512];
-    uint32_t count = sizeof extensions / sizeof extensions[0];
-    VkPhysicalDeviceDriverProperties driver = {
-        .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_DRIVER_PROPERTIES};
-    snprintf(b->driver, sizeof b->driver, "0x%x", b->gpu.properties.driverVersion);
-    vkEnumerateDeviceExtensionProperties(b->gpu.physical_device, NULL, &count, extensions);
-    for (uint32_t i = 0; i < count; i++) {
-        if (strcmp(extensions[i].extensionName, VK_KHR_DRIVER_PROPERTIES_EXTENSION_NAME) != 0)
-            continue;
-        vkGetPhysicalDeviceProperties2(
-            b->gpu.physical_device,
-            &(VkPhysicalDeviceProperties2){.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
-                                           .pNext = &driver});
-        snprintf(b->driver, sizeof b->driver, "%s %s", driver.driverName, driver.driverInfo);
-    }
-}
-
 static bool measure(struct copy_bench *b, struct tool_error *err)
 {
     const struct gpu_options options = {.device = b->options->device};
     if (!sizes_choose(b->options->size, &b->sizes, err) || !gpu_create(&options, &b->gpu, err))
         return false;
-    name_driver(b);
+    b->driver = driver_name(&b->gpu);
     return stage_clock_create(&b->gpu, &b->clock, err) && copy_sizes(b, err);
 }
 
@@ -177,7 +157,7 @@ static bool print_table(const struct copy_bench *b, struct tool_error *err)
     text_add(&text,
              "%s, %s: an R32_SFLOAT image to another, medians of %u runs; GB are 10^9 bytes, read "
              "and written\n",
-             b->gpu.properties.deviceName, b->driver, b->options->runs);
+             b->gpu.properties.deviceName, b->driver.text, b->options->runs);
     for (size_t i = 0; i < b->sizes.count; i++) {
         const VkExtent2D size = b->sizes.sizes[i];
         char ms[32];
@@ -200,7 +180,7 @@ static cJSON *to_json(const struct copy_bench *b)
     cJSON_AddStringToObject(root, "device", b->gpu.properties.deviceName);
     cJSON_AddStringToObject(root, "device_type",
                             gpu_device_type_name(b->gpu.properties.deviceType));
-    cJSON_AddStringToObject(root, "driver", b->driver);
+    cJSON_AddStringToObject(root, "driver", b->driver.text);
     cJSON_AddNumberToObject(root, "runs", b->options->runs);
     cJSON *list = cJSON_AddArrayToObject(root, "copies");
     for (size_t i = 0; i < b->sizes.count; i++) {

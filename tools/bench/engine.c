@@ -118,18 +118,27 @@ void engine_frame_info(struct engine_features features, VkExtent2D extent,
     info->images = images;
 }
 
+void engine_image_formats(struct engine_images *i)
+{
+    i->depth.format = depth_format;
+    i->normals.format = i->bent.format = normal_format;
+    i->ao.format = ao_format;
+    i->color.format = i->output.format = color_format;
+}
+
 static bool create_images(struct engine *e, struct engine_images *i, struct tool_error *err)
 {
     const VkImageUsageFlags in = VK_IMAGE_USAGE_SAMPLED_BIT, out = VK_IMAGE_USAGE_STORAGE_BIT;
     struct gpu *gpu = &e->gpu;
-    return gpu_image_create(gpu, depth_format, i->extent, in, &i->depth, err) &&
-           gpu_image_create(gpu, normal_format, i->extent, in, &i->normals, err) &&
-           gpu_image_create(gpu, ao_format, i->extent, in | out, &i->ao, err) &&
+    engine_image_formats(i);
+    return gpu_image_create(gpu, i->depth.format, i->extent, in, &i->depth, err) &&
+           gpu_image_create(gpu, i->normals.format, i->extent, in, &i->normals, err) &&
+           gpu_image_create(gpu, i->ao.format, i->extent, in | out, &i->ao, err) &&
            (!e->features.bent_normals ||
-            gpu_image_create(gpu, normal_format, i->extent, in | out, &i->bent, err)) &&
+            gpu_image_create(gpu, i->bent.format, i->extent, in | out, &i->bent, err)) &&
            (!e->features.composite ||
-            (gpu_image_create(gpu, color_format, i->extent, in, &i->color, err) &&
-             gpu_image_create(gpu, color_format, i->extent, out, &i->output, err)));
+            (gpu_image_create(gpu, i->color.format, i->extent, in, &i->color, err) &&
+             gpu_image_create(gpu, i->output.format, i->extent, out, &i->output, err)));
 }
 
 /* AO takes the same time on every colour, but memory that nobody wrote may hold NaN. */
@@ -225,19 +234,15 @@ static const vkao_frame *frame_of(const struct engine *e, const struct engine_im
     return NULL;
 }
 
-static vkao_result record(struct engine *e, const struct engine_images *images,
-                          const struct config *config, float radius, VkCommandBuffer cmd)
+vkao_result engine_record(const vkao_frame *frame, VkExtent2D extent, const struct config *config,
+                          float radius, VkCommandBuffer cmd)
 {
-    const struct ao_view room = room_view(images->extent);
+    const struct ao_view room = room_view(extent);
     const vkao_view view = ao_library_view(&room);
     struct ao_job job = {0};
     config_apply(config, &job);
     job.setting.params.radius = radius;
-    stage_clock_start(&e->clock, cmd);
-    vkao_result result =
-        vkao_cmd_record(frame_of(e, images, config), cmd, &view, &job.setting.params);
-    stage_clock_stop(&e->clock);
-    return result;
+    return vkao_cmd_record(frame, cmd, &view, &job.setting.params);
 }
 
 bool engine_run(struct engine *e, const struct engine_images *images, const struct config *config,
@@ -246,7 +251,10 @@ bool engine_run(struct engine *e, const struct engine_images *images, const stru
     VkCommandBuffer cmd = gpu_begin(&e->gpu, err);
     if (!cmd)
         return false;
-    vkao_result result = record(e, images, config, radius, cmd);
+    stage_clock_start(&e->clock, cmd);
+    vkao_result result =
+        engine_record(frame_of(e, images, config), images->extent, config, radius, cmd);
+    stage_clock_stop(&e->clock);
     double start = runs_now_ms();
     bool submitted = gpu_submit(&e->gpu, cmd, err);
     double wall = runs_now_ms() - start;

@@ -49,6 +49,8 @@ struct engine_images {
 
 /* Whether its images can have that size, before anyone draws it. Errors: EXIT_DEVICE. */
 bool engine_check_size(const struct engine *e, VkExtent2D size, struct tool_error *err);
+/* The formats that its images are made in. */
+void engine_image_formats(struct engine_images *images);
 bool engine_images_create(struct engine *e, const struct room *room, struct engine_images *images,
                           struct tool_error *err);
 void engine_images_destroy(struct engine *e, struct engine_images *images);
@@ -56,6 +58,10 @@ void engine_images_destroy(struct engine *e, struct engine_images *images);
 /* Records, submits and waits once. */
 bool engine_run(struct engine *e, const struct engine_images *images, const struct config *config,
                 float radius, double ms[STAGES], struct tool_error *err);
+
+/* Records one frame of the room. */
+vkao_result engine_record(const vkao_frame *frame, VkExtent2D extent, const struct config *config,
+                          float radius, VkCommandBuffer cmd);
 
 /* What is compiled for a setting. */
 vkao_effect_info engine_effect_info(struct engine_features features, const struct config *config);

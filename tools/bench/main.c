@@ -16,6 +16,7 @@ static const struct command {
     int (*run)(int argc, char **argv);
 } commands[] = {
     {"quality", "error against ray-traced truth over a folder of G-buffers", command_quality},
+    {"cost", "instructions of every pass on AMD GPUs that need not be there", command_cost},
     {"copy", "how fast the device moves bytes: the floor under every stage", command_copy},
     {"speed", "time of every stage, at any size, beside other programs", command_speed},
 };
