@@ -72,8 +72,9 @@ struct cost_row {
     const struct family *family;
     struct config config;
     char pass[32];
-    double threads; /* a texel of the image; 0 = the device decides */
-    unsigned instructions, registers, waves, shared_bytes;
+    double threads;      /* a texel of the image; 0 = the device decides */
+    double instructions; /* of the pass; of a sum: those run for a texel of the image */
+    unsigned registers, waves, shared_bytes;
     struct assembly_counts counts;
     double arithmetic, texture, cycles; /* of a SIMD for 64 texels of the image */
 };
@@ -160,7 +161,7 @@ static bool add_pass(struct cost_bench *b, const struct cost_pipeline *p, uint64
     row.shared_bytes = p->shared_bytes;
     row.counts = assembly_count(p->assembly, trips);
     weigh(&row);
-    total->instructions += row.instructions;
+    total->instructions += row.counts.all * row.threads;
     total->arithmetic += row.arithmetic;
     total->texture += row.texture;
     total->cycles += row.cycles;
@@ -233,10 +234,10 @@ static void add_line(const struct cost_row *row, struct text *text)
 {
     text_add(text, "%-10s%-15s%-16s", row->family->name, row->config.name, row->pass);
     if (strcmp(row->pass, "total") == 0)
-        text_add(text, "%7s%6u%6s%6s%6s%5s%5s%6s%6s", "", row->instructions, "", "", "", "", "", "",
-                 "");
+        text_add(text, "%7s%6.0f%6s%6s%6s%5s%5s%6s%6s", "", row->instructions, "", "", "", "", "",
+                 "", "");
     else
-        text_add(text, "%7.4f%6u%6.0f%6.0f%6.0f%5u%5u%6u%6u", row->threads, row->instructions,
+        text_add(text, "%7.4f%6.0f%6.0f%6.0f%6.0f%5u%5u%6u%6u", row->threads, row->instructions,
                  row->counts.vector, row->counts.transcendental, row->counts.image,
                  row->counts.loops, row->registers, row->waves, row->shared_bytes);
     text_add(text, "%7.0f%8.0f%7.0f\n", row->arithmetic, row->texture, row->cycles);
@@ -245,14 +246,15 @@ static void add_line(const struct cost_row *row, struct text *text)
 static bool print_table(const struct cost_bench *b, struct tool_error *err)
 {
     struct text text = {0};
-    text_add(&text,
-             "%s, %u x %u\n"
-             "threads: in waves of 64, a texel of the image. VALU, trans, image: instructions of "
-             "one thread,\n"
-             "every block once, a loop of ssao as often as it runs. arith, texture, cycles: of a "
-             "SIMD for 64\n"
-             "texels of the image; cycles is the larger of the two.\n\n",
-             b->driver.text, extent.width, extent.height);
+    text_add(
+        &text,
+        "%s, %u x %u\n"
+        "threads: in waves of 64, a texel of the image. instr: of the shader, in total those "
+        "run for a\n"
+        "texel. VALU, trans, image: run by one thread, every block once, a loop of ssao as "
+        "often as it runs.\n"
+        "arith, texture, cycles: of a SIMD for 64 texels; cycles is the larger of the two.\n\n",
+        b->driver.text, extent.width, extent.height);
     text_add(&text, "%-10s%-15s%-16s%7s%6s%6s%6s%6s%5s%5s%6s%6s%7s%8s%7s\n", "family", "setting",
              "pass", "threads", "instr", "VALU", "trans", "image", "loop", "VGPR", "waves", "LDS",
              "arith", "texture", "cycles");
@@ -271,7 +273,7 @@ static void add_object(cJSON *list, const struct cost_row *row)
     cJSON_AddStringToObject(object, "family", row->family->name);
     cJSON_AddStringToObject(object, "config", row->config.name);
     cJSON_AddStringToObject(object, "pass", row->pass);
-    cJSON_AddNumberToObject(object, "instructions", row->instructions);
+    json_add_number(object, "instructions", row->instructions);
     json_add_number(object, "arithmetic_cycles", row->arithmetic);
     json_add_number(object, "texture_cycles", row->texture);
     json_add_number(object, "cycles", row->cycles);
