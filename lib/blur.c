@@ -3,11 +3,13 @@
 
 #include "vkao_blur.h"
 #include "vkao_blur_last.h"
+#include "vkao_blur_tile.h"
+#include "vkao_blur_tile_last.h"
 #include "vkao_upsample.h"
 
 #include <math.h>
 
-#define READS_SURFACE VKAO_READS(VIEW_Z, VIEW_Z), VKAO_READS(NORMALS, NORMALS)
+#define READS_SURFACE VKAO_READS_VIEW_Z, VKAO_READS(NORMALS, NORMALS)
 #define WRITES_RESULT VKAO_WRITES(AO_WRITE, AO), VKAO_WRITES(BENT_WRITE, BENT_NORMALS)
 
 static const struct vkao_pass horizontal = {
@@ -45,6 +47,23 @@ static const struct vkao_pass vertical_at_half = {
     .forms = 1,
 };
 
+/* Both directions at once. */
+#define TILES(is_half, code, rows, ...)                                                            \
+    {                                                                                              \
+        .name = "vkao blur", .label = "blur", .stage = VKAO_STAGE_BLUR, VKAO_CODE(code),           \
+        .uses = {READS_SURFACE, VKAO_READS(SOURCE, AO_NOISY), __VA_ARGS__},                        \
+        .area = VKAO_AREA_RECT,                                                                    \
+        .texels = {1, ((rows)-2 * (VKAO_BLUR_TILE_RADIUS + (is_half))) / ROWS_AT_ONCE},            \
+        .group = {VKAO_BLUR_TILE_WIDTH, ROWS_AT_ONCE}, .forms = (is_half) ? 1 : 2,                 \
+    }
+enum { ROWS_AT_ONCE = VKAO_BLUR_TILE_THREADS / VKAO_BLUR_TILE_WIDTH };
+static const struct vkao_pass tiles[2][2] = {
+    {TILES(0, vkao_blur_tile_last, VKAO_BLUR_TILE_ROWS, WRITES_RESULT),
+     TILES(0, vkao_blur_tile_last, VKAO_BLUR_TILE_ROWS_BENT, WRITES_RESULT)},
+    {TILES(1, vkao_blur_tile, VKAO_BLUR_TILE_ROWS, VKAO_WRITES(TARGET, BLURRED)),
+     TILES(1, vkao_blur_tile, VKAO_BLUR_TILE_ROWS_BENT, VKAO_WRITES(TARGET, BLURRED))},
+};
+
 static const struct vkao_pass upsample = {
     .name = "vkao upsample",
     .label = "upsample",
@@ -58,10 +77,22 @@ static const struct vkao_pass upsample = {
 
 void vkao_blur_plan(struct vkao_program *program)
 {
-    vkao_program_add(program, &horizontal);
-    vkao_program_add(program, program->settings.half_resolution ? &vertical_at_half : &vertical);
-    if (program->settings.half_resolution)
+    const vkao_effect_info *e = &program->settings;
+    if (e->blur_radius <= VKAO_BLUR_TILE_RADIUS) {
+        vkao_program_add(program, &tiles[e->half_resolution][e->bent_normals]);
+    } else {
+        vkao_program_add(program, &horizontal);
+        vkao_program_add(program, e->half_resolution ? &vertical_at_half : &vertical);
+    }
+    if (e->half_resolution)
         vkao_program_add(program, &upsample);
+}
+
+uint32_t vkao_blur_tile_words(const vkao_effect_info *effect)
+{
+    const bool has_normals =
+        effect->blur_normal_power > 0.0f && effect->normal_encoding != VKAO_NORMALS_FROM_DEPTH;
+    return 2u + has_normals + effect->bent_normals * (has_normals ? 2u : 1u);
 }
 
 void vkao_blur_constants(const struct vkao_recording *r, const vkao_params *params,

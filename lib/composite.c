@@ -39,7 +39,7 @@ static const struct vkao_pass debug = {
     .label = "composite",
     .stage = VKAO_STAGE_COMPOSITE,
     VKAO_CODE(vkao_debug),
-    .uses = {VKAO_READS(VIEW_Z, VIEW_Z), VKAO_READS(NORMALS, NORMALS), VKAO_READS(SOURCE, AO_NOISY),
+    .uses = {VKAO_READS_VIEW_Z, VKAO_READS(NORMALS, NORMALS), VKAO_READS(SOURCE, AO_NOISY),
              VKAO_READS(BENT_READ, BENT_NORMALS), VKAO_WRITES(OUTPUT, OUTPUT)},
     .area = VKAO_AREA_IMAGE_RECT,
     VKAO_ONE_TEXEL,

@@ -43,6 +43,15 @@ void vkao_set_name(const vkao_context *ctx, VkObjectType type, uint64_t handle, 
                      });
 }
 
+bool vkao_scratch_can(const vkao_context *ctx, VkFormat format)
+{
+    VkFormatProperties properties;
+    const VkFormatFeatureFlags want =
+        VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
+    ctx->vk.GetPhysicalDeviceFormatProperties(ctx->physical_device, format, &properties);
+    return (properties.optimalTilingFeatures & want) == want;
+}
+
 bool vkao_format_can(const vkao_context *ctx, VkFormat format, VkFormatFeatureFlags want)
 {
     VkFormatProperties properties;

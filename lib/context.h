@@ -36,6 +36,8 @@ void vkao_free(const VkAllocationCallbacks *allocator, void *memory);
 /* For debuggers, if the caller asked for names. */
 void vkao_set_name(const vkao_context *ctx, VkObjectType type, uint64_t handle, const char *name);
 
+/* Can scratch images of this format be written and sampled? */
+bool vkao_scratch_can(const vkao_context *ctx, VkFormat format);
 /* Can images of this format, in either tiling, do all that is wanted? */
 bool vkao_format_can(const vkao_context *ctx, VkFormat format, VkFormatFeatureFlags want);
 

@@ -43,6 +43,8 @@ static void set_constants(struct vkao_program *program)
     c[VKAO_SETTING_COMPOSITE_MODE] = (uint32_t)e->composite_mode;
     c[VKAO_SETTING_MULTI_BOUNCE] = e->multi_bounce;
     c[VKAO_SETTING_SPECULAR] = (uint32_t)e->specular;
+    c[VKAO_SETTING_NOISY_CODES] = program->has_codes;
+    c[VKAO_SETTING_TILE_WORDS] = vkao_blur_tile_words(e);
     if (program->is_cpu)
         c[VKAO_SETTING_PATH] = vkao_cpu_setting(program);
 }
@@ -66,7 +68,7 @@ static uint32_t needs_of(const struct vkao_program *program)
         {e->normal_encoding != VKAO_NORMALS_FROM_DEPTH &&
              (makes_ao || (lit && e->specular != VKAO_SPECULAR_NONE)),
          VKAO_RESOURCE_NORMALS},
-        {!program->is_packed, VKAO_RESOURCE_AO_NOISY},
+        {!program->is_packed && !program->has_codes, VKAO_RESOURCE_AO_NOISY},
         {true, VKAO_RESOURCE_AO},
         {lit, VKAO_RESOURCE_COLOR},
         {lit && e->composite_mode == VKAO_COMPOSITE_INDIRECT, VKAO_RESOURCE_DIRECT},
@@ -82,11 +84,22 @@ static uint32_t needs_of(const struct vkao_program *program)
     return needs;
 }
 
+/* Nobody sees AO between SSAO and the blur, and 8 bits will do. Storing to them is optional in
+ * Vulkan. */
+static bool hands_over_codes(const struct vkao_program *program)
+{
+    const vkao_effect_info *e = &program->settings;
+    const vkao_stage_flags both = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
+    return (e->stages & both) == both && !e->bent_normals && !e->noisy_ao &&
+           vkao_scratch_can(program->ctx, VKAO_CODES_FORMAT);
+}
+
 void vkao_program_plan(struct vkao_program *program, const vkao_context *ctx,
                        const vkao_effect_info *settings, bool is_cpu)
 {
     const vkao_stage_flags stages = vkao_stages_of(settings);
     *program = (struct vkao_program){.ctx = ctx, .settings = *settings, .is_cpu = is_cpu};
+    program->has_codes = !is_cpu && hands_over_codes(program);
 #define PLAN(NAME, name)                                                                           \
     if (stages & VKAO_STAGE_##NAME && !(is_cpu && vkao_cpu_plan(program, VKAO_STAGE_##NAME)))      \
         vkao_##name##_plan(program);

@@ -11,13 +11,8 @@
 /* Half precision is plenty for AO on its way to the blur; storing to it is optional in Vulkan. */
 static VkFormat ao_scratch_format(const vkao_context *ctx)
 {
-    VkFormatProperties properties;
-    const VkFormatFeatureFlags want =
-        VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT;
-    ctx->vk.GetPhysicalDeviceFormatProperties(ctx->physical_device, VK_FORMAT_R16_SFLOAT,
-                                              &properties);
-    return (properties.optimalTilingFeatures & want) == want ? VK_FORMAT_R16_SFLOAT
-                                                             : VK_FORMAT_R32_SFLOAT;
+    return vkao_scratch_can(ctx, VK_FORMAT_R16_SFLOAT) ? VK_FORMAT_R16_SFLOAT
+                                                       : VK_FORMAT_R32_SFLOAT;
 }
 
 /* AO that COMPOSITE reads has the image's resolution, all else that of the grid. */
@@ -35,6 +30,7 @@ static void plan_images(const vkao_frame *frame, struct vkao_scratch_plan *plan)
         VkExtent2D extent;
     } rows[] = {
         {VKAO_RESOURCE_AO_NOISY, noisy, grid},
+        {VKAO_RESOURCE_CODES, VKAO_CODES_FORMAT, grid},
         {VKAO_RESOURCE_AO, ao, frame->extent},
         {VKAO_RESOURCE_VIEW_Z, VK_FORMAT_R32_SFLOAT, {grid.width + border, grid.height + border}},
         {VKAO_RESOURCE_SECOND_Z, VK_FORMAT_R32_SFLOAT, {grid.width + border, grid.height + border}},
@@ -123,10 +119,13 @@ static void write_set(const vkao_frame *frame, uint32_t i)
     VkDescriptorImageInfo images[VKAO_MOST_USES + 1];
     VkDescriptorBufferInfo buffers[VKAO_MOST_USES + 1];
     VkWriteDescriptorSet writes[VKAO_MOST_USES + 1];
+    uint32_t count = 0;
     for (uint32_t k = 0; k <= step->use_count; ++k) {
         const struct vkao_use *use = k < step->use_count ? &step->uses[k] : &constants;
         const VkDescriptorType type = vkao_use_type(use);
-        writes[k] = (VkWriteDescriptorSet){
+        if (type == VK_DESCRIPTOR_TYPE_SAMPLER)
+            continue; /* the layout has it */
+        writes[count] = (VkWriteDescriptorSet){
             .sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
             .dstSet = frame->sets[i],
             .dstBinding = use->binding,
@@ -134,19 +133,20 @@ static void write_set(const vkao_frame *frame, uint32_t i)
             .descriptorType = type,
         };
         if (type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER) {
-            writes[k].pTexelBufferView = &scratch->views[i][k];
+            writes[count].pTexelBufferView = &scratch->views[i][k];
         } else if (use->resource >= VKAO_IMAGE_COUNT) {
             const struct vkao_block *part = &scratch->blocks[use->resource];
             buffers[k] = (VkDescriptorBufferInfo){scratch->buffer, part->offset, part->size};
-            writes[k].pBufferInfo = &buffers[k];
+            writes[count].pBufferInfo = &buffers[k];
         } else {
             const vkao_image image = resolve(frame, use);
             images[k] =
                 (VkDescriptorImageInfo){.imageView = image.view, .imageLayout = image.layout};
-            writes[k].pImageInfo = &images[k];
+            writes[count].pImageInfo = &images[k];
         }
+        ++count;
     }
-    ctx->vk.UpdateDescriptorSets(ctx->device, step->use_count + 1, writes, 0, NULL);
+    ctx->vk.UpdateDescriptorSets(ctx->device, count, writes, 0, NULL);
 }
 
 static void write_sets(const vkao_frame *frame)
@@ -158,9 +158,9 @@ static void write_sets(const vkao_frame *frame)
 static vkao_result create_sets(vkao_frame *frame)
 {
     static const VkDescriptorType types[] = {
-        VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
-        VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-        VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER};
+        VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,       VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE,
+        VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,        VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+        VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_SAMPLER};
     enum { TYPES = sizeof types / sizeof types[0] };
     const vkao_context *ctx = frame->ctx;
     const struct vkao_program *program = frame->program;

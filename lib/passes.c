@@ -35,6 +35,8 @@ void vkao_program_add(struct vkao_program *program, const struct vkao_pass *row)
         if (use->resource == VKAO_RESOURCE_AO_NOISY &&
             !(program->settings.stages & VKAO_STAGE_BLUR))
             own->resource = VKAO_RESOURCE_AO;
+        else if (use->resource == VKAO_RESOURCE_AO_NOISY && program->has_codes)
+            own->resource = VKAO_RESOURCE_CODES;
     }
 }
 
@@ -86,27 +88,63 @@ VkDescriptorType vkao_use_type(const struct vkao_use *use)
 {
     if (use->resource == VKAO_RESOURCE_CONSTANTS)
         return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    if (use->resource == VKAO_RESOURCE_SAMPLER)
+        return VK_DESCRIPTOR_TYPE_SAMPLER;
     if (use->resource >= VKAO_IMAGE_COUNT)
         return use->texels ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
                            : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     return use->writes ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
 }
 
-static vkao_result create_layouts(const vkao_context *ctx, struct vkao_step *step)
+static bool names_sampler(const struct vkao_program *program)
 {
+    for (uint32_t i = 0; i < program->count; ++i) {
+        for (uint32_t k = 0; k < program->steps[i].use_count; ++k) {
+            if (program->steps[i].uses[k].resource == VKAO_RESOURCE_SAMPLER)
+                return true;
+        }
+    }
+    return false;
+}
+
+static vkao_result create_sampler(struct vkao_program *program)
+{
+    const vkao_context *ctx = program->ctx;
+    VkResult result =
+        ctx->vk.CreateSampler(ctx->device,
+                              &(VkSamplerCreateInfo){
+                                  .sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
+                                  .addressModeU = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                  .addressModeV = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                  .addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
+                                  .unnormalizedCoordinates = VK_TRUE,
+                              },
+                              ctx->allocator, &program->nearest);
+    if (result == VK_SUCCESS)
+        return VKAO_SUCCESS;
+    program->nearest = VK_NULL_HANDLE; /* drivers may leave anything behind a failure */
+    return vkao_vk_failed(&ctx->log, "vkCreateSampler", result);
+}
+
+static vkao_result create_layouts(const struct vkao_program *program, struct vkao_step *step)
+{
+    const vkao_context *ctx = program->ctx;
     VkDescriptorSetLayoutBinding bindings[VKAO_MOST_USES + 1] = {{
         .binding = VKAO_BINDING_CONSTANTS,
         .descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER,
         .descriptorCount = 1,
         .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
     }};
-    for (uint32_t i = 0; i < step->use_count; ++i)
+    for (uint32_t i = 0; i < step->use_count; ++i) {
+        const VkDescriptorType type = vkao_use_type(&step->uses[i]);
         bindings[i + 1] = (VkDescriptorSetLayoutBinding){
             .binding = step->uses[i].binding,
-            .descriptorType = vkao_use_type(&step->uses[i]),
+            .descriptorType = type,
             .descriptorCount = 1,
             .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
+            .pImmutableSamplers = type == VK_DESCRIPTOR_TYPE_SAMPLER ? &program->nearest : NULL,
         };
+    }
     VkResult result = ctx->vk.CreateDescriptorSetLayout(
         ctx->device,
         &(VkDescriptorSetLayoutCreateInfo){
@@ -207,7 +245,7 @@ static void compile_step(void *data, uint32_t i)
 {
     struct compilation *c = data;
     struct vkao_step *step = &c->program->steps[i];
-    c->results[i] = create_layouts(c->program->ctx, step);
+    c->results[i] = create_layouts(c->program, step);
     if (c->results[i] == VKAO_SUCCESS)
         c->results[i] = create_forms(c->program, step);
 }
@@ -216,6 +254,9 @@ vkao_result vkao_program_compile(struct vkao_program *program)
 {
     struct compilation compilation = {.program = program};
     const vkao_effect_info *info = &program->settings;
+    vkao_result result = names_sampler(program) ? create_sampler(program) : VKAO_SUCCESS;
+    if (result != VKAO_SUCCESS)
+        return result;
     if (info->parallel) {
         info->parallel(info->parallel_user_data, program->count, compile_step, &compilation);
     } else {
@@ -246,4 +287,6 @@ void vkao_program_destroy(struct vkao_program *program)
         if (step->set_layout)
             ctx->vk.DestroyDescriptorSetLayout(ctx->device, step->set_layout, ctx->allocator);
     }
+    if (program->nearest)
+        ctx->vk.DestroySampler(ctx->device, program->nearest, ctx->allocator);
 }

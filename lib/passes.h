@@ -34,6 +34,7 @@ enum vkao_resource {
     /* Scratch images. */
     VKAO_RESOURCE_VIEW_Z = VKAO_SLOT_COUNT,
     VKAO_RESOURCE_SECOND_Z, /* view z of the second layer */
+    VKAO_RESOURCE_CODES,    /* AO that SSAO hands to the blur, in place of AO_NOISY */
     VKAO_RESOURCE_HALFWAY,  /* AO between the two directions of the blur */
     VKAO_RESOURCE_BLURRED,  /* at half resolution, for upsampling */
     VKAO_RESOURCE_BREAKS_X, /* words of where depth breaks along rows, and along columns */
@@ -42,10 +43,13 @@ enum vkao_resource {
     /* Parts of the scratch buffer: the constants, and those of the CPU's passes (cpu/cpu.h). */
     VKAO_RESOURCE_CONSTANTS = VKAO_IMAGE_COUNT,
     VKAO_RESOURCE_CPU,
-    VKAO_RESOURCE_COUNT = VKAO_RESOURCE_CPU + 8
+    VKAO_RESOURCE_COUNT = VKAO_RESOURCE_CPU + 8,
+    VKAO_RESOURCE_SAMPLER = VKAO_RESOURCE_COUNT /* the program's, in the layouts themselves */
 };
 
 #define VKAO_BIT(resource) (1u << (resource))
+
+#define VKAO_CODES_FORMAT VK_FORMAT_R8_UNORM /* of VKAO_RESOURCE_CODES */
 
 /* A binding of a shader. */
 struct vkao_use {
@@ -65,6 +69,7 @@ struct vkao_use {
 
 /* Over which texels a pass runs. */
 enum vkao_area {
+    VKAO_AREA_WHOLE,       /* all of the grid, and the border around it */
     VKAO_AREA_VALID,       /* those that hold depth, and the border around them */
     VKAO_AREA_AROUND,      /* what the blur reads for the rect */
     VKAO_AREA_ABOVE_BELOW, /* what its second direction reads */
@@ -97,6 +102,8 @@ struct vkao_pass {
     void (*record)(const struct vkao_recording *recording, uint32_t pass);
 };
 #define VKAO_CODE(words) .code = words, .code_bytes = sizeof words
+/* View z, which is sampled. */
+#define VKAO_READS_VIEW_Z VKAO_READS(VIEW_Z, VIEW_Z), VKAO_READS(NEAREST, SAMPLER)
 #define VKAO_ONE_TEXEL .texels = {1, 1}, .group = {VKAO_GROUP_WIDTH, VKAO_GROUP_HEIGHT}
 
 /* A row, compiled. */
@@ -116,7 +123,9 @@ struct vkao_program {
     const vkao_context *ctx;
     vkao_effect_info settings; /* checked */
     bool is_cpu, is_packed;    /* of the CPU's passes; AO goes through the buffer */
+    bool has_codes;            /* of an image: AO_NOISY is CODES */
     uint32_t constants[VKAO_SETTING_COUNT];
+    VkSampler nearest; /* if any row names it; its coordinates are texels */
     uint32_t count;
     struct vkao_step steps[VKAO_MOST_PASSES];
     /* VKAO_BIT of the resources that are touched; others of the rows are stand-ins */
@@ -141,7 +150,7 @@ void vkao_program_lifetime(const struct vkao_program *program, enum vkao_resourc
 /* How a shader sees a use. */
 VkDescriptorType vkao_use_type(const struct vkao_use *use);
 
-/* Layouts and pipelines of all rows. On failure the rest is for vkao_program_destroy. */
+/* Sampler, layouts and pipelines of all rows. On failure the rest is for vkao_program_destroy. */
 vkao_result vkao_program_compile(struct vkao_program *program);
 void vkao_program_destroy(struct vkao_program *program);
 

@@ -27,27 +27,27 @@ static_assert(VKAO_GLSL_THICKNESS_AS_SEEN == (int)VKAO_THICKNESS_AS_SEEN &&
                   VKAO_GLSL_THICKNESS_BACK_DEPTH == (int)VKAO_THICKNESS_BACK_DEPTH,
               "params.h repeats vkao_thickness_input");
 
-#define PREPARES(shader, ...)                                                                      \
+#define PREPARES(shader, texels, ...)                                                              \
     {                                                                                              \
         .name = "vkao " #shader, .label = "prepare", .stage = VKAO_STAGE_PREPARE,                  \
-        VKAO_CODE(vkao_##shader), .uses = {__VA_ARGS__}, .area = VKAO_AREA_VALID, VKAO_ONE_TEXEL,  \
-        .forms = 1,                                                                                \
+        VKAO_CODE(vkao_##shader), .uses = {__VA_ARGS__}, .area = VKAO_AREA_##texels,               \
+        VKAO_ONE_TEXEL, .forms = 1,                                                                \
     }
 #define BREAKS(view_z)                                                                             \
     {                                                                                              \
         .name = "vkao breaks", .label = "prepare", .stage = VKAO_STAGE_PREPARE,                    \
         VKAO_CODE(vkao_breaks),                                                                    \
-        .uses = {VKAO_READS(VIEW_Z, view_z), VKAO_WRITES(BREAKS_X_WRITE, BREAKS_X),                \
-                 VKAO_WRITES(BREAKS_Y_WRITE, BREAKS_Y)},                                           \
+        .uses = {VKAO_READS(VIEW_Z, view_z), VKAO_READS(NEAREST, SAMPLER),                         \
+                 VKAO_WRITES(BREAKS_X_WRITE, BREAKS_X), VKAO_WRITES(BREAKS_Y_WRITE, BREAKS_Y)},    \
         .area = VKAO_AREA_VALID, .texels = {4, 2},                                                 \
         .group = {VKAO_BREAKS_WIDTH, VKAO_BREAKS_HEIGHT}, .forms = 1,                              \
     }
 /* A layer of depth, and how thick it is as seen. */
 #define LAYER(depth, view_z)                                                                       \
     {                                                                                              \
-        PREPARES(prepare, VKAO_READS(DEPTH, depth), VKAO_WRITES(VIEW_Z_WRITE, view_z)),            \
+        PREPARES(prepare, WHOLE, VKAO_READS(DEPTH, depth), VKAO_WRITES(VIEW_Z_WRITE, view_z)),     \
             BREAKS(view_z),                                                                        \
-            PREPARES(width, VKAO_READS(BREAKS_X, BREAKS_X), VKAO_READS(BREAKS_Y, BREAKS_Y),        \
+            PREPARES(width, VALID, VKAO_READS(BREAKS_X, BREAKS_X), VKAO_READS(BREAKS_Y, BREAKS_Y), \
                      VKAO_WRITES(VIEW_Z_WRITE, view_z)),                                           \
     }
 enum { LAYER_PASSES = 3 };
@@ -55,7 +55,7 @@ static const struct vkao_pass first[LAYER_PASSES] = LAYER(DEPTH, VIEW_Z),
                               second[LAYER_PASSES] = LAYER(SECOND_DEPTH, SECOND_Z);
 /* An input. Back depth is decoded as depth is, so it takes that binding. */
 static const struct vkao_pass given =
-    PREPARES(thickness, VKAO_READS(DEPTH, THICKNESS), VKAO_WRITES(VIEW_Z_WRITE, VIEW_Z));
+    PREPARES(thickness, VALID, VKAO_READS(DEPTH, THICKNESS), VKAO_WRITES(VIEW_Z_WRITE, VIEW_Z));
 
 static void plan_layer(struct vkao_program *program, const struct vkao_pass *layer, int count)
 {

@@ -4,8 +4,12 @@
 struct vkao_rect vkao_area(const struct vkao_recording *r, enum vkao_area area)
 {
     const vkao_effect_info *e = &r->frame->program->settings;
+    const uint32_t shift = e->half_resolution;
     const uint32_t radius = e->stages & VKAO_STAGE_BLUR ? e->blur_radius : 0;
     switch (area) {
+    case VKAO_AREA_WHOLE:
+        return (struct vkao_rect){0, 0, (r->frame->extent.width + shift) >> shift,
+                                  (r->frame->extent.height + shift) >> shift};
     case VKAO_AREA_VALID:
         return r->grid.valid;
     case VKAO_AREA_AROUND:

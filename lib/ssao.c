@@ -14,8 +14,8 @@
     {                                                                                              \
         .name = "vkao ssao " #method, .label = "ssao", .stage = VKAO_STAGE_SSAO,                   \
         VKAO_CODE(vkao_ssao_##method),                                                             \
-        .uses = {VKAO_READS(VIEW_Z, VIEW_Z), VKAO_READS(NORMALS, NORMALS),                         \
-                 VKAO_READS(SECOND_Z, SECOND_Z), VKAO_WRITES(TARGET, AO_NOISY)},                   \
+        .uses = {VKAO_READS_VIEW_Z, VKAO_READS(NORMALS, NORMALS), VKAO_READS(SECOND_Z, SECOND_Z),  \
+                 VKAO_WRITES(TARGET, AO_NOISY)},                                                   \
         .area = VKAO_AREA_AROUND, VKAO_ONE_TEXEL, .forms = 1,                                      \
     }
 static const struct vkao_pass methods[] = {

@@ -21,4 +21,7 @@
 VKAO_STAGES(VKAO_DECLARE_STAGE)
 #undef VKAO_DECLARE_STAGE
 
+/* VKAO_SETTING_TILE_WORDS. */
+uint32_t vkao_blur_tile_words(const vkao_effect_info *effect);
+
 #endif

@@ -19,6 +19,8 @@
     X(DestroyShaderModule)                                                                         \
     X(CreateDescriptorSetLayout)                                                                   \
     X(DestroyDescriptorSetLayout)                                                                  \
+    X(CreateSampler)                                                                               \
+    X(DestroySampler)                                                                              \
     X(CreatePipelineLayout)                                                                        \
     X(DestroyPipelineLayout)                                                                       \
     X(CreateComputePipelines)                                                                      \

@@ -18,6 +18,7 @@ layout(push_constant) uniform Block { vkao_dispatch here; };
 layout(binding = VKAO_BINDING_SOURCE) uniform texture2D source_image;
 #include "view.glsl"
 #include "surface.glsl"
+#include "visibility_code.glsl"
 #ifdef VKAO_LAST
 #include "finish.glsl"
 #else
@@ -29,7 +30,9 @@ const ivec2 AXIS = VERTICAL ? ivec2(0, 1) : ivec2(1, 0);
 vec4 load_noisy(ivec2 texel)
 {
     vec4 v = texelFetch(source_image, texel, 0);
-    return BENT_NORMALS ? v : v.xxxx;
+    if (BENT_NORMALS)
+        return v;
+    return vec4(VERTICAL ? v.x : decode_visibility(v.x));
 }
 
 float local_slope(ivec2 texel, float z)

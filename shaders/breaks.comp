@@ -23,11 +23,9 @@ layout(binding = VKAO_BINDING_BREAKS_Y_WRITE) uniform writeonly uimage2D breaks_
 /* Of the rows, or columns, that the group has. */
 shared uint words[WORD];
 
-float depth_at(ivec2 texel, ivec2 low, ivec2 high)
+float depth_at(ivec2 texel)
 {
-    if (any(lessThan(texel, low)) || any(greaterThanEqual(texel, high)))
-        return NOTHING;
-    float z = fetch_view_z(texel);
+    float z = load_view_z(texel);
     return z > 0.0 ? z : NOTHING;
 }
 
@@ -53,9 +51,8 @@ void find_breaks(bool vertical, int shift, ivec2 low, ivec2 high, ivec2 first)
         if (begin + k >= WORD || any(lessThan(texel, low)) ||
             any(greaterThanEqual(texel + along, high)))
             continue;
-        float before = depth_at(texel - along, low, high), z = depth_at(texel, low, high),
-              next = depth_at(texel + along, low, high),
-              behind = depth_at(texel + 2 * along, low, high);
+        float before = depth_at(texel - along), z = depth_at(texel), next = depth_at(texel + along),
+              behind = depth_at(texel + 2 * along);
         if (break_between(before, z, next, behind) > 0.0)
             atomicOr(words[k], 1u << (step >> shift));
     }
@@ -72,8 +69,8 @@ void find_breaks(bool vertical, int shift, ivec2 low, ivec2 high, ivec2 first)
 
 void main()
 {
-    ivec2 low = ivec2(params.valid.x & 0xffffu, params.valid.x >> 16), first = low & ivec2(~3, ~0);
-    ivec2 high = ivec2(params.valid.y & 0xffffu, params.valid.y >> 16);
+    ivec2 low = unpack_texel(params.valid.x), first = low & ivec2(~3, ~0);
+    ivec2 high = unpack_texel(params.valid.y);
     Reach reach = width_reach();
     find_breaks(false, reach.shift.x, low, high, first);
     barrier();

@@ -11,17 +11,17 @@
 #ifndef VKAO_HORIZON_GLSL_
 #define VKAO_HORIZON_GLSL_
 
+#include "product.glsl"
+
 const float PI = 3.14159265358979324;
 const vec2 SIDES = vec2(1.0, -1.0);
 
 struct Slice {
-    /* direction on screen, in texels that one scene unit has at unit distance */
-    vec2 step;
-    float per_texel;     /* 1 / its length */
-    float scale;         /* scene units -> the same at the shaded point */
+    vec2 step;    /* direction on screen: unit, in texels */
+    float texels; /* of a scene unit along it, at the shaded point */
     /* texels off the shaded point -> x and y in radii, per unit of view z in perspective */
     vec2 to_x, to_y;
-    float eye, origin;   /* y is origin - eye * view z, and what to_y adds */
+    float eye, origin;   /* y is eye * view z - origin, and what to_y adds */
     vec3 outward;        /* O: unit, in the slice, at right angles to V */
     float fall;          /* of the depth image's plane, against V, per x */
     float normal_length; /* L */
@@ -33,9 +33,10 @@ Slice make_slice(float turn, vec3 position, vec3 normal, Plane plane, vec3 to_ey
 {
     Slice s;
     vec3 d = vec3(half_turn_x(turn), half_turn_y(turn), 0.0);
-    s.step = d.xy * params.inverse_unproject;
-    s.per_texel = inversesqrt(dot(s.step, s.step));
-    s.scale = ORTHOGRAPHIC ? 1.0 : 1.0 / position.z;
+    vec2 texels = d.xy * params.inverse_unproject; /* of a scene unit at unit distance */
+    float length2 = dot(texels, texels), per_texel = inversesqrt(length2);
+    s.step = product(texels, vec2(per_texel));
+    s.texels = length2 * per_texel * (ORTHOGRAPHIC ? 1.0 : 1.0 / position.z);
     /* As long as what is left of d without its share along V; 1 - (d.V)^2 is nothing at the edge of
      * a field of view of nearly 180 degrees. */
     vec3 across = cross(d, to_eye);
@@ -50,12 +51,12 @@ Slice make_slice(float turn, vec3 position, vec3 normal, Plane plane, vec3 to_ey
     float moved = dot(plane.normal, across) / max(plane_facing, plane.steepest);
     s.fall = dot(plane.normal, s.outward) / max(plane_facing, VKAO_STEEPEST);
     vec2 radii = params.unproject.xy * params.inverse_radius;
-    s.to_x = radii * s.outward.xy;
-    s.to_y = radii * (to_eye.xy + across.xy * moved);
-    s.eye = params.inverse_radius * (ORTHOGRAPHIC ? 1.0 : -1.0 / to_eye.z);
+    s.to_x = product(radii, s.outward.xy);
+    s.to_y = product(radii, to_eye.xy + across.xy * moved);
+    s.eye = ORTHOGRAPHIC ? -params.inverse_radius : params.inverse_radius / to_eye.z;
     /* It is taken to lie as deep as its depth may be wrong: a wall must not occlude itself by the
      * steps of a format. */
-    s.origin = s.eye * (position.z - 2.0 * depth_error(position.z));
+    s.origin = product(vec2(s.eye), vec2(position.z - 2.0 * depth_error(position.z))).x;
     s.normal_length = sqrt(max(1.0 - off * off, 1.0e-12));
     s.cos_n = clamp(facing / s.normal_length, 0.0, 1.0);
     s.sin_n = dot(normal, s.outward) / s.normal_length;
@@ -71,9 +72,9 @@ struct Steps {
 Steps make_steps(Slice s, float jitter, float reach, float linear)
 {
     /* Farther than any image is wide, but few enough texels for an integer. */
-    float most = min(s.scale * reach, 1.0e9 * s.per_texel);
+    float most = min(s.texels * reach, 1.0e9);
     float n = 1.0 / float(step_count());
-    float line = most * linear * n, square = most * (1.0 - linear) * n * n;
+    float line = most * (linear * n), square = most * ((1.0 - linear) * n * n);
     return Steps(jitter * (line + square * jitter), line + 2.0 * square * jitter, square);
 }
 
@@ -81,22 +82,28 @@ Steps make_steps(Slice s, float jitter, float reach, float linear)
 vec2 step_offset(Slice s, Steps steps, uint t, float least)
 {
     float far = steps.k0 + float(t) * (steps.k1 + float(t) * steps.k2);
-    return roundEven(s.step * max(far, s.per_texel * (1.0 + least * float(t))));
+    return roundEven(s.step * max(far, 1.0 + least * float(t)));
 }
 
 /* View z of the texels at +offset and -offset. */
-vec2 load_sides(ivec2 texel, vec2 offset)
+vec2 load_sides(vec2 texel, vec2 offset)
 {
-    ivec2 at = ivec2(offset);
-    return vec2(load_view_z(texel + at), load_view_z(texel - at));
+    return vec2(load_view_z_at(texel + offset), load_view_z_at(texel - offset));
+}
+
+/* x of them, were they as far away as z. */
+vec2 slice_x(Slice s, vec2 offset, vec2 z)
+{
+    vec2 dx = vec2(dot(s.to_x, offset));
+    return ORTHOGRAPHIC ? dx : z * dx;
 }
 
 /* Their coordinates in the slice, in radii. */
 void slice_points(Slice s, vec2 offset, vec2 z, out vec2 x, out vec2 y)
 {
-    vec2 dx = vec2(dot(s.to_x, offset)), dy = SIDES * dot(s.to_y, offset);
-    x = ORTHOGRAPHIC ? dx : z * dx;
-    y = s.origin + (ORTHOGRAPHIC ? dy - z * params.inverse_radius : z * (dy - s.eye));
+    vec2 dy = SIDES * dot(s.to_y, offset);
+    x = slice_x(s, offset, z);
+    y = (ORTHOGRAPHIC ? dy + z * s.eye : z * (dy + s.eye)) - s.origin;
 }
 
 /* Is anything seen there, and outwards from the shaded point? Far off the axis a slice leans so

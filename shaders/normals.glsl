@@ -57,11 +57,11 @@ Neighbour nearest_neighbour(vec2 near_z, float center_z)
  * quick will do. */
 Neighbour neighbour_in(ivec2 texel, ivec2 axis, float center_z, bool careful, out bool straight)
 {
-    vec2 near_z = vec2(load_view_z(texel - axis), load_view_z(texel + axis));
+    vec2 near_z = vec2(view_z_beside(texel, -axis), view_z_beside(texel, axis));
     straight = is_straight(near_z, center_z);
     if (!careful)
         return nearest_neighbour(near_z, center_z);
-    vec2 far_z = vec2(load_view_z(texel - 2 * axis), load_view_z(texel + 2 * axis));
+    vec2 far_z = vec2(view_z_beside(texel, -2 * axis), view_z_beside(texel, 2 * axis));
     return straight_neighbour(near_z, far_z, center_z);
 }
 
@@ -109,11 +109,6 @@ Plane plane_of(Facet own, vec3 normal)
                  holds ? VKAO_STEEPEST : VKAO_PLANE_STEEPEST);
 }
 
-Plane depth_plane(ivec2 texel, vec3 position, vec3 normal)
-{
-    return plane_of(facet_of(texel, position.z), normal);
-}
-
 /* The stored normal, or the surface's own. One that points away is turned if the back of its
  * surface is what is seen. Near outlines it is more often one that interpolation over a mesh has
  * carried past the edge: turned, that would stand across the surface, which would then hide itself.
@@ -125,10 +120,16 @@ vec3 trusted_normal(vec3 stored, vec3 own, vec3 center)
     return trust > 0.0 ? (away ? -stored : stored) : own;
 }
 
+/* What is stored for a texel of the grid, in view space. */
+vec3 stored_view_normal(ivec2 texel)
+{
+    return to_view(decode_normal(texel << GRID_SHIFT));
+}
+
 /* Unit vector that faces the eye, of a texel of the grid. */
 vec3 view_normal(ivec2 texel, vec3 center)
 {
-    vec3 stored = to_view(decode_normal(texel << GRID_SHIFT));
+    vec3 stored = stored_view_normal(texel);
     bool away = (ORTHOGRAPHIC ? stored.z : dot(stored, center)) > 0.0;
     if (!away && stored != vec3(0.0))
         return stored;

@@ -48,7 +48,8 @@
 #define VKAO_BINDING_BREAKS_Y_WRITE 20
 #define VKAO_BINDING_THICKNESS 18
 #define VKAO_BINDING_SECOND_Z 19
-#define VKAO_BINDING_CPU 32 /* the first of the CPU's */
+#define VKAO_BINDING_NEAREST 21 /* the sampler of texels by their number */
+#define VKAO_BINDING_CPU 32     /* the first of the CPU's */
 
 /* What a pass is compiled for: specialization constants, the same for all passes of an effect but
  * for the last three. shaders/settings.glsl declares them. */
@@ -71,11 +72,27 @@
 #define VKAO_SETTING_SPECULAR 15
 #define VKAO_SETTING_THICKNESS_INPUT 16
 #define VKAO_SETTING_SECOND_LAYER 17
-#define VKAO_SETTING_PATH 18     /* the CPU's own */
-#define VKAO_SETTING_VERTICAL 19 /* of the pass: one shader blurs in two directions */
-#define VKAO_SETTING_TONED 20    /* of the form: intensity or power is not 1 */
-#define VKAO_SETTING_COPIED 21   /* of the form, the CPU's own */
-#define VKAO_SETTING_COUNT 22
+#define VKAO_SETTING_NOISY_CODES 18 /* AO before the blur is codes in an image, see below */
+#define VKAO_SETTING_TILE_WORDS 19  /* of a texel in shared memory of blur_tile.comp */
+#define VKAO_SETTING_PATH 20        /* the CPU's own */
+#define VKAO_SETTING_VERTICAL 21    /* of the pass: one shader blurs in two directions */
+#define VKAO_SETTING_TONED 22       /* of the form: intensity or power is not 1 */
+#define VKAO_SETTING_COPIED 23      /* of the form, the CPU's own */
+#define VKAO_SETTING_COUNT 24
+
+/* Visibility before the blur, which may be below 0 and above 1, as a code of 8 bits: (v + OFFSET) *
+ * SCALE, rounded. VISIBILITY_OPEN is that of 1. */
+#define VKAO_CODE_SCALE 100.0
+#define VKAO_CODE_OFFSET 0.55
+#define VKAO_VISIBILITY_OPEN 155.0
+
+/* blur_tile.comp: radii that it is for; texels of a row that a group blurs; rows in its shared
+ * memory, of which it blurs those that are not reached over. */
+#define VKAO_BLUR_TILE_RADIUS 3
+#define VKAO_BLUR_TILE_THREADS 64
+#define VKAO_BLUR_TILE_WIDTH 32
+#define VKAO_BLUR_TILE_ROWS 24
+#define VKAO_BLUR_TILE_ROWS_BENT 16
 
 /* Threads of a group of breaks.comp, each for 4 x 2 texels. */
 #define VKAO_BREAKS_WIDTH 8
@@ -97,7 +114,8 @@
 /* Visibility and mean directions are smaller; what is not, or is no number, is not theirs. */
 #define VKAO_LARGEST_RESULT 2048.0
 
-/* Texels of zeros around view z, so that taps outside read background without a test. */
+/* Texels of zeros around view z, so that taps outside read background without a test: around the
+ * valid ones on a CPU, around the image on a GPU, where all that is not valid is zero too. */
 #define VKAO_VIEW_Z_BORDER 1
 
 /* Values of the public enums that shaders test; the stages' C files assert that they are equal. */

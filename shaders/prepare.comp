@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Depth of any encoding -> positive view z, once, so that no later tap divides. Background becomes
- * 0. At half resolution every second texel of every second row is taken as it is: an average of
- * depths is no depth. */
+ * 0, as does all that is not valid. At half resolution every second texel of every second row is
+ * taken as it is: an average of depths is no depth. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -17,12 +17,9 @@ layout(binding = VKAO_BINDING_VIEW_Z_WRITE) uniform writeonly image2D view_z_ima
 
 void main()
 {
-    ivec2 low = ivec2(params.valid.x & 0xffffu, params.valid.x >> 16);
-    ivec2 high = ivec2(params.valid.y & 0xffffu, params.valid.y >> 16);
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + low - VKAO_VIEW_Z_BORDER;
-    if (any(greaterThanEqual(texel, high + VKAO_VIEW_Z_BORDER)))
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) - VKAO_VIEW_Z_BORDER;
+    if (any(greaterThanEqual(texel, unpack_texel(here.rect.y) + VKAO_VIEW_Z_BORDER)))
         return;
-    bool inside = all(greaterThanEqual(texel, low)) && all(lessThan(texel, high));
-    float z = inside ? view_z_from_depth(texel << GRID_SHIFT) : 0.0;
+    float z = in_rect(texel, params.valid) ? view_z_from_depth(texel << GRID_SHIFT) : 0.0;
     imageStore(view_z_image, texel + VKAO_VIEW_Z_BORDER, vec4(z));
 }

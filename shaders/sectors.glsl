@@ -8,7 +8,7 @@
 #ifndef VKAO_SECTORS_GLSL_
 #define VKAO_SECTORS_GLSL_
 
-#include "real.glsl"
+#include "product.glsl"
 
 const float SECTORS = 31.0;
 
@@ -40,9 +40,9 @@ Masks make_masks(reals sin_n, reals cos_n)
     m.mass = max(cn + sin_n * (G1 + G3) - below, reals(1.0e-4));
     reals scale = SECTORS / m.mass;
     m.k0 = VKAO_VBAO_ROUND - below * scale;
-    m.k2 = cn * scale;
-    m.k1 = G1 * (sin_n * scale);
-    m.k3 = G3 * (sin_n * scale);
+    m.k2 = product(cn, scale);
+    m.k1 = product(reals(G1), sin_n * scale);
+    m.k3 = product(reals(G3), sin_n * scale);
     return m;
 }
 

@@ -22,6 +22,8 @@ layout(constant_id = VKAO_SETTING_MULTI_BOUNCE) const bool MULTI_BOUNCE = false;
 layout(constant_id = VKAO_SETTING_SPECULAR) const uint SPECULAR = 0u;
 layout(constant_id = VKAO_SETTING_THICKNESS_INPUT) const uint THICKNESS_INPUT = 0u;
 layout(constant_id = VKAO_SETTING_SECOND_LAYER) const bool SECOND_LAYER = false;
+layout(constant_id = VKAO_SETTING_NOISY_CODES) const bool NOISY_CODES = false;
+layout(constant_id = VKAO_SETTING_TILE_WORDS) const uint TILE_WORDS = 2u;
 layout(constant_id = VKAO_SETTING_VERTICAL) const bool VERTICAL = false;
 layout(constant_id = VKAO_SETTING_TONED) const bool TONED = false;
 
@@ -32,6 +34,17 @@ const int THICKNESS_MASK =
     IS_GIVEN ? (VKAO_THICKNESS_MASK + 1 << VKAO_THICKNESS_FINER) - 1 : VKAO_THICKNESS_MASK;
 
 layout(binding = VKAO_BINDING_CONSTANTS) uniform Constants { vkao_constants params; };
+
+ivec2 unpack_texel(uint packed_texel)
+{
+    return ivec2(packed_texel & 0xffffu, packed_texel >> 16);
+}
+
+bool in_rect(ivec2 texel, uvec2 rect)
+{
+    return all(greaterThanEqual(texel, unpack_texel(rect.x))) &&
+           all(lessThan(texel, unpack_texel(rect.y)));
+}
 
 /* These are at least 1. Loops over them test at their end, as a driver in software goes through a
  * body once more to find that no lane is left. */

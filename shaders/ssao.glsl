@@ -3,7 +3,8 @@
  * The frame of every SSAO method: a texel of the rect per invocation, background exactly 1. The
  * includer defines
  *     Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
- * in view space. Which texel an invocation has and where its result goes, invocation.glsl says. */
+ * in view space, or with VKAO_PLANE one that gets the depth image's plane as well. Which texel an
+ * invocation has and where its result goes, invocation.glsl says. */
 #ifndef VKAO_SSAO_GLSL_
 #define VKAO_SSAO_GLSL_
 
@@ -53,7 +54,11 @@ bool stands_in_front(vec3 occluder, vec3 position, vec3 normal, float point_heig
     return dot(normal, occluder - position) > point_height;
 }
 
+#ifdef VKAO_PLANE
+Visibility visibility(ivec2 texel, vec3 position, vec3 normal, Plane plane);
+#else
 Visibility visibility(ivec2 texel, vec3 position, vec3 normal);
+#endif
 
 /* What is not seen, background, is open. */
 Visibility shade(ivec2 texel)
@@ -63,7 +68,13 @@ Visibility shade(ivec2 texel)
     if (z == 0.0)
         return v;
     vec3 position = view_position(vec2(texel), z);
+#ifdef VKAO_PLANE
+    Facet own = facet_of(texel, z);
+    vec3 normal = trusted_normal(stored_view_normal(texel), own.normal, position);
+    v = visibility(texel, position, normal, plane_of(own, normal));
+#else
     v = visibility(texel, position, view_normal(texel, position));
+#endif
     /* Where numbers fail, by a radius of 1e-9 of the distance for one, nothing is known to
      * occlude. */
     v.open = is_sane(v.open) ? v.open : 1.0;

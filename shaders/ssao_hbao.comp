@@ -11,6 +11,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
+#define VKAO_PLANE
 #include "params.h"
 #include "ssao.glsl"
 #include "horizon.glsl"
@@ -23,8 +24,8 @@ float occlusion(Slice s, ivec2 texel, float jitter)
     vec2 along = SIDES * (s.normal_length * s.sin_n);
     uint t = 0u;
     [[unroll]] for (;;) {
-        vec2 offset = step_offset(s, steps, t, VKAO_STEP_LEAST), z = load_sides(texel, offset), x,
-             y;
+        vec2 offset = step_offset(s, steps, t, VKAO_STEP_LEAST);
+        vec2 z = load_sides(vec2(texel), offset), x, y;
         slice_points(s, offset, z, x, y);
         vec2 d2 = x * x + y * y;
         vec2 weight = mix(vec2(0.0), falloff_weight(d2), is_seen(x, z));
@@ -38,10 +39,9 @@ float occlusion(Slice s, ivec2 texel, float jitter)
     return occluded.x + occluded.y;
 }
 
-Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
+Visibility visibility(ivec2 texel, vec3 position, vec3 normal, Plane plane)
 {
     vec3 to_eye = direction_to_eye(position);
-    Plane plane = depth_plane(texel, position, normal);
     Noise noise = texel_noise(texel, slice_count());
     float occluded = 0.0, share = 1.0 / float(slice_count());
     uint k = 0u;

@@ -27,6 +27,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
+#define VKAO_PLANE
 #include "params.h"
 #include "ssao.glsl"
 #include "horizon.glsl"
@@ -35,7 +36,7 @@
 
 /* What a march of both sides has found hidden. */
 struct March {
-    ivec2 mask;  /* sectors */
+    uvec2 mask;  /* sectors */
     vec2 hidden; /* their count, weighted */
     vec2 out_moment, eye_moment;
 };
@@ -43,56 +44,72 @@ struct March {
 /* The sample before, of one layer. */
 struct Trail {
     vec2 x, height, front;
-    vec2 rounding; /* taken off upper bounds while all samples join the point's own surface */
+    /* k0 of upper bounds: less is added to them while all samples join the point's own surface */
+    vec2 rounding;
 };
 
-/* How far back what is sampled goes, in radii. is_given: view z has the truth, and a sample stands
- * for its gap alone. */
-vec2 depth_of(vec2 z, vec2 x, vec2 gap, bool is_given)
+/* y of what is not seen: far behind all. */
+const float NOWHERE = -1.0e15;
+
+/* y of the back of what is sampled. is_given: view z has the truth, and a sample stands for its gap
+ * alone. */
+vec2 back_of(vec2 z, vec2 x, vec2 y, vec2 gap, bool is_given)
 {
     vec2 thickness = thickness_of(z);
     if (is_given)
-        return max(thickness, VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
-    return min(max(thickness, params.thickness_gap * gap),
-               params.thickness_base + params.thickness_slope * x);
+        return y - max(thickness, VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
+    return max(min(y - thickness, y - params.thickness_gap * gap),
+               y - params.thickness_base - params.thickness_slope * x);
+}
+
+/* Sectors from the one of cosine c on, of which all below the tangent plane is the first. */
+uvec2 sectors_from(Masks m, vec2 k0, vec2 c)
+{
+    return uvec2(~0u) << uvec2(k0 + c * (m.k1 + c * (m.k2 + c * m.k3)));
+}
+
+/* falloff_weight of a point, by fewer operations. */
+vec2 weight_at(vec2 x, vec2 y)
+{
+    return THRESHOLD ? falloff_weight(x * x + y * y)
+                     : clamp((1.0 - x * x) - y * y, vec2(0.0), vec2(1.0));
 }
 
 /* Takes what a sample of both sides hides first. */
 void hide(inout March march, inout Trail last, Slice s, Masks m, float center_z, vec2 offset,
           vec2 z, bool is_given)
 {
-    bvec2 seen = greaterThan(z, vec2(0.0));
     vec2 x, y;
-    slice_points(s, offset, mix(vec2(center_z), z, seen), x, y);
-    seen = bvec2(seen.x && x.x > 0.0, seen.y && x.y > 0.0); /* see is_seen */
+    slice_points(s, offset, z, x, y);
+    bvec2 seen = is_seen(x, z);
+    x = mix(slice_x(s, offset, vec2(center_z)), x, seen);
     vec2 gap = x - last.x, height = mix(vec2(0.0), y + x * (SIDES * s.fall), seen);
+    y = mix(vec2(NOWHERE), y, seen);
     bvec2 joined = lessThan(abs(height - last.height), VKAO_VBAO_JOIN * abs(gap));
+    last.rounding = mix(m.k0, last.rounding, joined);
     vec2 inner_x = x - VKAO_VBAO_GAP_FRONT * gap;
-    vec2 front_x = mix(x, inner_x, greaterThan(height, vec2(0.0)));
-    front_x = mix(front_x, x, joined);
-    vec2 thick_y = y - depth_of(z, x, gap, is_given);
-    vec2 back_x = x + VKAO_VBAO_GAP_BACK * gap;
-    vec2 front = y * inversesqrt(front_x * front_x + y * y);
-    vec2 back = thick_y * inversesqrt(back_x * back_x + thick_y * thick_y);
-    front = max(front, mix(vec2(-2.0), last.front, joined));
-    last.rounding = mix(vec2(0.0), last.rounding, joined);
-    ivec2 high = min(sector(m, max(front - params.bias_cosine, m.low), last.rounding), ivec2(31));
-    ivec2 low = min(sector(m, max(back, m.low), vec2(0.0)), high);
-    ivec2 bits = mix(ivec2(0), (ivec2(1) << high) - (ivec2(1) << low), seen);
-    ivec2 fresh = bits & ~march.mask;
-    march.mask |= bits;
-    vec2 near_y = min(max(thick_y, vec2(0.0)), y);
-    vec2 w = falloff_weight(inner_x * inner_x + near_y * near_y) * vec2(bitCount(fresh));
+    bvec2 moves = bvec2(!joined.x && height.x > 0.0, !joined.y && height.y > 0.0);
+    vec2 front_x = mix(x, inner_x, moves);
+    vec2 back_y = back_of(z, x, y, gap, is_given), back_x = x + VKAO_VBAO_GAP_BACK * gap;
+    vec2 front = y * inversesqrt(front_x * front_x + y * y) - params.bias_cosine;
+    vec2 back = max(back_y * inversesqrt(back_x * back_x + back_y * back_y), m.low);
+    joined = bvec2(joined.x && seen.x, joined.y && seen.y);
+    front = max(max(front, mix(m.low, last.front, joined)), m.low);
+    uvec2 out_of_sight = sectors_from(m, last.rounding, front) | march.mask;
+    uvec2 fresh = (sectors_from(m, m.k0, back) | out_of_sight) ^ out_of_sight;
+    march.mask |= fresh;
+    vec2 near_y = min(max(back_y, vec2(0.0)), y);
+    vec2 w = weight_at(inner_x, near_y) * vec2(bitCount(fresh));
     march.hidden += w;
     if (BENT_NORMALS) {
-        vec2 middle = clamp(0.5 * (front + max(back, m.low)), vec2(-1.0), vec2(1.0));
+        vec2 middle = clamp(0.5 * (front + params.bias_cosine + back), vec2(-1.0), vec2(1.0));
         w *= m.mass;
         march.out_moment += w * SIDES * sqrt(max(vec2(0.0), 1.0 - middle * middle));
         march.eye_moment += w * middle;
     }
     last.x = x;
     last.height = height;
-    last.front = mix(vec2(-2.0), front, seen);
+    last.front = front;
 }
 
 /* What a slice loses: of its mass, .x, and of its moment along O and along V. */
@@ -104,16 +121,15 @@ vec3 hidden(Slice s, ivec2 texel, float center_z, float jitter)
                                  (THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH),
                              VKAO_VBAO_STEP_LINEAR);
     const vec2 none = vec2(0.0);
-    March march = March(ivec2(0), none, none, none);
-    Trail first = Trail(none, none, vec2(-2.0), vec2(VKAO_VBAO_ROUND_LESS));
-    Trail second = Trail(none, none, vec2(-2.0), none);
+    March march = March(uvec2(0u), none, none, none);
+    Trail first = Trail(none, none, m.low, m.k0 - VKAO_VBAO_ROUND_LESS);
+    Trail second = Trail(none, none, m.low, m.k0);
     uint t = 0u;
     [[unroll]] for (;;) {
-        vec2 offset = step_offset(s, steps, t, VKAO_VBAO_STEP_LEAST);
-        hide(march, first, s, m, center_z, offset, load_sides(texel, offset), IS_GIVEN);
+        vec2 offset = step_offset(s, steps, t, VKAO_VBAO_STEP_LEAST), at = vec2(texel);
+        hide(march, first, s, m, center_z, offset, load_sides(at, offset), IS_GIVEN);
         if (SECOND_LAYER) {
-            ivec2 at = ivec2(offset);
-            vec2 z = vec2(load_second_z(texel + at), load_second_z(texel - at));
+            vec2 z = vec2(load_second_z_at(at + offset), load_second_z_at(at - offset));
             hide(march, second, s, m, center_z, offset, z, IS_GIVEN);
         }
         if (++t >= step_count())
@@ -124,10 +140,9 @@ vec3 hidden(Slice s, ivec2 texel, float center_z, float jitter)
                 march.eye_moment.x + march.eye_moment.y) / SECTORS;
 }
 
-Visibility visibility(ivec2 texel, vec3 position, vec3 normal)
+Visibility visibility(ivec2 texel, vec3 position, vec3 normal, Plane plane)
 {
     vec3 to_eye = direction_to_eye(position);
-    Plane plane = depth_plane(texel, position, normal);
     Noise noise = texel_noise(texel, slice_count());
     float share = 1.0 / float(slice_count());
     /* The mean direction of an open hemisphere is 2/3 of its normal. */

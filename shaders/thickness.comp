@@ -25,8 +25,7 @@ float given_thickness(ivec2 texel, float z)
 
 void main()
 {
-    ivec2 low = ivec2(params.valid.x & 0xffffu, params.valid.x >> 16);
-    ivec2 high = ivec2(params.valid.y & 0xffffu, params.valid.y >> 16);
+    ivec2 low = unpack_texel(params.valid.x), high = unpack_texel(params.valid.y);
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + low;
     if (any(greaterThanEqual(texel, high)))
         return;

@@ -10,37 +10,6 @@
 
 layout(binding = VKAO_BINDING_NORMALS) uniform texture2D normals_image;
 
-ivec2 unpack_texel(uint packed_texel)
-{
-    return ivec2(packed_texel & 0xffffu, packed_texel >> 16);
-}
-
-bool in_rect(ivec2 texel, uvec2 rect)
-{
-    return all(greaterThanEqual(texel, unpack_texel(rect.x))) &&
-           all(lessThan(texel, unpack_texel(rect.y)));
-}
-
-/* From where border_view_z counts: the first texel of the border. */
-ivec2 border_texel(ivec2 texel)
-{
-    return texel - unpack_texel(params.valid.x) + 1;
-}
-
-/* View z, 0 = background or outside the valid texels: prepare writes a border of zeros around them,
- * to which what is outside is moved. As an unsigned number, what is too small is too large. */
-float border_view_z(ivec2 at)
-{
-    ivec2 low = unpack_texel(params.valid.x) - 1, high = unpack_texel(params.valid.y);
-    uvec2 inside = min(uvec2(at), uvec2(high - low));
-    return fetch_view_z_from(low, inside);
-}
-
-float load_view_z(ivec2 texel)
-{
-    return border_view_z(border_texel(texel));
-}
-
 vec3 decode_octahedral(vec2 e)
 {
     vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));

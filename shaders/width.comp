@@ -52,8 +52,8 @@ int run_of(bool vertical, ivec2 texel, ivec2 size, int shift, int most)
 
 void main()
 {
-    ivec2 low = ivec2(params.valid.x & 0xffffu, params.valid.x >> 16), first = low & ivec2(~3, ~0);
-    ivec2 size = ivec2(params.valid.y & 0xffffu, params.valid.y >> 16) - first;
+    ivec2 low = unpack_texel(params.valid.x), first = low & ivec2(~3, ~0);
+    ivec2 size = unpack_texel(params.valid.y) - first;
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(texel, size)) || first.x + texel.x < low.x)
         return;

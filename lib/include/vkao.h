@@ -344,11 +344,12 @@ typedef struct vkao_effect_info {
      * RAYMARCH */
     VkBool32 second_layer;
 
-    /* --- Blur. Separable, cross-bilateral, two dispatches: a mean whose taps count less the
-     * further they lie off the surface that the local depth slope continues, and the more their
-     * normal turns away. The noise of SSAO repeats after 4 texels, that of 4 or more slices after
-     * 2: a radius of 2, or 1 with so many slices, leaves none of it where a surface goes on. It
-     * ends the chain, as intensity and power are right only after the noise is gone. --- */
+    /* --- Blur. Separable, cross-bilateral: a mean whose taps count less the further they lie off
+     * the surface that the local depth slope continues, and the more their normal turns away. The
+     * noise of SSAO repeats after 4 texels, that of 4 or more slices after 2: a radius of 2, or 1
+     * with so many slices, leaves none of it where a surface goes on. On GPUs one of up to 3 takes
+     * one dispatch, a larger one two. It ends the chain, as intensity and power are right only
+     * after the noise is gone. --- */
     /* [0,16] texels on each side; those near the ends count less. 0: intensity and power alone.
      * Default 3 */
     uint32_t blur_radius;

@@ -13,6 +13,7 @@
 #define reals vec4
 #define whole ivec2
 #define ints ivec4
+#define steady
 #define bools bvec4
 #define boolean bvec2
 const int TEXELS = VKAO_SSAO_TEXELS;

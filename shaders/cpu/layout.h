@@ -52,8 +52,6 @@
 #define VKAO_STAGED_FLOAT32 4
 
 #define VKAO_BUFFER_PAD 24
-#define VKAO_CODE_SCALE 100.0
-#define VKAO_CODE_OFFSET 0.55
 #define VKAO_CODE_FINE 256.0
 /* Fine code of 1; numbers are relative to it, so that what is open stays exactly 1. */
 #define VKAO_CODE_OPEN 39680

@@ -22,4 +22,30 @@ float fetch_view_z_from(ivec2 low, uvec2 texel)
         .x;
 }
 
+/* From where border_view_z counts: the first texel of the border. */
+ivec2 border_texel(ivec2 texel)
+{
+    return texel - unpack_texel(params.valid.x) + 1;
+}
+
+/* View z, 0 = background or outside the valid texels: prepare writes a border of zeros around them,
+ * to which what is outside is moved. As an unsigned number, what is too small is too large. */
+float border_view_z(ivec2 at)
+{
+    ivec2 low = unpack_texel(params.valid.x) - 1, high = unpack_texel(params.valid.y);
+    uvec2 inside = min(uvec2(at), uvec2(high - low));
+    return fetch_view_z_from(low, inside);
+}
+
+float load_view_z(ivec2 texel)
+{
+    return border_view_z(border_texel(texel));
+}
+
+/* Of the texel at an offset. */
+float view_z_beside(ivec2 texel, ivec2 offset)
+{
+    return load_view_z(texel + offset);
+}
+
 #endif

@@ -2,6 +2,8 @@
  *
  * SSAO of a GPU: groups are near squares, as their lanes share caches; one texel per invocation,
  * into an image. */
+#include "visibility_code.glsl"
+
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(binding = VKAO_BINDING_TARGET) uniform writeonly image2D noisy_image;
 
@@ -11,5 +13,6 @@ void main()
     if (any(greaterThanEqual(texel, unpack_texel(here.rect.y))))
         return;
     Visibility v = shade(texel);
-    imageStore(noisy_image, texel, BENT_NORMALS ? vec4(v.bent, v.open) : vec4(v.open));
+    imageStore(noisy_image, texel,
+               BENT_NORMALS ? vec4(v.bent, v.open) : vec4(encode_visibility(v.open)));
 }

@@ -144,6 +144,13 @@ static void check_layout(struct fake_vulkan *fake, const VkDescriptorSetLayoutCr
         case VK_DESCRIPTOR_TYPE_STORAGE_BUFFER:
             ++buffers;
             break;
+        case VK_DESCRIPTOR_TYPE_SAMPLER:
+            if (info->pBindings[i].pImmutableSamplers)
+                fake_use(fake, "vkCreateDescriptorSetLayout", VK_OBJECT_TYPE_SAMPLER,
+                         fake_number(info->pBindings[i].pImmutableSamplers[0]));
+            else
+                fake_misuse(fake, "vkCreateDescriptorSetLayout: nobody writes samplers");
+            break;
         default:
             ++uniforms;
         }
@@ -203,6 +210,15 @@ FAKE_CREATE(BufferView, BUFFER_VIEW, {
         fake_misuse(fake, "vkCreateBufferView: beyond the buffer");
 })
 FAKE_DESTROY(BufferView, BUFFER_VIEW)
+FAKE_CREATE(Sampler, SAMPLER, {
+    if (info->unnormalizedCoordinates &&
+        (info->minFilter != info->magFilter || info->mipmapMode || info->minLod != 0.0f ||
+         info->maxLod != 0.0f || info->anisotropyEnable || info->compareEnable ||
+         info->addressModeU != VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE ||
+         info->addressModeV != VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE))
+        fake_misuse(fake, "vkCreateSampler: not what coordinates that are texels allow");
+})
+FAKE_DESTROY(Sampler, SAMPLER)
 FAKE_DESTROY(Pipeline, PIPELINE)
 
 /* What a pipeline is made of. */
@@ -312,7 +328,10 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetImageMemoryRequirements(VkDevice devic
     fake_note(fake, "vkGetImageMemoryRequirements")->handle = fake_number(image);
     const struct fake_object *object =
         fake_use(fake, "vkGetImageMemoryRequirements", VK_OBJECT_TYPE_IMAGE, fake_number(image));
-    VkDeviceSize texel = object && object->image.format == VK_FORMAT_R16_SFLOAT ? 2 : 4;
+    const VkFormat format = object ? object->image.format : VK_FORMAT_UNDEFINED;
+    const VkDeviceSize texel = format == VK_FORMAT_R8_UNORM     ? 1
+                               : format == VK_FORMAT_R16_SFLOAT ? 2
+                                                                : 4;
     *out = (VkMemoryRequirements){
         .size = object ? texel * object->image.extent.width * object->image.extent.height : 0,
         .alignment = fake->image_alignment,
@@ -473,5 +492,7 @@ const struct fake_entry fake_device_functions[FAKE_DEVICE_FUNCTIONS] = {
     ENTRY(BindBufferMemory),
     ENTRY(CreateBufferView),
     ENTRY(DestroyBufferView),
+    ENTRY(CreateSampler),
+    ENTRY(DestroySampler),
     ENTRY(TrimCommandPool),
 };

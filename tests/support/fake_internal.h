@@ -7,7 +7,7 @@
 
 #include "fake_vulkan.h"
 
-enum { FAKE_DEBUG_FUNCTIONS = 3, FAKE_DEVICE_FUNCTIONS = 27, FAKE_COMMANDS = 8 };
+enum { FAKE_DEBUG_FUNCTIONS = 3, FAKE_DEVICE_FUNCTIONS = 29, FAKE_COMMANDS = 8 };
 
 struct fake_entry {
     const char *name;

@@ -45,6 +45,8 @@ static void check_dispatch(const struct world *w, const struct fake_call *dispat
     for (uint32_t i = 0; i < step->use_count; ++i) {
         const struct vkao_use *use = &step->uses[i];
         const uint64_t view = object->views[use->binding];
+        if (use->resource == VKAO_RESOURCE_SAMPLER)
+            continue;
         if (!view)
             fail_msg("%s names binding %u, which holds nothing", step->row->name, use->binding);
         if (!(w->frame->program->needs & VKAO_BIT(use->resource)))
@@ -123,7 +125,7 @@ static void open_with_scratch(struct world *w, vkao_stage_flags stages)
 static void barrier_stands_between_producer_and_consumer(void **state)
 {
     (void)state;
-    static const unsigned dispatches[VKAO_STAGE_ALL + 1] = {0, 2, 3, 4, 1, 3, 4, 5};
+    static const unsigned dispatches[VKAO_STAGE_ALL + 1] = {0, 2, 2, 3, 1, 3, 3, 4};
     for (vkao_stage_flags stages = 1; stages <= VKAO_STAGE_ALL; ++stages) {
         for (int scratch = 0; scratch < 2; ++scratch) {
             struct world w;
@@ -168,7 +170,7 @@ static void barriers_stand_in_every_kind_of_frame(void **state)
         fake_forget_calls(&w.fake);
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
-        assert_int_equal(check_recording(&w), 2 * (half ? 6 : 5));
+        assert_int_equal(check_recording(&w), 2 * (half ? 5 : 4));
         world_close(&w);
     }
 }
@@ -282,42 +284,24 @@ static void dispatch_covers_the_rect_exactly(void **state)
     (void)state;
     static const struct {
         VkRect2D valid, rect;
-        struct vkao_rect prepare, ssao, blur_x, rest;
+        struct vkao_rect ssao, blur_x, rest;
     } cases[] = {
         /* blur radius 4 */
-        {{{0, 0}, {0, 0}},
-         {{0, 0}, {0, 0}},
-         {0, 0, 100, 60},
-         {0, 0, 100, 60},
-         {0, 0, 100, 60},
-         {0, 0, 100, 60}},
-        {{{0, 0}, {64, 32}},
-         {{0, 0}, {0, 0}},
-         {0, 0, 64, 32},
-         {0, 0, 64, 32},
-         {0, 0, 64, 32},
-         {0, 0, 64, 32}},
-        {{{3, 5}, {65, 33}},
-         {{0, 0}, {0, 0}},
-         {3, 5, 68, 38},
-         {3, 5, 68, 38},
-         {3, 5, 68, 38},
-         {3, 5, 68, 38}},
+        {{{0, 0}, {0, 0}}, {{0, 0}, {0, 0}}, {0, 0, 100, 60}, {0, 0, 100, 60}, {0, 0, 100, 60}},
+        {{{0, 0}, {64, 32}}, {{0, 0}, {0, 0}}, {0, 0, 64, 32}, {0, 0, 64, 32}, {0, 0, 64, 32}},
+        {{{3, 5}, {65, 33}}, {{0, 0}, {0, 0}}, {3, 5, 68, 38}, {3, 5, 68, 38}, {3, 5, 68, 38}},
         {{{0, 0}, {0, 0}},
          {{50, 30}, {1, 1}},
-         {0, 0, 100, 60},
          {46, 26, 55, 35},
          {50, 26, 51, 35},
          {50, 30, 51, 31}},
         {{{10, 10}, {60, 40}},
          {{12, 12}, {16, 8}},
-         {10, 10, 70, 50},
          {10, 10, 32, 24},
          {12, 10, 28, 24},
          {12, 12, 28, 20}},
         {{{10, 10}, {60, 40}},
          {{53, 41}, {17, 9}},
-         {10, 10, 70, 50},
          {49, 37, 70, 50},
          {53, 37, 70, 50},
          {53, 41, 70, 50}},
@@ -330,7 +314,8 @@ static void dispatch_covers_the_rect_exactly(void **state)
         w.view.valid = cases[i].valid;
         w.view.rect = cases[i].rect;
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
-        check_cover(&w, 0, cases[i].prepare, VKAO_VIEW_Z_BORDER);
+        /* What is not valid is background for all that samples. */
+        check_cover(&w, 0, (struct vkao_rect){0, 0, 100, 60}, VKAO_VIEW_Z_BORDER);
         check_cover(&w, 1, cases[i].ssao, 0);
         check_cover(&w, 2, cases[i].blur_x, 0);
         check_cover(&w, 3, cases[i].rest, 0);

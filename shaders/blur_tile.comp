@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Both directions of the blur that blur.comp describes at once, for radii up to
+ * VKAO_BLUR_TILE_RADIUS: a group reads a tile of texels and what lies around it into shared memory,
+ * blurs its rows there in place, and then its columns. An invocation takes several texels of a row
+ * or of a column, whose windows overlap. */
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
+#define VKAO_GLSL
+#include "params.h"
+
+layout(local_size_x = VKAO_BLUR_TILE_THREADS) in;
+layout(push_constant) uniform Block { vkao_dispatch here; };
+#include "settings.glsl"
+layout(binding = VKAO_BINDING_SOURCE) uniform texture2D source_image;
+#include "view.glsl"
+#include "surface.glsl"
+#include "visibility_code.glsl"
+#ifdef VKAO_LAST
+#include "finish.glsl"
+#else
+layout(binding = VKAO_BINDING_TARGET) uniform writeonly image2D target_image;
+#endif
+
+/* The tile, and the texels around it: as far as the blur reaches, and one more for slopes, which
+ * rows need at half resolution only. An odd pitch keeps columns in different banks. */
+const int REACH = VKAO_BLUR_TILE_RADIUS, LEFT = REACH + 1, WIDTH = VKAO_BLUR_TILE_WIDTH;
+const int ABOVE = GRID_SHIFT > 0u ? REACH + 1 : REACH;
+const int ROWS = BENT_NORMALS ? VKAO_BLUR_TILE_ROWS_BENT : VKAO_BLUR_TILE_ROWS;
+const int PITCH = WIDTH + 2 * LEFT + 1, TEXELS = ROWS * PITCH;
+/* Texels of a row, and of a column, that an invocation blurs in a turn. */
+const int ALONG_X = 4, TURNS = ROWS * WIDTH / ALONG_X / VKAO_BLUR_TILE_THREADS;
+const int ALONG_Y = (ROWS - 2 * ABOVE) * WIDTH / VKAO_BLUR_TILE_THREADS;
+#define HAS_NORMALS (NORMAL_POWER > 0.0)
+
+/* The first word of a texel is its view z, below 0 where there is no normal. The second is
+ * .w of v, or half floats of it and of the last coordinate of the normal or the bent normal. */
+shared uint tile[TILE_WORDS * TEXELS];
+
+struct Texel {
+    float z;
+    vec4 v; /* bent normal, decode_hidden of visibility */
+    vec4 normal;
+};
+
+Texel load_texel(ivec2 at)
+{
+    Texel t;
+    t.z = surface_z(load_view_z(at));
+    vec4 v = textureLod(sampler2D(source_image, nearest), vec2(at) + 0.5, 0.0);
+    t.v = BENT_NORMALS ? v : v.xxxx;
+    t.v.w = decode_hidden(t.v.w);
+    if (t.z == BACKGROUND_Z)
+        t.v = vec4(0.0);
+    t.normal = vec4(0.0);
+    if (HAS_NORMALS) {
+        ivec2 inside = clamp(at, unpack_texel(params.valid.x), unpack_texel(params.valid.y) - 1);
+        t.normal = stored_normal(inside << GRID_SHIFT);
+    }
+    return t;
+}
+
+void write_visibility(int at, Texel t)
+{
+    if (BENT_NORMALS) {
+        if (HAS_NORMALS)
+            tile[4 * TEXELS + at] = packHalf2x16(vec2(t.v.z, 0.0));
+        tile[(HAS_NORMALS ? 3 : 2) * TEXELS + at] = packHalf2x16(t.v.xy);
+    }
+    float beside = HAS_NORMALS ? t.normal.z : t.v.z;
+    tile[TEXELS + at] =
+        BENT_NORMALS || HAS_NORMALS ? packHalf2x16(vec2(t.v.w, beside)) : floatBitsToUint(t.v.w);
+}
+
+void write_texel(int at, Texel t)
+{
+    tile[at] = floatBitsToUint(t.normal.w > 0.0 ? -t.z : t.z);
+    if (HAS_NORMALS)
+        tile[2 * TEXELS + at] = packHalf2x16(t.normal.xy);
+    write_visibility(at, t);
+}
+
+Texel read_texel(int at)
+{
+    Texel t = Texel(uintBitsToFloat(tile[at]), vec4(0.0), vec4(0.0));
+    if (BENT_NORMALS || HAS_NORMALS) {
+        vec2 both = unpackHalf2x16(tile[TEXELS + at]);
+        t.v = vec4(0.0, 0.0, both.y, both.x);
+        t.normal.z = both.y;
+    } else {
+        t.v.w = uintBitsToFloat(tile[TEXELS + at]);
+    }
+    if (HAS_NORMALS) {
+        t.normal.xy = unpackHalf2x16(tile[2 * TEXELS + at]);
+        t.normal.w = t.z < 0.0 ? 1.0 : 0.0;
+        t.z = abs(t.z);
+    }
+    if (BENT_NORMALS) {
+        t.v.xy = unpackHalf2x16(tile[(HAS_NORMALS ? 3 : 2) * TEXELS + at]);
+        if (HAS_NORMALS)
+            t.v.z = unpackHalf2x16(tile[4 * TEXELS + at]).x;
+    }
+    return t;
+}
+
+/* What the window of a texel gives it; the first and the last are there for slopes. */
+vec4 blurred(Texel window[2 * REACH + 3])
+{
+    Texel center = window[LEFT];
+    float slope = local_slope(window[LEFT - 1].z, center.z, window[LEFT + 1].z);
+    float edge = edge_stop(center.z, params.sharpness, params.reference_z);
+    vec4 sum = center.v;
+    float weights = 1.0;
+    [[unroll]] for (int k = -REACH; k <= REACH; ++k) {
+        if (k == 0 || abs(k) > RADIUS)
+            continue;
+        Texel tap = window[LEFT + k];
+        float tap_slope =
+            GRID_SHIFT > 0u ? local_slope(window[LEFT + k - 1].z, tap.z, window[LEFT + k + 1].z)
+                            : 0.0;
+        float off = off_surface(center.z, slope, tap.z, tap_slope, float(k));
+        float full = blur_weight(k, RADIUS), w = clamp(full - full * edge * off, 0.0, 1.0);
+        if (HAS_NORMALS)
+            w *= normal_weight(center.normal, tap.normal, NORMAL_POWER);
+        sum += w * tap.v;
+        weights += w;
+    }
+    sum /= weights;
+    /* an ao_noisy of the caller's may hold anything */
+    sum.w = is_sane(sum.w) ? sum.w : 0.0;
+    return sum;
+}
+
+/* The window of the texel that is the i-th of a turn. */
+#define WINDOW(t, i)                                                                               \
+    Texel[](t[i], t[i + 1], t[i + 2], t[i + 3], t[i + 4], t[i + 5], t[i + 6], t[i + 7], t[i + 8])
+
+/* Rows, in place: all are read before any is written. */
+void blur_rows(int lane)
+{
+    const int LANES = WIDTH / ALONG_X;
+    Texel results[TURNS][ALONG_X];
+    int first = lane / LANES * PITCH + lane % LANES * ALONG_X;
+    const int TURN = VKAO_BLUR_TILE_THREADS / LANES * PITCH;
+    [[unroll]] for (int turn = 0; turn < TURNS; ++turn) {
+        Texel t[ALONG_X + 2 * LEFT];
+        [[unroll]] for (int i = 0; i < ALONG_X + 2 * LEFT; ++i)
+            t[i] = read_texel(first + turn * TURN + i);
+        [[unroll]] for (int i = 0; i < ALONG_X; ++i) {
+            results[turn][i] = t[LEFT + i];
+            results[turn][i].v = blurred(WINDOW(t, i));
+        }
+    }
+    barrier();
+    [[unroll]] for (int turn = 0; turn < TURNS; ++turn) {
+        [[unroll]] for (int i = 0; i < ALONG_X; ++i)
+            write_visibility(first + turn * TURN + LEFT + i, results[turn][i]);
+    }
+    barrier();
+}
+
+void store(ivec2 texel, Texel t, vec4 v)
+{
+    vec4 result = vec4(v.xyz, v.w * VISIBILITY_UNIT + 1.0);
+    bool is_background = t.z == BACKGROUND_Z;
+#ifdef VKAO_LAST
+    finish(texel, result, is_background);
+#else
+    result = is_background ? vec4(0.0, 0.0, 0.0, 1.0) : result;
+    imageStore(target_image, texel, BENT_NORMALS ? result : result.wwww);
+#endif
+}
+
+void blur_columns(int lane, ivec2 origin)
+{
+    int x = lane % WIDTH, y = lane / WIDTH * ALONG_Y;
+    Texel t[ALONG_Y + 2 * LEFT];
+    [[unroll]] for (int i = 0; i < ALONG_Y + 2 * LEFT; ++i) {
+        /* Rows that are not there are those of slopes that nobody asks for. */
+        int row = clamp(i, LEFT - ABOVE, ALONG_Y + LEFT + ABOVE - 1) - (LEFT - ABOVE);
+        t[i] = read_texel((y + row) * PITCH + LEFT + x);
+    }
+    [[unroll]] for (int i = 0; i < ALONG_Y; ++i) {
+        ivec2 texel = origin + ivec2(x, y + i);
+        vec4 v = blurred(WINDOW(t, i));
+        if (all(lessThan(texel, unpack_texel(here.rect.y))))
+            store(texel, t[LEFT + i], v);
+    }
+}
+
+void main()
+{
+    int lane = int(gl_LocalInvocationIndex);
+    ivec2 size = ivec2(WIDTH, ROWS - 2 * ABOVE);
+    ivec2 origin = ivec2(gl_WorkGroupID.xy) * size + unpack_texel(here.rect.x);
+    /* The tile is as wide as half the group's lanes, twice; what is beside it, as an eighth. */
+    const int BESIDE = 2 * LEFT;
+    ivec2 first = origin - ivec2(LEFT, ABOVE);
+    [[unroll]] for (int row = 0; row < ROWS; row += VKAO_BLUR_TILE_THREADS / WIDTH) {
+        ivec2 at = ivec2(lane % WIDTH, row + lane / WIDTH);
+        write_texel(at.y * PITCH + at.x, load_texel(first + at));
+    }
+    [[unroll]] for (int row = 0; row < ROWS; row += VKAO_BLUR_TILE_THREADS / BESIDE) {
+        ivec2 at = ivec2(WIDTH + lane % BESIDE, row + lane / BESIDE);
+        write_texel(at.y * PITCH + at.x, load_texel(first + at));
+    }
+    barrier();
+    blur_rows(lane);
+    blur_columns(lane, origin);
+}
