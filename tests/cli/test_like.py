@@ -89,10 +89,19 @@ def camera_file_with_world_normals_is_in_it(scratch):
 
 @case
 def assumed_camera_stays_one_with_its_warning(scratch):
+    write_exr(scratch.path('in.exr'), {'Z': SCENE.depth()})
+    scratch.render('in.exr', '-o', 'a.exr')
+    gbuffer(scratch)  # whose normals would tell the camera now
+    run = scratch.render('--like', 'a.exr', 'in.exr', '-o', 'b.exr')
+    matches('assuming 40 degrees', run.stderr, 'stderr')
+
+
+@case
+def estimated_camera_is_in_it(scratch):
     gbuffer(scratch)
     scratch.render('in.exr', '-o', 'a.exr')
     run = scratch.render('--like', 'a.exr', 'in.exr', '-o', 'b.exr')
-    matches('assuming 40 degrees', run.stderr, 'stderr')
+    matches(r'fov=60.* \(estimated', run.stderr, 'stderr')
     equal(scratch.bytes('a.exr'), scratch.bytes('b.exr'), 'the file')
 
 

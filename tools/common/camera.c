@@ -42,6 +42,7 @@ static void take_projection(struct camera *camera, const struct camera *from)
     if (from->type == CAMERA_UNKNOWN)
         return;
     camera->type = from->type;
+    camera->is_assumed = from->is_assumed;
     camera->half_width = from->half_width;
     camera->half_height = from->half_height;
     camera->shift_x = from->shift_x;
@@ -78,11 +79,13 @@ static void take_flags(struct camera *camera, const struct camera_flags *flags)
     if (flags->fov_deg > 0) {
         double half = tan(flags->fov_deg * degree / 2.0);
         camera->type = CAMERA_PERSPECTIVE;
+        camera->is_assumed = false;
         camera->half_width = flags->fov_is_vertical ? 0 : half;
         camera->half_height = flags->fov_is_vertical ? half : 0;
         snprintf(camera->source, sizeof camera->source, "--fov");
     } else if (flags->ortho_width > 0) {
         camera->type = CAMERA_ORTHOGRAPHIC;
+        camera->is_assumed = false;
         camera->half_width = flags->ortho_width / 2.0;
         camera->half_height = 0;
         snprintf(camera->source, sizeof camera->source, "--ortho");

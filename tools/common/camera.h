@@ -22,6 +22,7 @@ struct camera {
     double half_width, half_height;
     double shift_x, shift_y; /* in image widths and heights; NDC = raster NDC + 2 * shift, +y up */
     double near_plane, far_plane; /* scene units; 0 = unknown */
+    bool is_assumed; /* of records: nobody knew it then, and what was assumed stays */
     bool has_rotation;
     bool axis_certain; /* false: the header does not say whether the camera looks along +z or -z */
     double world_to_view[9]; /* rotation, m[row * 3 + column], for column vectors */

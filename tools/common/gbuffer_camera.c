@@ -306,7 +306,7 @@ bool gbuffer_find_camera(struct gbuffer *g, const struct gbuffer_options *option
     struct fit fit = {0};
     if (known && (g->camera.has_rotation || space == NORMAL_SPACE_CAMERA || !g->normals))
         return true;
-    if (g->normals && !estimate(g, options, &fit, err))
+    if (g->normals && !g->camera.is_assumed && !estimate(g, options, &fit, err))
         return false;
     if (fit.is_sure) {
         take_rotation(g, &fit);

@@ -404,7 +404,8 @@ static bool read_camera(struct reader r, const cJSON *root, struct camera *camer
         !read_plane(&r, object, "far", &camera->far_plane) || !read_rotation(&r, object, camera))
         return false;
     camera->type = type ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE;
-    if (strcmp(camera->source, assumed) == 0)
+    camera->is_assumed = strcmp(camera->source, assumed) == 0;
+    if (camera->is_assumed)
         memset(camera->source, 0, sizeof camera->source);
     return !camera->has_rotation ||
            (read_source(&r, object, "rotation_source", camera->rotation_source) &&
