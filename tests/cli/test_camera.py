@@ -5,7 +5,8 @@ import json
 
 import numpy as np
 
-from cli import (CHANNELS, case, cases, check, check_close, equal, main, matches, read_ao, write_exr)
+from cli import (CHANNELS, INPUT, OUTPUT, USAGE, case, cases, check, check_close, equal, main,
+                 matches, read_ao, write_exr)
 from scene import FOV, MOVE, NEAR, RADIUS, TURN, Scene, camera, write_camera
 
 BASE = ('--radius', RADIUS, '--pixel-type', 'float', '--overwrite', 'always')
@@ -220,6 +221,92 @@ def positions_of_a_plane_need_a_camera(scratch):
     scratch.render('in.exr', '-o', 'wanted.exr', *BASE, '--camera', 'c.json')
     check_close(read_ao(scratch.path('ao.exr')), read_ao(scratch.path('wanted.exr')), 0.25, 2e-3,
                 'AO')
+
+
+@case
+def panoramas_are_refused_and_headers_contradicted(scratch):
+    scene = Scene()
+    channels = {'Z': scene.depth(), **scene.normals()}
+    write_exr(scratch.path('in.exr'), channels,
+              attributes=[('cameraFov', 360.0), ('cameraProjection', 4)])
+    scratch.fails(CHANNELS, 'in.exr: cameraProjection is 4 in the header', 'in.exr', '-o', 'a.exr',
+                  hint='--fov, --ortho or --camera')
+    equal(inspect(scratch)[0]['camera'], {'unsupported': 'cameraProjection is 4'}, 'the camera')
+    equal(inspect(scratch, '--fov', 60)[0]['camera']['source'], '--fov', 'source with --fov')
+    write_exr(scratch.path('in.exr'), channels,
+              attributes=[('cameraFov', 60.0), ('cameraAperture', 36.0),
+                          ('cameraFocalLength', 18.0)])
+    view, said = inspect(scratch)
+    for text in (view['camera']['remark'], said):
+        matches('cameraFocalLength says 90 degrees, cameraFov 60: cameraFov is taken', text, 'it')
+
+
+# --- Written ---
+
+@case
+def written_camera_is_read_again(scratch):
+    scene = Scene(160, 90, 57)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **scene.normals(space='world')})
+    view, _ = inspect(scratch, '--write-camera', 'found.json')
+    again, _ = inspect(scratch, '--camera', 'found.json')
+    equal((again['camera']['source'], again['camera']['rotation']), ('camera file',) * 2, 'source')
+    check(abs(again['camera']['fov_x_deg'] - view['camera']['fov_x_deg']) < 1e-9, 'another camera')
+    scratch.fails(OUTPUT, 'found.json: exists', 'inspect', 'in.exr', '-q', '--write-camera',
+                  'found.json')
+    scratch.render('inspect', 'in.exr', '--write-camera', 'found.json', '--overwrite', 'always')
+    results = []
+    for options in ((), ('--camera', 'found.json')):
+        scratch.render('in.exr', '-o', 'ao.exr', *BASE, *options)
+        results.append(read_ao(scratch.path('ao.exr')))
+    check_close(results[0], results[1], 0.07, 1e-4, 'AO')
+
+
+@case
+def left_handed_camera_is_written_as_one(scratch):
+    scene = Scene()
+    normals = scene.normals(space='world')
+    normals['N.X'] = -normals['N.X']  # of a world whose x points the other way
+    rotation = [('unreal/camera/curRot/' + k, '0') for k in ('pitch', 'yaw', 'roll')]
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **normals},
+              attributes=[('cameraFov', 60.0), *rotation])
+    inspect(scratch, '--write-camera', 'found.json')
+    with open(scratch.path('found.json'), encoding='utf-8') as file:
+        check(json.load(file)['left_handed'] is True, 'no left-handed world')
+    equal(inspect(scratch, '--camera', 'found.json')[0]['camera']['rotation'], 'camera file',
+          'rotation')
+
+
+@case
+def cameras_of_a_stereo_file_are_written_by_view(scratch):
+    scenes = {'left': Scene(160, 90, 60), 'right': Scene(160, 90, 60, eye=0.1)}
+    write_exr(scratch.path('in.exr'), *(
+        ({'Z': s.depth(), **s.normals(space='world')}, {'view': v, 'name': v})
+        for v, s in scenes.items()))
+    scratch.render('inspect', 'in.exr', '--write-camera', 'found.json')
+    with open(scratch.path('found.json'), encoding='utf-8') as file:
+        equal(sorted(json.load(file)['views']), ['left', 'right'], 'views')
+
+
+@case
+def an_unknown_camera_is_not_written(scratch):
+    write_exr(scratch.path('in.exr'), {'Z': Scene().depth()})
+    scratch.fails(CHANNELS, 'in.exr: no camera was found: nothing to write', 'inspect', 'in.exr',
+                  '--write-camera', 'found.json', hint='--fov')
+    got = scratch.fails(USAGE, 'are the same file', 'inspect', 'in.exr', '--fov', '50',
+                        '--overwrite', 'always', '--write-camera', 'in.exr')
+    check(got.stderr, 'nothing is said')
+
+
+@cases([('missing', None, 'c.0003.json: cannot open|c.0003.json: .*No such file'),
+        ('wrong', '{"fov_x_deg": 50, "focal": 3}', "c.0003.json: unknown key 'focal'")])
+def cameras_of_later_frames_are_checked_first(scratch, _, third, message):
+    for frame in (1, 2, 3):
+        write_exr(scratch.path(f'in.{frame:04}.exr'), {'Z': Scene().depth()})
+        if frame < 3:
+            scratch.write(f'c.{frame:04}.json', '{"fov_x_deg": 50}')
+    if third:
+        scratch.write('c.0003.json', third)
+    scratch.fails(INPUT, message, 'in.####.exr', '-o', 'ao.####.exr', '--camera', 'c.####.json')
 
 
 # --- Not found, and not asked ---

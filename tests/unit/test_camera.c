@@ -491,8 +491,24 @@ static void json_mistakes_are_named(void **state)
            "a rotation");
     refuse("{\"fov_x_deg\":60,\"world_to_view\":[[1,0,0,0],[1,1,0,0],[0,0,1,0],[0,0,0,1]]}",
            "shear");
+    refuse("{\"fov_x_deg\":60,\"shiftx\":1}", "unknown key 'shiftx'");
+    refuse("{\"views\":{\"left\":{\"fov_x_deg\":60}},\"near\":1}", "unknown key 'near'");
+    refuse("{\"fov_x_deg\":60,\"world_to_view\":[[1,0,0,0],[0,1,0,0],[0,0,-1,0],[0,0,0,1]]}",
+           "a mirror image");
+    refuse("{\"fov_x_deg\":60,\"left_handed\":true,"
+           "\"world_to_view\":[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]}",
+           "a mirror image if");
     refuse("{\"views\":{}}", "'views'");
     refuse("{\"views\":{\"left\":{}}}", "left: 'fov_x_deg'");
+}
+
+static void json_takes_comments_and_left_handed_worlds(void **state)
+{
+    struct camera_set set = parse("{\"_source\":\"a test\",\"fov_x_deg\":60,\"left_handed\":true,"
+                                  "\"world_to_view\":[[1,0,0,0],[0,1,0,0],[0,0,-1,0],[0,0,0,1]]}");
+    (void)state;
+    assert_true(camera_is_mirrored(&set.views[0].camera));
+    camera_set_free(&set);
 }
 
 /* Clip coordinates of a view-space point, to texels of the data window. */
@@ -661,6 +677,7 @@ int main(void)
         TEST(vertical_fov_and_pixel_aspect_fix_the_other_side),
         TEST(json_cameras_of_stereo_are_found_by_view),
         TEST(json_mistakes_are_named),
+        TEST(json_takes_comments_and_left_handed_worlds),
         TEST(projection_undoes_the_ray_of_every_texel),
         TEST(top_left_of_the_display_looks_up_and_left),
         TEST(shift_moves_the_view_to_the_right_and_up),

@@ -212,6 +212,14 @@ void camera_normal_to_view(const struct camera *camera, float matrix[9])
             matrix[column * 3 + row] = (float)camera->world_to_view[row * 3 + column];
 }
 
+bool camera_is_mirrored(const struct camera *camera)
+{
+    const double *m = camera->world_to_view;
+    return m[0] * (m[4] * m[8] - m[5] * m[7]) - m[1] * (m[3] * m[8] - m[5] * m[6]) +
+               m[2] * (m[3] * m[7] - m[4] * m[6]) <
+           0;
+}
+
 double camera_fov_x_deg(const struct camera *camera)
 {
     return 2.0 * atan(camera->half_width) / degree;

@@ -22,12 +22,13 @@ struct camera {
     double half_width, half_height;
     double shift_x, shift_y; /* in image widths and heights; NDC = raster NDC + 2 * shift, +y up */
     double near_plane, far_plane; /* scene units; 0 = unknown */
-    bool is_assumed; /* of records: nobody knew it then, and what was assumed stays */
+    bool is_assumed;              /* of records: nobody knew it then, and what was assumed stays */
     bool has_rotation;
     bool axis_certain; /* false: the header does not say whether the camera looks along +z or -z */
     double world_to_view[9]; /* rotation, m[row * 3 + column], for column vectors */
     bool has_translation;    /* AO does not depend on it, depth from positions may */
     double translation[3];   /* view space, scene units: where the origin of the world is */
+    double bound;    /* of an estimated one: relative error of half_width, not exceeded; else 0 */
     char source[64]; /* of the projection: "camera file", "cameraFov" ...; "" if there is none */
     char rotation_source[64];
     /* Of headers: what contradicts itself or is not believed; and what makes of it an image that no
@@ -50,6 +51,8 @@ bool camera_set_read(const char *path, struct camera_set *set, struct tool_error
 bool camera_set_parse(const char *json, const char *path, struct camera_set *set,
                       struct tool_error *err);
 void camera_set_free(struct camera_set *set);
+/* As camera_set_parse takes it; cJSON_Delete it. What memory ran out for is missing. */
+struct cJSON *camera_json(const struct camera *camera);
 /* The camera of a view, NULL if there is none. A single camera serves all views. */
 const struct camera *camera_set_find(const struct camera_set *set, const char *view);
 
@@ -93,5 +96,7 @@ bool camera_can_project(const struct ao_view *view);
 void camera_normal_to_view(const struct camera *camera, float matrix[9]);
 
 double camera_fov_x_deg(const struct camera *camera);
+/* Whether its world is left-handed; the camera must have a rotation. */
+bool camera_is_mirrored(const struct camera *camera);
 
 #endif

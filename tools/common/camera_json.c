@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Camera files: {"type": "perspective", "fov_x_deg": 58.7, "near": 0.1, "far": 100,
- * "world_to_view": [[...] x 4]}, or {"views": {"left": {...}, "right": {...}}}. */
+ * "world_to_view": [[...] x 4], "left_handed": false}, or {"views": {"left": {...}, "right":
+ * {...}}}. */
 #include "camera.h"
 
 #include "json_text.h"
@@ -86,8 +87,45 @@ static bool read_placement(const struct reader *r, const cJSON *object, struct c
                   fabs(w[3] * w[6] + w[4] * w[7] + w[5] * w[8]);
     if (skew > 1e-3)
         return wrong(r, "world_to_view", "a rotation and a translation, without shear");
+    const cJSON *left_handed = cJSON_GetObjectItemCaseSensitive(object, "left_handed");
+    if (left_handed && !cJSON_IsBool(left_handed))
+        return wrong(r, "left_handed", "true or false");
+    const bool mirrors = camera_is_mirrored(camera);
+    if (mirrors && !left_handed)
+        fail_hint(r->err, "if the world is left-handed, say so: \"left_handed\": true");
+    if (mirrors != cJSON_IsTrue(left_handed))
+        return wrong(r, "world_to_view",
+                     mirrors ? "a rotation: this is a mirror image"
+                             : "a mirror image if \"left_handed\" is true");
     camera->has_rotation = camera->axis_certain = camera->has_translation = true;
     snprintf(camera->rotation_source, sizeof camera->rotation_source, "camera file");
+    return true;
+}
+
+/* A letter wrong in a key, and what it says would be lost without a word. Keys that begin with '_'
+ * are comments. */
+static bool check_keys(const struct reader *r, const cJSON *object, const char *const *known,
+                       size_t count)
+{
+    const cJSON *item;
+    cJSON_ArrayForEach(item, object)
+    {
+        const char *nearest = known[0];
+        bool is_known = item->string[0] == '_';
+        for (size_t i = 0; i < count; i++) {
+            is_known |= strcmp(item->string, known[i]) == 0;
+            if (text_distance(item->string, known[i]) < text_distance(item->string, nearest))
+                nearest = known[i];
+        }
+        if (is_known)
+            continue;
+        if (text_distance(item->string, nearest) <= 3)
+            fail_hint(r->err, "did you mean \"%s\"?", nearest);
+        else
+            fail_hint(r->err, "vkao(1) lists the keys; one that begins with _ is a comment");
+        return fail(r->err, EXIT_INPUT, "%s: %s%sunknown key '%s'", r->path, r->view,
+                    r->view[0] ? ": " : "", item->string);
+    }
     return true;
 }
 
@@ -122,7 +160,9 @@ static bool read_camera(const struct reader *r, const cJSON *object, struct came
     *camera = (struct camera){0};
     if (!cJSON_IsObject(object))
         return fail(r->err, EXIT_INPUT, "%s: a camera must be an object { ... }", r->path);
-    if (!read_type(r, object, camera))
+    static const char *const keys[] = {"type",    "fov_x_deg", "ortho_width",   "near",       "far",
+                                       "shift_x", "shift_y",   "world_to_view", "left_handed"};
+    if (!check_keys(r, object, keys, sizeof keys / sizeof *keys) || !read_type(r, object, camera))
         return false;
     static const char positive[] = "a number > 0", shift[] = "a number between -10 and 10";
     snprintf(camera->source, sizeof camera->source, "camera file");
@@ -154,6 +194,9 @@ static bool read_views(const cJSON *root, struct reader *r, struct camera_set *s
         return fail(r->err, EXIT_MEMORY, "%s: out of memory", r->path);
     if (!views)
         return add_view(set, r, root);
+    static const char *const keys[] = {"views"};
+    if (!check_keys(r, root, keys, 1))
+        return false;
     const cJSON *object;
     cJSON_ArrayForEach(object, views)
     {
@@ -185,6 +228,45 @@ bool camera_set_parse(const char *json, const char *path, struct camera_set *set
     if (!ok)
         camera_set_free(set);
     return ok;
+}
+
+/* --- Writing --- */
+
+static bool add_rows(cJSON *object, const struct camera *camera)
+{
+    cJSON *rows = cJSON_AddArrayToObject(object, "world_to_view");
+    for (int i = 0; i < 4; i++) {
+        double row[4] = {0, 0, 0, i == 3};
+        for (int j = 0; i < 3 && j < 3; j++)
+            row[j] = camera->world_to_view[i * 3 + j];
+        if (i < 3 && camera->has_translation)
+            row[3] = camera->translation[i];
+        cJSON_AddItemToArray(rows, cJSON_CreateDoubleArray(row, 4));
+    }
+    return rows != NULL;
+}
+
+cJSON *camera_json(const struct camera *camera)
+{
+    cJSON *object = cJSON_CreateObject();
+    const bool ortho = camera->type == CAMERA_ORTHOGRAPHIC;
+    cJSON_AddStringToObject(object, "_source", camera->source);
+    cJSON_AddStringToObject(object, "type", ortho ? "orthographic" : "perspective");
+    if (ortho)
+        cJSON_AddNumberToObject(object, "ortho_width", camera->half_width * 2.0);
+    else
+        cJSON_AddNumberToObject(object, "fov_x_deg", camera_fov_x_deg(camera));
+    if (camera->near_plane > 0 && isfinite(camera->near_plane))
+        cJSON_AddNumberToObject(object, "near", camera->near_plane);
+    if (camera->far_plane > 0 && isfinite(camera->far_plane))
+        cJSON_AddNumberToObject(object, "far", camera->far_plane);
+    if (fabs(camera->shift_x) + fabs(camera->shift_y) > 0) {
+        cJSON_AddNumberToObject(object, "shift_x", camera->shift_x);
+        cJSON_AddNumberToObject(object, "shift_y", camera->shift_y);
+    }
+    if (camera->has_rotation && add_rows(object, camera) && camera_is_mirrored(camera))
+        cJSON_AddBoolToObject(object, "left_handed", true);
+    return object;
 }
 
 bool camera_set_read(const char *path, struct camera_set *set, struct tool_error *err)

@@ -226,6 +226,7 @@ static void take_projection(struct gbuffer *g, const struct fit *fit)
     c->half_height = fit->half_width / display_aspect(g);
     c->shift_x = fit->shift_x;
     c->shift_y = fit->shift_y;
+    c->bound = fit->bound;
     snprintf(c->source, sizeof c->source, "estimated, +-%.1g %%", fit->bound * 100.0);
 }
 
@@ -274,8 +275,7 @@ static bool estimate(struct gbuffer *g, const struct gbuffer_options *options, s
     return true;
 }
 
-static void tell(const struct gbuffer *g, const struct fit *fit, const char *path,
-                 struct report *report)
+static void tell(struct gbuffer *g, const struct fit *fit, const char *path, struct report *report)
 {
     char view[64];
     if (!fit->is_sure) {
@@ -283,6 +283,9 @@ static void tell(const struct gbuffer *g, const struct fit *fit, const char *pat
                     "%s: no camera in the header%s%s; assuming 40 degrees horizontal field of view "
                     "(--fov or --camera sets it)",
                     path, fit->why[0] ? ", and the image does not tell it: " : "", fit->why);
+        if (fit->why[0] && !g->camera.remark[0])
+            snprintf(g->camera.remark, sizeof g->camera.remark, "the image does not tell it: %s",
+                     fit->why);
         return;
     }
     if (g->camera.type == CAMERA_ORTHOGRAPHIC)

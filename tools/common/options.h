@@ -56,6 +56,7 @@ struct options {
     bool validation;
     uint32_t threads; /* of OpenEXR, 0 = as many as processors */
     bool json;
+    const char *write_camera; /* where inspect writes what it found, or NULL */
     enum verbosity verbosity;
 };
 

@@ -445,7 +445,8 @@ const struct option_row option_table[] = {
              "extension."},
     {.name = "overwrite", .argument = "WHEN", .fallback = "never",
      .help = "never or always: what to do if an output exists",
-     .commands = RENDER, .apply = apply_word, .offset = AT(overwrite), .words = overwrites},
+     .commands = RENDER | INSPECT, .apply = apply_word, .offset = AT(overwrite),
+     .words = overwrites},
     {.name = "frames", .letter = 'f', .argument = "SPEC",
      .help = "frames of a sequence: 1-100, 1-100x2 (every second), 1,5,20-30. Default: all files"
              " that match INPUT",
@@ -525,10 +526,16 @@ const struct option_row option_table[] = {
      .help = "one view of a stereo file, or all. Default: all if the camera file has views",
      .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(view)},
     {.heading = "Camera", .name = "camera", .argument = "FILE",
-     .help = "JSON camera, see vkao(1); may hold a frame token. Default: what the header says",
+     .help = "JSON camera, see vkao(1); may hold a frame token. Default: what header, "
+             "positions, or depth and normals say",
      .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(camera_file),
-     .more = "Options come before the camera file, and that before the header. Without any, 40 "
-             "degrees are assumed, with a warning."},
+     .more = "Options come before the camera file, and that before the header. Where nobody tells, "
+             "positions do, exactly, or depth and normals, with a bound; where these cannot, 40 "
+             "degrees are assumed. Either is said in a warning."},
+    {.name = "write-camera", .argument = "FILE",
+     .help = "inspect: write the camera that was found, as --camera reads it",
+     .commands = INSPECT, .apply = apply_text, .offset = AT(write_camera),
+     .more = "Of a sequence, that of its first frame. It is an error if none was found."},
     {.name = "fov", .argument = "DEG[:h|v]",
      .help = "field of view over the display window, horizontal (h) or vertical",
      .commands = RENDER | INSPECT, .apply = apply_fov, .offset = AT(gbuffer.camera.fov_deg)},

@@ -295,6 +295,21 @@ static bool check_there(const struct plan *plan, struct tool_error *err)
     return true;
 }
 
+/* What they say too: one that is wrong would end the run in its middle. */
+static bool check_cameras(const struct plan *plan, struct tool_error *err)
+{
+    for (size_t i = 0; i < plan->count; i++) {
+        struct camera_set cameras = {0};
+        const char *path = plan->frames[i].camera;
+        if (!path || (i > 0 && strcmp(path, plan->frames[i - 1].camera) == 0))
+            continue;
+        if (!camera_set_read(path, &cameras, err))
+            return false;
+        camera_set_free(&cameras);
+    }
+    return true;
+}
+
 bool plan_make(const struct options *options, struct plan *plan, struct tool_error *err)
 {
     struct patterns patterns;
@@ -305,6 +320,8 @@ bool plan_make(const struct options *options, struct plan *plan, struct tool_err
     for (size_t i = 0; ok && options->output && !options->continue_on_error && i < plan->count; i++)
         ok = plan_check_outputs(options, &plan->frames[i], err);
     ok = ok && (options->continue_on_error || check_there(plan, err));
+    if (ok && options->output && !options->continue_on_error)
+        ok = check_cameras(plan, err);
     free_patterns(&patterns);
     if (!ok)
         plan_free(plan);

@@ -110,8 +110,9 @@ struct role_request {
 size_t roles_view_count(const struct exr_info *info);
 const char *roles_view_name(const struct exr_info *info, size_t index);
 
-/* Where there is no depth, positions take its place, as DEPTH_POSITION. Fails without either or with several equally good hits; other roles may stay unfound, unless the
- * request names them. Errors: EXIT_CHANNELS; EXIT_INPUT if all there is is deep data. */
+/* Where there is no depth, positions take its place, as DEPTH_POSITION. Fails without either or
+ * with several equally good hits; other roles may stay unfound, unless the request names them.
+ * Errors: EXIT_CHANNELS; EXIT_INPUT if all there is is deep data. */
 bool roles_resolve(const struct exr_info *info, const struct role_request *request,
                    struct roles *roles, struct tool_error *err);
 

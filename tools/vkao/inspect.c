@@ -3,6 +3,7 @@
  * Facts are collected as JSON, once; the text is printed from it. */
 #include "commands.h"
 
+#include "atomic_file.h"
 #include "json_text.h"
 #include "plan.h"
 #include "views.h"
@@ -11,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 static const char *const kind_names[ROLE_KINDS] = {"depth", "normal",    "color",      "position",
                                                    "ao",    "thickness", "back_depth", "layer2"};
@@ -74,12 +76,20 @@ static void add_camera(cJSON *object, const struct camera *camera)
 {
     cJSON *entry = cJSON_AddObjectToObject(object, "camera");
     bool ortho = camera->type == CAMERA_ORTHOGRAPHIC;
+    if (camera->unsupported[0]) {
+        cJSON_AddStringToObject(entry, "unsupported", camera->unsupported);
+        return;
+    }
     cJSON_AddStringToObject(entry, "type", ortho ? "orthographic" : "perspective");
     cJSON_AddStringToObject(entry, "source", camera->source[0] ? camera->source : "assumed");
+    if (camera->remark[0])
+        cJSON_AddStringToObject(entry, "remark", camera->remark);
     if (ortho)
         cJSON_AddNumberToObject(entry, "ortho_width", camera->half_width * 2.0);
     else
         cJSON_AddNumberToObject(entry, "fov_x_deg", camera_fov_x_deg(camera));
+    if (camera->bound > 0)
+        cJSON_AddNumberToObject(entry, "uncertainty", camera->bound);
     if (camera->near_plane > 0 && isfinite(camera->near_plane))
         cJSON_AddNumberToObject(entry, "near", camera->near_plane);
     if (camera->far_plane > 0 && isfinite(camera->far_plane))
@@ -108,9 +118,22 @@ static void add_conventions(cJSON *object, const struct gbuffer *g)
         cJSON_AddStringToObject(entry, "normal_encoding", normal_encoding_name(g->normal_encoding));
 }
 
-/* NULL if memory ran out; whatever else is wrong becomes the problem. */
+/* The camera as it is used: the normals may have told which way it looks. */
+static struct camera used_camera(const struct gbuffer *g)
+{
+    struct camera camera = g->camera;
+    for (int i = 0; g->normal_space == NORMAL_SPACE_WORLD && i < 9; i++)
+        camera.world_to_view[i] = (double)g->view.normal_to_view[i % 3 * 3 + i / 3];
+    if (g->normal_space == NORMAL_SPACE_WORLD && !g->camera.axis_certain &&
+        camera.world_to_view[8] * g->camera.world_to_view[8] < 0)
+        camera.translation[2] = -camera.translation[2];
+    return camera;
+}
+
+/* NULL if memory ran out; whatever else is wrong becomes the problem. cameras: where the camera of
+ * the view goes, as a camera file has it. */
 static cJSON *describe_view(const struct options *options, const struct frame_source *source,
-                            const struct view *view, struct report *report,
+                            const struct view *view, cJSON *cameras, struct report *report,
                             struct tool_error *out_of_memory)
 {
     struct gbuffer_options wanted = view_options(options, view);
@@ -122,8 +145,15 @@ static cJSON *describe_view(const struct options *options, const struct frame_so
     cJSON_AddStringToObject(object, "name", view->name);
     add_roles(object, &g.roles);
     if (g.width > 0) {
+        const struct camera camera = used_camera(&g);
+        if (camera.source[0] && !camera.unsupported[0])
+            cJSON_AddItemToObject(cameras, view->name, camera_json(&camera));
         add_camera(object, &g.camera);
         add_conventions(object, &g);
+    } else if (source->info.part_count > 0) {
+        /* Without depth too, the header tells of the camera. */
+        camera_resolve(&wanted.camera, view->camera, &source->info, 0, &g.camera);
+        add_camera(object, &g.camera);
     }
     if (!ok) {
         cJSON_AddStringToObject(object, "problem", err.message);
@@ -140,7 +170,7 @@ static cJSON *describe_view(const struct options *options, const struct frame_so
 /* A file whose roles are not found is inspected all the same: that is what the command is for.
  * Damaged files are an error. */
 static cJSON *describe(const struct options *options, const struct plan_frame *frame,
-                       struct report *report, struct tool_error *err)
+                       cJSON *cameras, struct report *report, struct tool_error *err)
 {
     struct frame_source source = {0};
     struct tool_error views_err = {0};
@@ -164,8 +194,8 @@ static cJSON *describe(const struct options *options, const struct plan_frame *f
         cJSON_AddStringToObject(root, "hint", views_err.hint);
     } else {
         for (size_t i = 0; !err->code && i < source.view_count; i++)
-            cJSON_AddItemToArray(views,
-                                 describe_view(options, &source, &source.views[i], report, err));
+            cJSON_AddItemToArray(
+                views, describe_view(options, &source, &source.views[i], cameras, report, err));
     }
     frame_source_close(&source);
     if (!err->code && json_is_whole(begun))
@@ -230,6 +260,10 @@ static void print_part(const cJSON *part)
 static void print_camera(const cJSON *camera)
 {
     bool ortho = strcmp(text_of(camera, "type"), "orthographic") == 0;
+    if (has(camera, "unsupported")) {
+        printf("  camera    not supported: %s\n", text_of(camera, "unsupported"));
+        return;
+    }
     printf("  camera    %s, ", text_of(camera, "type"));
     if (ortho)
         printf("width %.6g", number_of(camera, "ortho_width"));
@@ -243,6 +277,8 @@ static void print_camera(const cJSON *camera)
     if (has(camera, "far"))
         printf(", far %g", number_of(camera, "far"));
     printf("; rotation: %s\n", text_of(camera, "rotation"));
+    if (has(camera, "remark"))
+        printf("            %s\n", text_of(camera, "remark"));
 }
 
 static void print_conventions(const cJSON *c)
@@ -336,6 +372,45 @@ static bool print(cJSON *root, bool json, struct tool_error *err)
     return true;
 }
 
+/* --- Writing the camera --- */
+
+/* The views of a camera file, or its only camera. */
+static char *camera_file_text(cJSON *cameras)
+{
+    const unsigned begun = json_begin();
+    cJSON *only = cameras->child && !cameras->child->string[0] ? cameras->child : NULL;
+    cJSON *root = only ? NULL : cJSON_CreateObject();
+    if (root)
+        cJSON_AddItemToObject(root, "views", cJSON_Duplicate(cameras, true));
+    char *text = json_text(only ? only : root, true, begun);
+    cJSON_Delete(root);
+    return text;
+}
+
+static bool write_camera(const struct options *options, const char *input, cJSON *cameras,
+                         struct tool_error *err)
+{
+    struct atomic_file file = {0};
+    struct stat a, b;
+    if (stat(input, &a) == 0 && stat(options->write_camera, &b) == 0 && a.st_dev == b.st_dev &&
+        a.st_ino == b.st_ino)
+        return fail(err, EXIT_USAGE, "%s: --write-camera and INPUT are the same file", input);
+    if (!cameras->child) {
+        fail_hint(err, "give it with --fov, --ortho or --camera");
+        return fail(err, EXIT_CHANNELS, "%s: no camera was found: nothing to write to %s", input,
+                    options->write_camera);
+    }
+    char *text = camera_file_text(cameras);
+    if (!text)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", options->write_camera);
+    bool ok = atomic_file_open(&file, options->write_camera, options->overwrite, err) &&
+              atomic_file_write(&file, text, strlen(text), err) &&
+              atomic_file_write(&file, "\n", 1, err) && atomic_file_commit(&file, err);
+    atomic_file_abort(&file);
+    free(text);
+    return ok;
+}
+
 /* Of a sequence, its first frame. */
 int command_inspect(const struct options *options, struct report *report)
 {
@@ -344,10 +419,17 @@ int command_inspect(const struct options *options, struct report *report)
     if (plan_make(options, &plan, &err)) {
         struct report silent = *report;
         silent.verbosity = report->verbosity == REPORT_VERBOSE ? REPORT_VERBOSE : REPORT_QUIET;
-        cJSON *root = describe(options, &plan.frames[0], &silent, &err);
-        if (root)
+        cJSON *cameras = cJSON_CreateObject();
+        cJSON *root = NULL;
+        if (!cameras)
+            fail(&err, EXIT_MEMORY, "%s: out of memory", plan.frames[0].input);
+        else
+            root = describe(options, &plan.frames[0], cameras, &silent, &err);
+        if (root &&
+            (!options->write_camera || write_camera(options, plan.frames[0].input, cameras, &err)))
             print(root, options->json, &err);
         cJSON_Delete(root);
+        cJSON_Delete(cameras);
         plan_free(&plan);
     }
     if (err.code != EXIT_OK)
