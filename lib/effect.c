@@ -45,6 +45,7 @@ static void set_constants(struct vkao_program *program)
     c[VKAO_SETTING_SPECULAR] = (uint32_t)e->specular;
     c[VKAO_SETTING_NOISY_CODES] = program->has_codes;
     c[VKAO_SETTING_TILE_WORDS] = vkao_blur_tile_words(e);
+    c[VKAO_SETTING_HALF_AO] = !program->is_cpu && e->ao_format == VK_FORMAT_R16_SFLOAT;
     if (program->is_cpu)
         c[VKAO_SETTING_PATH] = vkao_cpu_setting(program);
 }

@@ -22,6 +22,7 @@ layout(binding = VKAO_BINDING_SOURCE) uniform texture2D source_image;
 #ifdef VKAO_LAST
 #include "finish.glsl"
 #else
+#include "half.glsl"
 layout(binding = VKAO_BINDING_TARGET) uniform writeonly image2D target_image;
 #endif
 
@@ -78,6 +79,6 @@ void main()
 #ifdef VKAO_LAST
     finish(texel, result, z == 0.0);
 #else
-    imageStore(target_image, texel, BENT_NORMALS ? result : result.wwww);
+    imageStore(target_image, texel, nearest_half(BENT_NORMALS ? result : result.wwww));
 #endif
 }

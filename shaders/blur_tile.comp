@@ -21,6 +21,7 @@ layout(binding = VKAO_BINDING_SOURCE) uniform texture2D source_image;
 #ifdef VKAO_LAST
 #include "finish.glsl"
 #else
+#include "half.glsl"
 layout(binding = VKAO_BINDING_TARGET) uniform writeonly image2D target_image;
 #endif
 
@@ -169,7 +170,7 @@ void store(ivec2 texel, Texel t, vec4 v)
     finish(texel, result, is_background);
 #else
     result = is_background ? vec4(0.0, 0.0, 0.0, 1.0) : result;
-    imageStore(target_image, texel, BENT_NORMALS ? result : result.wwww);
+    imageStore(target_image, texel, nearest_half(BENT_NORMALS ? result : result.wwww));
 #endif
 }
 

@@ -6,6 +6,8 @@
 #ifndef VKAO_FINISH_GLSL_
 #define VKAO_FINISH_GLSL_
 
+#include "half.glsl"
+
 layout(binding = VKAO_BINDING_AO_WRITE) uniform writeonly image2D ao_out;
 #ifndef VKAO_NO_BENT_NORMALS
 layout(binding = VKAO_BINDING_BENT_WRITE) uniform writeonly image2D bent_out;
@@ -39,7 +41,7 @@ float final_ao(float visibility, bool background)
  * background is zero, as its normal is. */
 void finish(ivec2 texel, vec4 result, bool background)
 {
-    imageStore(ao_out, texel, vec4(final_ao(result.w, background)));
+    imageStore(ao_out, texel, vec4(ao_texel(final_ao(result.w, background))));
 #ifndef VKAO_NO_BENT_NORMALS
     if (BENT_NORMALS) {
         vec3 n = params.normal_x.xyz * result.x + params.normal_y.xyz * result.y +
