@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""The man page's snippet for Blender writes the camera that Blender has, and what Blender renders is
-understood as it comes. Needs a Python with the module bpy (pip install bpy): this one, or the one
-that VKAO_BPY_PYTHON names."""
+"""The man page's snippet for Blender writes the camera that Blender has, and what Blender renders
+is understood as it comes. Needs a Python with the module bpy (pip install bpy): this one, or the
+one that VKAO_BPY_PYTHON names."""
 import json
 import os
 import subprocess

@@ -6,7 +6,7 @@ import json
 import numpy as np
 
 from cli import (CHANNELS, INPUT, OUTPUT, USAGE, case, cases, check, check_close, equal, main,
-                 matches, read_ao, write_exr)
+                 matches, read_ao, read_parts, write_exr)
 from scene import FOV, MOVE, NEAR, RADIUS, TURN, Scene, camera, write_camera
 
 BASE = ('--radius', RADIUS, '--pixel-type', 'float', '--overwrite', 'always')
@@ -239,6 +239,38 @@ def panoramas_are_refused_and_headers_contradicted(scratch):
     view, said = inspect(scratch)
     for text in (view['camera']['remark'], said):
         matches('cameraFocalLength says 90 degrees, cameraFov 60: cameraFov is taken', text, 'it')
+
+
+# --- Sequences ---
+
+def frames_of(scratch, fovs):
+    """A ball moves a little from frame to frame; None: a frame that tells nothing."""
+    for i, fov in enumerate(fovs):
+        scene = Scene(160, 90, fov or 60, eye=0.02 * i)
+        channels = one_plane() if fov is None \
+            else {'Z': scene.depth(), **scene.normals(space='world')}
+        write_exr(scratch.path(f'in.{i + 1:04}.exr'), channels)
+    got = scratch.render('in.####.exr', '-o', 'ao.####.exr', '--radius', RADIUS)
+    used = []
+    for i in range(len(fovs)):
+        part = read_parts(scratch.path(f'ao.{i + 1:04}.exr'))[0]
+        used.append(json.loads(part.attributes['vkao/params'])['camera']['half_width'])
+    return used, got.stderr
+
+
+@case
+def frames_keep_the_camera_of_the_first(scratch):
+    used, said = frames_of(scratch, (60, 60, None, 60))
+    equal(used, [used[0]] * 4, 'half widths')
+    matches(r'in\.0003\.exr: this frame does not tell the camera', said, 'the warning')
+
+
+@case
+def a_zoom_is_followed(scratch):
+    used, said = frames_of(scratch, (60, 64, 40))
+    for half, fov in zip(used, (60, 64, 40)):
+        check(abs(half / half_width(fov) - 1) < 0.01, f'{half}, want {half_width(fov)}')
+    matches('another camera than that of the frames before', said, 'the warning')
 
 
 # --- Written ---

@@ -19,6 +19,15 @@
 
 enum normal_encoding { NORMAL_ENCODING_AUTO, NORMAL_ENCODING_SIGNED, NORMAL_ENCODING_UNSIGNED };
 
+/* What was estimated of the camera of one view of a sequence, from frame to frame: AO must not
+ * flicker with the estimate. Zero-initialise. */
+struct camera_memory {
+    bool is_known;
+    struct camera camera; /* its projection */
+    enum depth_type depth_type;
+    unsigned models; /* as camera_fit takes them: what it was */
+};
+
 struct gbuffer_options {
     struct role_request roles;
     struct camera_flags camera;
@@ -26,6 +35,7 @@ struct gbuffer_options {
     enum normal_space normal_space;
     enum normal_encoding normal_encoding;
     bool want_color; /* colour is an error if it is missing, and is not read otherwise */
+    struct camera_memory *memory; /* of the view, or NULL = a frame of its own */
     struct budget budget;
     /* What the caller will take per texel, counted against the budget: in any case, and more if
      * there are normals. */

@@ -248,9 +248,49 @@ static bool is_unscaled(enum fit_model model)
     return model >= FIT_DEVICE;
 }
 
+/* --- From frame to frame --- */
+
+static void take_remembered(struct gbuffer *g, const struct camera_memory *memory)
+{
+    struct camera *c = &g->camera;
+    const struct camera *from = &memory->camera;
+    c->type = from->type;
+    c->half_width = from->half_width;
+    c->half_height = from->half_height;
+    c->shift_x = from->shift_x;
+    c->shift_y = from->shift_y;
+    c->near_plane = from->near_plane;
+    c->bound = from->bound;
+    memcpy(c->source, from->source, sizeof c->source);
+    g->depth_type = memory->depth_type;
+}
+
+/* The camera of the frames before, where this one agrees with it; else this one's from now on. */
+static void remember(struct gbuffer *g, const struct fit *fit, const char *path,
+                     struct camera_memory *memory, struct report *report)
+{
+    const struct camera *c = &g->camera, *before = &memory->camera;
+    const bool same = memory->is_known && memory->depth_type == g->depth_type &&
+                      before->type == c->type &&
+                      fabs(log(before->half_width / c->half_width)) <= before->bound + c->bound;
+    if (same) {
+        take_remembered(g, memory);
+        return;
+    }
+    if (memory->is_known)
+        report_warn(report, "camera change",
+                    "%s: another camera than that of the frames before: half the width at distance "
+                    "1 is %.4g, was %.4g",
+                    path, c->half_width, before->half_width);
+    *memory = (struct camera_memory){
+        .is_known = true, .camera = *c, .depth_type = g->depth_type, .models = 1u << fit->model};
+}
+
+/* --- The whole --- */
+
 /* False only if memory runs out. */
-static bool estimate(struct gbuffer *g, const struct gbuffer_options *options, struct fit *fit,
-                     struct tool_error *err)
+static bool estimate_as(struct gbuffer *g, unsigned models, double near_half_width, struct fit *fit,
+                        struct tool_error *err)
 {
     const bool known = g->camera.source[0] != '\0';
     const struct fit_input input = {
@@ -261,8 +301,9 @@ static bool estimate(struct gbuffer *g, const struct gbuffer_options *options, s
         .data_window = g->data_window,
         .display_window = g->display_window,
         .pixel_aspect = (double)g->pixel_aspect,
-        .models = possible_models(g, options),
+        .models = models,
         .half_width = known ? g->camera.half_width : 0,
+        .near_half_width = near_half_width,
     };
     *fit = (struct fit){0};
     snprintf(fit->why, sizeof fit->why, "depth is of type %s", depth_type_name(g->depth_type));
@@ -273,6 +314,17 @@ static bool estimate(struct gbuffer *g, const struct gbuffer_options *options, s
         snprintf(fit->why, sizeof fit->why, "depth looks normalized");
     }
     return true;
+}
+
+/* Near what it was in the frames before, and everywhere if it is not there. */
+static bool estimate(struct gbuffer *g, const struct gbuffer_options *options, struct fit *fit,
+                     struct tool_error *err)
+{
+    const struct camera_memory *memory = options->memory;
+    if (memory && memory->is_known && !g->camera.source[0] &&
+        !estimate_as(g, memory->models, memory->camera.half_width, fit, err))
+        return false;
+    return fit->is_sure || estimate_as(g, possible_models(g, options), 0, fit, err);
 }
 
 static void tell(struct gbuffer *g, const struct fit *fit, const char *path, struct report *report)
@@ -299,6 +351,22 @@ static void tell(struct gbuffer *g, const struct fit *fit, const char *path, str
                 path, view, g->camera.source, depth_type_name(g->depth_type));
 }
 
+/* A frame that does not tell, of a sequence whose others did. */
+static bool keep_remembered(struct gbuffer *g, const struct gbuffer_options *options,
+                            const char *path, struct report *report, struct tool_error *err)
+{
+    struct fit fit = {0};
+    take_remembered(g, options->memory);
+    report_warn(report, "camera kept",
+                "%s: this frame does not tell the camera: that of the frames before is taken",
+                path);
+    if (g->normals && !estimate(g, options, &fit, err))
+        return false;
+    if (fit.is_sure)
+        take_rotation(g, &fit);
+    return true;
+}
+
 bool gbuffer_find_camera(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
                          struct report *report, struct tool_error *err)
 {
@@ -316,7 +384,11 @@ bool gbuffer_find_camera(struct gbuffer *g, const struct gbuffer_options *option
         if (!known) {
             take_depth_type(g, &fit);
             take_projection(g, &fit);
+            if (options->memory)
+                remember(g, &fit, path, options->memory, report);
         }
+    } else if (!known && options->memory && options->memory->is_known && !g->camera.is_assumed) {
+        return keep_remembered(g, options, path, report, err);
     }
     if (!known)
         tell(g, &fit, path, report);

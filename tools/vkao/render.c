@@ -24,6 +24,7 @@ struct session {
     struct gpu gpu;
     struct ao_session *ao; /* NULL until the driver has started, beside the first view */
     float auto_radius;     /* 0 = not known yet */
+    struct camera_memory cameras[MAX_VIEWS]; /* by view, as estimated */
     bool summarised, is_sequence;
 };
 
@@ -203,6 +204,7 @@ static void open_part(void *data, uint32_t part)
     options.work_normals_texel_bytes =
         ao_job_texel_bytes(true, options.want_color, effect) - options.work_texel_bytes;
     options.held_bytes = o->held_bytes;
+    options.memory = &o->session->cameras[o->view - o->source->views];
     const double start = now_ms();
     o->is_read = gbuffer_load(&o->source->info, &options, o->view->camera, o->session->report,
                               o->gbuffer, &o->read_err);
