@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """vkao render: the ways that files come in and go out, and what must not change the result."""
 import json
+import struct
 
 import numpy as np
 
@@ -179,6 +180,34 @@ def comp_without_alpha_writes_none(scratch):
     write_exr(scratch.path('in.exr'), {**gbuffer(), **SCENE.color(alpha=False)})
     scratch.render('in.exr', '-o', 'comp.exr', '--mode', 'comp', *VIEW)
     equal(sorted(read_parts(scratch.path('comp.exr'))[0].channels), ['B', 'G', 'R'], 'channels')
+
+
+@case
+def comp_keeps_the_window_of_the_colour(scratch):
+    """The depth part is cropped, or moved: colour that it does not reach is as it was."""
+    scene = Scene(WIDTH, HEIGHT)
+    color = scene.color()
+    for x, y, width, height in ((30, 20, 90, 50), (-10, -7, WIDTH - 20, HEIGHT + 30)):
+        row, column = np.mgrid[:height, :width]
+        depth = (4 + (row // 8 + column // 8) % 2 * 0.5).astype(np.float32)
+        display = (0, 0, WIDTH - 1, HEIGHT - 1)
+        write_exr(scratch.path('in.exr'), (color, {'name': 'rgba', 'display': display}),
+                  ({'Z': depth}, {'name': 'depth', 'x': x, 'y': y, 'display': display}))
+        line = ('in.exr', '--fov', FOV, '-r', 1, '--pixel-type', 'float', '--overwrite', 'always')
+        scratch.render(*line, '-o', 'ao.exr')
+        scratch.render(*line, '-o', 'comp.exr', '--mode', 'comp', '--preview', 'comp.png')
+        comp, ao = read_parts(scratch.path('comp.exr'))[0], read_ao(scratch.path('ao.exr'))
+        equal(comp.data_window, display, 'data window')
+        whole = np.ones((HEIGHT, WIDTH), np.float32)
+        rows = slice(max(y, 0), min(y + height, HEIGHT))
+        columns = slice(max(x, 0), min(x + width, WIDTH))
+        whole[rows, columns] = ao[rows.start - y:rows.stop - y, columns.start - x:columns.stop - x]
+        check(whole.min() < 0.95, f'AO is {whole.min()} at least: nothing to see')
+        for name in 'RGBA':
+            wanted = color[name] * (1 if name == 'A' else whole)
+            check_close(comp[name], wanted, 0 if name == 'A' else 1e-6, 1e-6, name)
+        size = struct.unpack('>II', scratch.bytes('comp.png')[16:24])
+        equal(size, (WIDTH, HEIGHT), 'size of the preview')
 
 
 @case

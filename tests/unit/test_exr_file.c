@@ -198,7 +198,7 @@ static void append_promotes_a_single_part_with_its_chunks_and_attributes(void **
     write_ok(in_directory("out.exr"), in_directory("in.exr"), &ao, 1);
     info_ok(in_directory("out.exr"), &info);
     assert_int_equal(info.part_count, 2);
-    assert_string_not_equal(info.parts[0].name, "");
+    assert_string_equal(info.parts[0].name, "");
     assert_string_equal(info.parts[1].name, "part0");
     const struct exr_attribute *kept = find_attribute(&info.parts[0], "studio/note");
     assert_non_null(kept);

@@ -356,6 +356,56 @@ static void requests_take_channels_layers_and_parts(void **state)
     free(sheet);
 }
 
+/* Nuke writes the view in front, and leaves the default one out. */
+static void views_may_come_first(void **state)
+{
+    static char *views[] = {"right", "left"};
+    struct sheet *sheet = new_sheet();
+    (void)state;
+    add_part(sheet, "", "", "N.X|N.Y|N.Z|depth.Z|left.N.X|left.N.Y|left.N.Z|left.depth.Z");
+    sheet->info.parts[0].multi_view = views;
+    sheet->info.parts[0].multi_view_count = 2;
+    const struct roles right =
+        resolve(sheet, &(struct role_request){{NULL}, "right", false, {NULL}});
+    const struct roles left = resolve(sheet, &(struct role_request){{NULL}, "left", false, {NULL}});
+    assert_string_equal(right.kind[ROLE_DEPTH].channels[0]->name, "depth.Z");
+    assert_string_equal(right.kind[ROLE_NORMAL].channels[2]->name, "N.Z");
+    assert_string_equal(left.kind[ROLE_DEPTH].channels[0]->name, "left.depth.Z");
+    assert_string_equal(left.kind[ROLE_NORMAL].channels[0]->name, "left.N.X");
+    assert_string_equal(left.kind[ROLE_NORMAL].channels[2]->name, "left.N.Z");
+    const struct roles named =
+        resolve(sheet, &(struct role_request){{"left.depth.Z"}, "right", false, {NULL}});
+    assert_string_equal(named.kind[ROLE_DEPTH].channels[0]->name, "left.depth.Z");
+    assert_true(named.kind[ROLE_DEPTH].of_another_view);
+    const struct roles short_name =
+        resolve(sheet, &(struct role_request){{"depth.Z"}, "left", false, {NULL}});
+    assert_string_equal(short_name.kind[ROLE_DEPTH].channels[0]->name, "left.depth.Z");
+    free(sheet);
+}
+
+/* What vkao appends has no view of its own where channels name the views. */
+static void parts_may_follow_one_of_all_views(void **state)
+{
+    static char *views[] = {"left", "right"};
+    struct sheet *sheet = new_sheet();
+    (void)state;
+    add_part(sheet, "", "", "R|G|B|Z|beauty.R|beauty.G|beauty.B|right.Z");
+    add_part(sheet, "ao.left", "", "AO");
+    add_part(sheet, "ao.right", "", "AO");
+    sheet->info.parts[0].multi_view = views;
+    sheet->info.parts[0].multi_view_count = 2;
+    assert_int_equal(roles_view_count(&sheet->info), 2);
+    assert_string_equal(roles_view_name(&sheet->info, 1), "right");
+    const struct roles right =
+        resolve(sheet, &(struct role_request){{NULL}, "right", false, {NULL}});
+    const struct roles left = resolve(sheet, &(struct role_request){{NULL}, "left", false, {NULL}});
+    assert_string_equal(right.kind[ROLE_DEPTH].channels[0]->name, "right.Z");
+    assert_string_equal(left.kind[ROLE_DEPTH].channels[0]->name, "Z");
+    /* As in the file that was only this part. */
+    assert_string_equal(left.kind[ROLE_COLOR].channels[0]->name, "R");
+    free(sheet);
+}
+
 static void views_of_parts_are_kept_apart(void **state)
 {
     struct sheet *sheet = new_sheet();
@@ -483,6 +533,8 @@ int main(void)
         TEST(equal_names_in_two_parts_are_told_apart_by_part),
         TEST(parts_named_for_a_pass_hold_it),
         TEST(requests_take_channels_layers_and_parts),
+        TEST(views_may_come_first),
+        TEST(parts_may_follow_one_of_all_views),
         TEST(views_of_parts_are_kept_apart),
         TEST(views_in_channel_names_follow_both_customs),
         TEST(deep_data_is_refused_as_such),

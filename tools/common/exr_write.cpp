@@ -227,31 +227,26 @@ Imf::Header new_header(const char *path, const exr_new_part &part, const Imf::He
     return header;
 }
 
-/* A part of a single-part file may lack what a multi-part file demands. taken: names of the parts
- * to come. */
-void promote(Imf::Header &header, const part_layout &layout, const std::set<std::string> &taken)
+/* A part of a single-part file may lack what a multi-part file demands. One without a name keeps
+ * that: Blender, Nuke and others put the name of a part before its layers, and would call them
+ * something else. */
+void promote(Imf::Header &header, const part_layout &layout)
 {
     header.setType(layout.type);
     if (!layout.tiled)
         /* stray ones make OpenEXR take the part for a tiled one */
         header = without(header, "tiles");
-    if (header.hasName() && !header.name().empty())
-        return;
-    const Imf::ChannelList &channels = header.channels();
-    const bool color =
-        channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B");
-    const std::string base = color ? "rgba" : "part";
-    std::string name = color ? base : base + "0";
-    for (int i = 1; taken.count(name); i++)
-        name = base + std::to_string(i);
-    header.setName(name);
+    if (!header.hasName())
+        header.setName("");
 }
 
-void check_names(const char *path, const std::vector<Imf::Header> &headers)
+/* copies: how many of the headers are those of a file; they may be called anything. */
+void check_names(const char *path, const std::vector<Imf::Header> &headers, size_t copies)
 {
     std::set<std::string> names;
     for (const Imf::Header &header : headers) {
-        if (!header.hasName() || header.name().empty())
+        const bool is_new = size_t(&header - headers.data()) >= copies;
+        if (is_new && (!header.hasName() || header.name().empty()))
             raise(EXIT_OUTPUT, nullptr, "%s: a part of a multi-part file needs a name", path);
         if (!names.insert(header.name()).second)
             raise(EXIT_OUTPUT, "choose another name for the new part",
@@ -286,14 +281,11 @@ std::vector<Imf::Header> make_headers(const char *path, const source_file *sourc
                                       const exr_new_part *parts, size_t count)
 {
     std::vector<Imf::Header> headers;
-    std::set<std::string> taken;
-    for (size_t i = 0; i < count; i++)
-        taken.insert(parts[i].name ? parts[i].name : "");
     const size_t copies = source ? source->info.part_count : 0;
     for (size_t i = 0; i < copies; i++) {
         headers.push_back(source->file->header(int(i)));
         if (copies + count > 1)
-            promote(headers.back(), source->input.layout.parts[i], taken);
+            promote(headers.back(), source->input.layout.parts[i]);
     }
     for (size_t i = 0; i < count; i++) {
         const auto from = attributes_of(parts[i]);
@@ -303,7 +295,7 @@ std::vector<Imf::Header> make_headers(const char *path, const source_file *sourc
     if (headers.empty())
         raise(EXIT_OUTPUT, nullptr, "%s: no parts to write", path);
     if (headers.size() > 1)
-        check_names(path, headers);
+        check_names(path, headers, copies);
     return headers;
 }
 

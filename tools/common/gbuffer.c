@@ -88,18 +88,21 @@ static void fill(float *values, size_t count, float value)
         values[i] = value;
 }
 
-/* A role with so many floats per texel in the window of the depth; missing: what its own window
- * lacks, and a fourth component that is not there. */
-static float *read_role(const struct gbuffer *g, const struct role *role, size_t components,
-                        float missing, struct tool_error *err)
+static size_t box_texels(const struct exr_box *box)
 {
-    const struct exr_info *info = role->info;
-    const struct exr_box *box = &info->parts[role->part].data_window;
-    size_t width = (size_t)((int64_t)box->x_max - box->x_min + 1);
-    size_t height = (size_t)((int64_t)box->y_max - box->y_min + 1), texels;
-    if (!size_multiply(width, height, &texels))
-        texels = SIZE_MAX;
-    float *values = allocate(texels, components, info->path, err);
+    const size_t width = (size_t)((int64_t)box->x_max - box->x_min + 1);
+    const size_t height = (size_t)((int64_t)box->y_max - box->y_min + 1);
+    size_t texels;
+    return size_multiply(width, height, &texels) ? texels : SIZE_MAX;
+}
+
+/* A role with so many floats per texel in the window of its own part; missing: a fourth component
+ * that is not there. */
+static float *read_own_window(const struct role *role, size_t components, float missing,
+                              struct tool_error *err)
+{
+    const size_t texels = box_texels(&role->info->parts[role->part].data_window);
+    float *values = allocate(texels, components, role->info->path, err);
     if (!values)
         return NULL;
     fill(values, texels * components, missing);
@@ -108,18 +111,26 @@ static float *read_role(const struct gbuffer *g, const struct role *role, size_t
     for (size_t i = 0; i < components; i++)
         if (role->channels[i])
             reads[count++] = (struct exr_read){role->channels[i]->name, values + i, components};
-    float *aligned = values;
-    if (!exr_read_channels(info, role->part, reads, count, err)) {
-        aligned = NULL;
-    } else if (!same_box(box, &g->data_window)) {
-        aligned = allocate(gbuffer_texels(g), components, info->path, err);
-        if (aligned) {
-            fill(aligned, gbuffer_texels(g) * components, missing);
-            copy_overlap(aligned, &g->data_window, values, box, components);
-        }
+    if (exr_read_channels(role->info, role->part, reads, count, err))
+        return values;
+    free(values);
+    return NULL;
+}
+
+/* The same in the window of the depth; missing: also what its own window lacks. */
+static float *read_role(const struct gbuffer *g, const struct role *role, size_t components,
+                        float missing, struct tool_error *err)
+{
+    const struct exr_box *box = &role->info->parts[role->part].data_window;
+    float *values = read_own_window(role, components, missing, err);
+    if (!values || same_box(box, &g->data_window))
+        return values;
+    float *aligned = allocate(gbuffer_texels(g), components, role->info->path, err);
+    if (aligned) {
+        fill(aligned, gbuffer_texels(g) * components, missing);
+        copy_overlap(aligned, &g->data_window, values, box, components);
     }
-    if (aligned != values)
-        free(values);
+    free(values);
     return aligned;
 }
 
@@ -163,6 +174,13 @@ static bool read_behind(struct gbuffer *g, enum role_kind kind, float **values,
     return *values != NULL;
 }
 
+/* Alpha is 1 where there is none. */
+static void complete_alpha(const struct gbuffer *g, float *color, size_t texels)
+{
+    for (size_t i = 0; !g->color_has_alpha && i < texels; i++)
+        color[i * 4 + 3] = 1.0f;
+}
+
 static bool read_color(struct gbuffer *g, struct tool_error *err)
 {
     const struct role *role = &g->roles.kind[ROLE_COLOR];
@@ -170,15 +188,19 @@ static bool read_color(struct gbuffer *g, struct tool_error *err)
     if (!g->color)
         return false;
     g->color_has_alpha = role->channels[ROLE_MAX_COMPONENTS] != NULL;
-    for (size_t i = 0; !g->color_has_alpha && i < gbuffer_texels(g); i++)
-        g->color[i * 4 + 3] = 1.0f;
+    complete_alpha(g, g->color, gbuffer_texels(g));
     return true;
 }
 
-static uint64_t box_texels(const struct exr_box *box)
+float *gbuffer_read_color(const struct gbuffer *gbuffer, struct exr_box *window,
+                          struct tool_error *err)
 {
-    return (uint64_t)((int64_t)box->x_max - box->x_min + 1) *
-           (uint64_t)((int64_t)box->y_max - box->y_min + 1);
+    const struct role *role = &gbuffer->roles.kind[ROLE_COLOR];
+    *window = role->info->parts[role->part].data_window;
+    float *color = read_own_window(role, 4, 0.0f, err);
+    if (color)
+        complete_alpha(gbuffer, color, box_texels(window));
+    return color;
 }
 
 /* Bytes per texel of a role with so many components, and what reading it takes for a while: the
@@ -190,7 +212,7 @@ static void add_role(const struct gbuffer *g, const struct role *role, uint64_t 
     const bool same = same_box(&part->data_window, &g->data_window);
     const uint64_t role_bytes = components * sizeof(float);
     const uint64_t bytes =
-        part->decode_bytes + (same ? 0 : box_texels(&part->data_window) * role_bytes);
+        part->decode_bytes + (same ? 0 : (uint64_t)box_texels(&part->data_window) * role_bytes);
     *texel_bytes += role_bytes;
     *for_a_while = bytes > *for_a_while ? bytes : *for_a_while;
 }
@@ -201,6 +223,7 @@ static bool check_budget(const struct exr_info *info, const struct gbuffer_optio
 {
     const struct role *depth = &g->roles.kind[ROLE_DEPTH], *normal = &g->roles.kind[ROLE_NORMAL],
                       *color = &g->roles.kind[ROLE_COLOR];
+    const struct exr_part *color_part = color->found ? &color->info->parts[color->part] : NULL;
     const struct placement placement = placement_of(&g->data_window, &g->display_window);
     const uint64_t work_texels =
         ((uint64_t)g->width + placement.left) * (g->height + placement.top);
@@ -214,13 +237,18 @@ static bool check_budget(const struct exr_info *info, const struct gbuffer_optio
         add_role(g, &g->roles.kind[ROLE_POSITION], 4, &texel_bytes, &for_a_while);
     if (options->want_color)
         add_role(g, color, 4, &texel_bytes, &for_a_while);
+    const struct exr_box *window = color_part ? &color_part->data_window : &g->data_window;
+    /* Colour and composite once more, see placement_widen. */
+    const uint64_t wide = options->want_color && !same_box(window, &g->data_window)
+                              ? (uint64_t)box_texels(window) * 8 * sizeof(float)
+                              : 0;
     for (int kind = ROLE_THICKNESS; kind < ROLE_KINDS; kind++)
         if (g->roles.kind[kind].found)
             add_role(g, &g->roles.kind[kind], 1, &texel_bytes, &for_a_while);
     const uint64_t work = work_texels * (options->work_texel_bytes +
                                          (normal->found ? options->work_normals_texel_bytes : 0));
-    const uint64_t bytes =
-        options->held_bytes + work_texels * texel_bytes + (for_a_while > work ? for_a_while : work);
+    const uint64_t bytes = options->held_bytes + wide + work_texels * texel_bytes +
+                           (for_a_while > work ? for_a_while : work);
     return budget_allows_memory(&options->budget, info->path, g->width, g->height, bytes, err);
 }
 
@@ -267,7 +295,7 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
                     depth->info->path, (long long)width, (long long)height, MAX_EXTENT);
     g->width = (uint32_t)width;
     g->height = (uint32_t)height;
-    g->data_window = part->data_window;
+    g->data_window = g->color_window = part->data_window;
     g->display_window = part->display_window;
     g->pixel_aspect = part->pixel_aspect;
     camera_resolve(&options->camera, camera_file, depth->info, depth->part, &g->camera);

@@ -48,6 +48,7 @@ struct gbuffer {
     struct camera camera;
     uint32_t width, height;
     struct exr_box data_window, display_window; /* of the depth part */
+    struct exr_box color_window;                /* of color; the data window, unless widened */
     float pixel_aspect;
 
     float *depth; /* width * height, as view.depth_encoding says; background is background_depth */
@@ -76,6 +77,9 @@ struct gbuffer {
 bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *options,
                   const struct camera *camera_file, struct report *report, struct gbuffer *gbuffer,
                   struct tool_error *err);
+/* The colour in the data window of its own part, which *window becomes; malloc'ed, NULL on error. */
+float *gbuffer_read_color(const struct gbuffer *gbuffer, struct exr_box *window,
+                          struct tool_error *err);
 void gbuffer_free(struct gbuffer *gbuffer);
 /* Of a depth that is no background, at a texel of the data window, row * width + column. */
 double gbuffer_view_z(const struct gbuffer *gbuffer, float depth, size_t texel);

@@ -108,11 +108,32 @@ static const char *file_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
+static uint32_t window_width(const struct exr_box *w)
+{
+    return (uint32_t)((int64_t)w->x_max - w->x_min + 1);
+}
+
+static uint32_t window_height(const struct exr_box *w)
+{
+    return (uint32_t)((int64_t)w->y_max - w->y_min + 1);
+}
+
+static size_t window_texels(const struct exr_box *w)
+{
+    return (size_t)window_width(w) * window_height(w);
+}
+
+/* Of what goes out. */
+static const struct exr_box *output_window(const struct options *o, const struct gbuffer *g)
+{
+    return o->mode == OUTPUT_COMP ? &g->color_window : &g->data_window;
+}
+
 /* The alpha of colour goes out as it came in; the library passes it on, but through its own image
  * format. */
 static void restore_alpha(const struct rendered_view *view)
 {
-    size_t texels = (size_t)view->gbuffer.width * view->gbuffer.height;
+    const size_t texels = window_texels(&view->gbuffer.color_window);
     for (size_t i = 0; i < texels; i++)
         view->result.output[i * 4 + 3] = view->gbuffer.color[i * 4 + 3];
 }
@@ -160,7 +181,7 @@ static bool fill_part(const struct options *o, const struct frame_source *source
     *part = (struct exr_new_part){
         .name = storage->name,
         .view = views_in_channels ? "" : view->name,
-        .data_window = g->data_window,
+        .data_window = *output_window(o, g),
         .display_window = g->display_window,
         .pixel_aspect = g->pixel_aspect,
         .compression = o->compression,
@@ -201,7 +222,8 @@ static bool prepare_preview(const struct options *o, const char *path,
                             struct tool_error *err)
 {
     bool grey = o->mode != OUTPUT_COMP;
-    size_t texels = (size_t)view->gbuffer.width * view->gbuffer.height, bytes;
+    const struct exr_box *window = output_window(o, &view->gbuffer);
+    size_t texels = window_texels(window), bytes;
     if (!size_multiply(texels, grey ? 1 : 3, &bytes))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     uint8_t *pixels = malloc(bytes);
@@ -213,8 +235,8 @@ static bool prepare_preview(const struct options *o, const char *path,
         for (size_t c = 0; !grey && c < 3; c++)
             pixels[i * 3 + c] = byte_of(srgb_of((double)view->result.output[i * 4 + c]));
     }
-    bool ok = png_file_prepare(file, path, view->gbuffer.width, view->gbuffer.height, grey ? 1 : 3,
-                               pixels, o->overwrite != 0, err);
+    bool ok = png_file_prepare(file, path, window_width(window), window_height(window),
+                               grey ? 1 : 3, pixels, o->overwrite != 0, err);
     free(pixels);
     return ok;
 }

@@ -92,3 +92,59 @@ void placement_crop(const struct placement *placement, struct gbuffer *gbuffer,
     crop(result->bent, gbuffer, placement, 4);
     crop(gbuffer->color, gbuffer, placement, 4);
 }
+
+/* Puts an image of the data window into one of the window. */
+static void paste(float *wide, const struct exr_box *window, const float *image,
+                  const struct gbuffer *g)
+{
+    const struct exr_box *from = &g->data_window;
+    const int64_t width = (int64_t)window->x_max - window->x_min + 1;
+    const int64_t left = from->x_min > window->x_min ? from->x_min : window->x_min;
+    const int64_t right = from->x_max < window->x_max ? from->x_max : window->x_max;
+    for (int64_t y = from->y_min; left <= right && y <= from->y_max; y++)
+        if (y >= window->y_min && y <= window->y_max)
+            memcpy(wide + ((y - window->y_min) * width + left - window->x_min) * 4,
+                   image + ((y - from->y_min) * g->width + left - from->x_min) * 4,
+                   (size_t)(right - left + 1) * 4 * sizeof *wide);
+}
+
+/* Replaces *image by one of the window, which is base or, without it, 0 where *image does not
+ * reach. */
+static bool widen(float **image, const struct exr_box *window, size_t texels, const float *base,
+                  const struct gbuffer *g, struct tool_error *err)
+{
+    size_t count;
+    if (!*image)
+        return true;
+    float *wide = size_multiply(texels, 4, &count) ? calloc(count, sizeof *wide) : NULL;
+    if (!wide)
+        return fail(err, EXIT_MEMORY, "out of memory for %zu texels", texels);
+    if (base)
+        memcpy(wide, base, count * sizeof *wide);
+    paste(wide, window, *image, g);
+    free(*image);
+    *image = wide;
+    return true;
+}
+
+bool placement_widen(struct gbuffer *gbuffer, struct ao_result *result, struct tool_error *err)
+{
+    struct gbuffer *g = gbuffer;
+    const struct role *role = &g->roles.kind[ROLE_COLOR];
+    const struct exr_box *own = g->color ? &role->info->parts[role->part].data_window : NULL;
+    struct exr_box window;
+    if (!own || memcmp(own, &g->data_window, sizeof *own) == 0)
+        return true;
+    float *color = gbuffer_read_color(g, &window, err);
+    const size_t texels = (size_t)((int64_t)window.x_max - window.x_min + 1) *
+                          (size_t)((int64_t)window.y_max - window.y_min + 1);
+    if (!color || !widen(&result->output, &window, texels, color, g, err) ||
+        !widen(&result->bent, &window, texels, NULL, g, err)) {
+        free(color);
+        return false;
+    }
+    free(g->color);
+    g->color = color;
+    g->color_window = window;
+    return true;
+}

@@ -24,4 +24,8 @@ bool placement_expand(struct gbuffer *gbuffer, struct placement *placement, stru
 void placement_crop(const struct placement *placement, struct gbuffer *gbuffer,
                     struct ao_result *result);
 
+/* The composite, and the colour, in the window of the colour's own part, if that is another one:
+ * AO is 1 where the depth does not reach. Bent normals are 0 there. */
+bool placement_widen(struct gbuffer *gbuffer, struct ao_result *result, struct tool_error *err);
+
 #endif

@@ -15,6 +15,9 @@ struct channel_name {
     const char *leaf;      /* last component of layer */
     const char *component; /* points into the channel's own name */
     bool bare;             /* no layer in the channel's name: layer is that of the part */
+    /* What all channels of the layer begin with: their names, up to the end of the layer. */
+    const char *channel;
+    size_t prefix;
 };
 
 /* --- Views --- */
@@ -30,10 +33,20 @@ static bool first_with_view(const struct exr_info *info, size_t part)
     return true;
 }
 
+/* The part whose channels name the views, as in single-part stereo files, to which others may have
+ * been appended; NULL if parts are of one view each. */
+static const struct exr_part *part_of_all_views(const struct exr_info *info)
+{
+    for (size_t i = 0; i < info->part_count; i++)
+        if (info->parts[i].multi_view_count > 0)
+            return &info->parts[i];
+    return NULL;
+}
+
 size_t roles_view_count(const struct exr_info *info)
 {
-    if (info->part_count == 1 && info->parts[0].multi_view_count > 0)
-        return info->parts[0].multi_view_count;
+    if (part_of_all_views(info))
+        return part_of_all_views(info)->multi_view_count;
     size_t count = 0;
     for (size_t i = 0; i < info->part_count; i++)
         count += first_with_view(info, i);
@@ -42,8 +55,8 @@ size_t roles_view_count(const struct exr_info *info)
 
 const char *roles_view_name(const struct exr_info *info, size_t index)
 {
-    if (info->part_count == 1 && info->parts[0].multi_view_count > 0)
-        return info->parts[0].multi_view[index];
+    if (part_of_all_views(info))
+        return part_of_all_views(info)->multi_view[index];
     for (size_t i = 0; i < info->part_count; i++)
         if (first_with_view(info, i) && index-- == 0)
             return info->parts[i].view;
@@ -79,16 +92,17 @@ static bool is_view(const struct exr_part *part, const char *word, size_t length
 }
 
 /* In single-part stereo files the last but one component is the view (Blender names all views so,
- * OpenEXR leaves out the default one). False if the channel belongs to another view than the wanted
+ * OpenEXR leaves out the default one), or the first (Nuke). False if the channel belongs to another view than the wanted
  * one. */
 static bool channel_name_read(const struct exr_part *part, const char *channel, const char *view,
                               bool multi_part, struct channel_name *name)
 {
     const char *dot = strrchr(channel, '.');
-    size_t layer = dot ? (size_t)(dot - channel) : 0;
+    size_t layer = dot ? (size_t)(dot - channel) : 0, begin = 0;
     name->component = dot ? dot + 1 : channel;
     if (part->multi_view_count) {
         size_t start = layer;
+        const size_t first = strcspn(channel, ".");
         while (start > 0 && channel[start - 1] != '.')
             start--;
         const char *owner = part->multi_view[0];
@@ -97,15 +111,21 @@ static bool channel_name_read(const struct exr_part *part, const char *channel, 
             owner = channel + start;
             owner_length = layer - start;
             layer = start > 0 ? start - 1 : 0;
+        } else if (dot && first < layer && is_view(part, channel, first)) {
+            owner = channel;
+            owner_length = first;
+            begin = first + 1;
         }
         if (*view && (strlen(view) != owner_length || strncmp(owner, view, owner_length) != 0))
             return false;
     }
     name->bare = layer == 0;
+    name->channel = channel;
+    name->prefix = layer;
     if (name->bare && multi_part)
         part_layer(part, name->layer);
     else
-        snprintf(name->layer, sizeof name->layer, "%.*s", (int)layer, channel);
+        snprintf(name->layer, sizeof name->layer, "%.*s", (int)(layer - begin), channel + begin);
     const char *leaf = strrchr(name->layer, '.');
     name->leaf = leaf ? leaf + 1 : name->layer;
     return true;
@@ -220,11 +240,11 @@ static const struct exr_channel *sibling(const struct search *s, size_t part_ind
     const struct exr_part *part = &s->info->parts[part_index];
     const struct exr_channel *found = NULL;
     /* Also where the view stands behind the layer. */
-    const size_t prefix = name->bare ? 0 : strlen(name->layer);
-    for (size_t i = first_with_prefix(part, name->layer, prefix); i < part->channel_count; i++) {
+    for (size_t i = first_with_prefix(part, name->channel, name->prefix); i < part->channel_count;
+         i++) {
         struct channel_name other;
         const char *channel = part->channels[i].name, *dot = strrchr(channel, '.');
-        if (strncmp(channel, name->layer, prefix) != 0)
+        if (strncmp(channel, name->channel, name->prefix) != 0)
             break;
         if (!text_equal_nocase(dot ? dot + 1 : channel, component))
             continue;
@@ -251,7 +271,8 @@ static bool row_applies(const struct search *s, const struct role_row *row, size
     const struct exr_part *first = &s->info->parts[0];
     for (size_t i = 0; i < first->attribute_count && !attribute; i++)
         attribute = text_starts_with(first->attributes[i].name, row->attribute);
-    bool multi = s->info->part_count > 1;
+    /* What was the only part, to which others were appended, is read as before. */
+    bool multi = s->info->part_count > 1 && part->name && *part->name;
     return companion && attribute && !(row->place == ROLE_SINGLE_PART && multi) &&
            !(row->place == ROLE_MULTI_PART && !multi);
 }
@@ -366,6 +387,21 @@ static void search_layer(struct search *s, enum role_kind kind, size_t part, con
         if (channel_name_read(p, p->channels[c].name, s->view, s->info->part_count > 1, &name) &&
             names_layer(s, part, &p->channels[c], &name, wanted))
             match_sets(s, role_is_scalar(kind) ? depth : vector, part, &name);
+    }
+}
+
+/* A channel of another view, by its whole name. */
+static void search_in_full(struct search *s, const char *wanted)
+{
+    for (size_t p = 0; p < s->info->part_count; p++) {
+        const struct exr_part *part = &s->info->parts[p];
+        for (size_t c = 0; part->multi_view_count > 0 && c < part->channel_count; c++) {
+            if (strcmp(part->channels[c].name, wanted) != 0)
+                continue;
+            struct hit hit = {.part = p, .channels = {&part->channels[c]}, .channel_count = 1};
+            snprintf(hit.layer, sizeof hit.layer, "%s", wanted);
+            add_hit(s, &hit);
+        }
     }
 }
 
@@ -561,6 +597,9 @@ static bool resolve_named(struct search *s, enum role_kind kind, const char *nam
     if (kind == ROLE_DEPTH && names_positions(s, name, role))
         return true;
     search_named(s, kind, name);
+    const bool in_view = s->count > 0;
+    if (!in_view && role_is_scalar(kind))
+        search_in_full(s, name);
     if (s->count == 0)
         return fail_missing(s->info, s->view, kind, name, err);
     if (s->count > 1)
@@ -577,6 +616,7 @@ static bool resolve_named(struct search *s, enum role_kind kind, const char *nam
                 known = &role_table[i];
     }
     take_hit(s, &hit, known, role);
+    role->of_another_view = !in_view;
     return true;
 }
 

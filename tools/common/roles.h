@@ -84,6 +84,7 @@ struct role {
     bool found;
     const struct exr_info *info; /* the file it is in */
     size_t part;
+    bool of_another_view; /* a name given in full is believed */
     const struct exr_channel
         *channels[ROLE_MAX_COMPONENTS + 1]; /* the last: alpha of colour, or NULL */
     size_t channel_count;                   /* without alpha */
@@ -106,7 +107,7 @@ struct role_request {
     const struct exr_info *file[ROLE_FILES];
 };
 
-/* Views of a file in its order: of its parts, or of a single part's multiView attribute. */
+/* Views of a file in its order: of a part's multiView attribute, or of its parts. */
 size_t roles_view_count(const struct exr_info *info);
 const char *roles_view_name(const struct exr_info *info, size_t index);
 

@@ -92,6 +92,7 @@ static bool add_views_with_depth(const struct options *options, const char *came
         request.file[ROLE_NORMAL] = request.file[ROLE_COLOR] = NULL;
         request.no_normals = true;
         if (roles_resolve(info, &request, roles, &unseen) &&
+            !roles->kind[ROLE_DEPTH].of_another_view &&
             !add_view(source, view.name, view.name, camera_path, err))
             return false;
     }

@@ -173,7 +173,7 @@ static bool compute(struct session *s, struct rendered_view *view, struct tool_e
     if (!ao_run(s->ao, &job, &view->result, err))
         return false;
     placement_crop(&placement, g, &view->result);
-    return true;
+    return placement_widen(g, &view->result, err);
 }
 
 /* Pixels of a view, and the driver before the first one: neither waits for the other. */
@@ -248,8 +248,12 @@ static uint64_t held_by(const struct rendered_view *views, size_t count)
         const struct ao_result *r = &views[i].result;
         const uint64_t vectors = (views[i].gbuffer.color ? UINT64_C(1) : 0) +
                                  (r->output ? UINT64_C(1) : 0) + (r->bent ? UINT64_C(1) : 0);
-        bytes += (uint64_t)views[i].gbuffer.width * views[i].gbuffer.height * sizeof(float) *
-                 (1 + 4 * vectors);
+        const struct exr_box *w = &views[i].gbuffer.color_window;
+        const uint64_t wide = ((uint64_t)((int64_t)w->x_max - w->x_min) + 1) *
+                              ((uint64_t)((int64_t)w->y_max - w->y_min) + 1);
+        const uint64_t texels = (uint64_t)views[i].gbuffer.width * views[i].gbuffer.height;
+        if (texels > 0)
+            bytes += sizeof(float) * (texels + 4 * vectors * (wide > texels ? wide : texels));
     }
     return bytes;
 }
