@@ -28,6 +28,10 @@ layout(binding = VKAO_BINDING_TARGET) uniform writeonly image2D target_image;
 
 const ivec2 AXIS = VERTICAL ? ivec2(0, 1) : ivec2(1, 0);
 
+/* Visibility less 1: where all is open, sums are exactly 0 and so is what a division makes of
+ * them. */
+const vec4 ALL_OPEN = vec4(0.0, 0.0, 0.0, 1.0);
+
 vec4 load_noisy(ivec2 texel)
 {
     vec4 v = texelFetch(source_image, texel, 0);
@@ -47,7 +51,7 @@ vec4 blurred(ivec2 texel, float z)
     float slope = local_slope(texel, z);
     float edge = edge_stop(z, params.sharpness, params.reference_z);
     vec4 normal = NORMAL_POWER > 0.0 ? stored_normal(texel << GRID_SHIFT) : vec4(0.0);
-    vec4 sum = load_noisy(texel);
+    vec4 sum = load_noisy(texel) - ALL_OPEN;
     float weights = 1.0;
     int k = -RADIUS;
     for (;;) {
@@ -58,13 +62,13 @@ vec4 blurred(ivec2 texel, float z)
             float w = blur_weight(k, RADIUS) * max(0.0, 1.0 - edge * off);
             if (NORMAL_POWER > 0.0)
                 w *= normal_weight(normal, stored_normal(at << GRID_SHIFT), NORMAL_POWER);
-            sum += w * load_noisy(at);
+            sum += w * (load_noisy(at) - ALL_OPEN);
             weights += w;
         }
         if (++k > RADIUS)
             break;
     }
-    return sum / weights;
+    return sum / weights + ALL_OPEN;
 }
 
 void main()

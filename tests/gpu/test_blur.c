@@ -8,6 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+/* By which Vulkan lets a quotient of 1 be off: 2.5 units in the last place. */
+#define DIVISION (2.5 * 0x1p-23)
+
 /* A picture that the blur reads noise from, or one value if it is not negative. Single-precision
  * images. */
 static void make(struct picture *p, const struct scene *scene, double value)
@@ -99,8 +102,8 @@ static void depth_edges_do_not_leak(void **state)
         picture_run(&p);
         for (size_t texel = 0; texel < picture_texels(&p); ++texel) {
             double want = p.values[SLOT_NOISY][texel], got = p.values[SLOT_AO][texel];
-            if (!(got == want))
-                fail_msg("case %zu: texel %zu is %g, want %g", i, texel, got, want);
+            if (!(fabs(got - want) <= (want == 1.0 ? 0.0 : DIVISION)))
+                fail_msg("case %zu: texel %zu is %.9g, want %g", i, texel, got, want);
         }
         picture_free(&p);
     }
@@ -146,7 +149,7 @@ static void tilted_walls_are_blurred_in_one_piece(void **state)
 }
 
 /* Halfway between its two directions the blur stores 11 bits, and drivers may round them either
- * way: a step of the upper half of [0,1] is 1/2048. Open and fully hidden stay so exactly. */
+ * way: a step of the upper half of [0,1] is 1/2048. Open stays so exactly. */
 static void constants_are_kept(void **state)
 {
     (void)state;
@@ -158,7 +161,7 @@ static void constants_are_kept(void **state)
         picture_run(&p);
         for (size_t i = 0; i < picture_texels(&p); ++i) {
             double want = isfinite(p.values[SLOT_DEPTH][i]) ? values[v] : 1.0;
-            double tolerance = want == 0.0 || want == 1.0 ? 0.0 : 1.0 / 1024.0;
+            double tolerance = want == 1.0 ? 0.0 : want == 0.0 ? DIVISION : 1.0 / 1024.0;
             if (!(fabs(p.values[SLOT_AO][i] - want) <= tolerance))
                 fail_msg("texel %zu is %.9g, want %.9g", i, p.values[SLOT_AO][i], want);
         }
