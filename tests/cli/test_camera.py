@@ -187,6 +187,18 @@ def positions_give_the_camera_of_another_depth(scratch):
     check(abs(camera['fov_x_deg'] - 73) < 1e-3, f'{camera["fov_x_deg"]} degrees, want 73')
 
 
+@cases([('Z', 'planar'), ('Z', 'radial'), ('Z', 'inverse'), ('dd.T', 'radial-near')],
+       name=lambda row: row[1])
+def positions_tell_what_depth_is(scratch, channel, kind):
+    scene = Scene()
+    write_exr(scratch.path('in.exr'), {channel: scene.depth(kind), **positions(scene)})
+    view, _ = inspect(scratch)
+    equal((view['camera']['source'], view['conventions']['depth_type']), ('positions', kind),
+          'camera and depth type')
+    if kind == 'radial-near':
+        check(abs(view['camera']['near'] / NEAR - 1) < 1e-3, f'near {view["camera"]["near"]}')
+
+
 @case
 def positions_of_a_parallel_camera(scratch):
     scene = Scene(160, 90, 2 * np.degrees(np.arctan(2.0)))

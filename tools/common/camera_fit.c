@@ -329,10 +329,13 @@ static void settle_offset(const struct fit_samples *s, const struct fit_input *i
     const double common = fmax(best->sigma, least_sigma);
     fit_refine(s, &offset, common);
     const bool earned = earns(s, &plain, &offset, common) && earns(s, &plain, &offset, best->sigma);
-    plain = earned ? offset : plain;
     fit_refine(s, &plain, common);
-    *best = sharpened(s, &plain);
+    const double apart = fabs(plain.p[FIT_LN_K] - offset.p[FIT_LN_K]);
+    *best = sharpened(s, earned ? &offset : &plain);
     best->near_known = earned;
+    /* Where the name says that there is one, not to see it is no proof of none. */
+    if (!earned && (input->models >> FIT_RADIAL_NEAR & 1u))
+        best->doubt += apart;
 }
 
 /* Normals that face the eye tell R from -R; where too many do not, the world is right-handed. A

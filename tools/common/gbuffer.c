@@ -141,14 +141,16 @@ static bool wants_positions(const struct gbuffer *g)
            (g->roles.kind[ROLE_POSITION].found && !g->camera.source[0]);
 }
 
-static bool use_positions(struct gbuffer *g, struct report *report, struct tool_error *err)
+static bool use_positions(struct gbuffer *g, const struct gbuffer_options *options,
+                          struct report *report, struct tool_error *err)
 {
     const struct role *role =
         &g->roles.kind[g->depth_type == DEPTH_POSITION ? ROLE_DEPTH : ROLE_POSITION];
     if (!wants_positions(g))
         return true;
     float *positions = read_role(g, role, 4, 0.0f, err);
-    const bool ok = positions && gbuffer_use_positions(g, positions, role->info->path, report, err);
+    const bool ok =
+        positions && gbuffer_use_positions(g, options, positions, role->info->path, report, err);
     free(positions);
     return ok;
 }
@@ -344,7 +346,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         if (!g->normals)
             goto failed;
     }
-    if (!use_positions(g, report, err) ||
+    if (!use_positions(g, options, report, err) ||
         !gbuffer_find_camera(g, options, depth->info->path, report, err) ||
         !read_behind(g, ROLE_THICKNESS, &g->thickness, err) ||
         (!g->thickness && !read_behind(g, ROLE_BACK_DEPTH, &g->thickness, err)) ||

@@ -4,9 +4,11 @@
 #include "camera_fit.h"
 #include "camera_positions.h"
 #include "gbuffer_internal.h"
+#include "median.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* --- From positions --- */
@@ -120,6 +122,71 @@ static void take_position_rotation(struct gbuffer *g, const struct position_came
     snprintf(c->rotation_source, sizeof c->rotation_source, "positions");
 }
 
+/* Planar distance by the depth as stored, if that is what its type says; a near plane adds to it. */
+static double planar_by(const struct gbuffer *g, enum depth_type type, size_t texel)
+{
+    const double d = fabs((double)g->depth[texel]);
+    double x = 0, y = 0;
+    if (type == DEPTH_INVERSE)
+        return 1.0 / d;
+    if (type != DEPTH_PLANAR && g->camera.type == CAMERA_PERSPECTIVE)
+        camera_ray(&g->camera, &g->display_window, &g->data_window, (double)(texel % g->width),
+                   (double)(texel / g->width), &x, &y);
+    return d / sqrt(1.0 + x * x + y * y);
+}
+
+/* Medians over the image: how far the type is from the positions, as ln, and what it lacks, in
+ * scene units. False if memory runs out. */
+static bool hold_against_positions(const struct gbuffer *g, enum depth_type type,
+                                   const struct position_camera *camera, const float *positions,
+                                   double *apart, double *lack)
+{
+    const size_t step = gbuffer_sample_step(g), room = gbuffer_texels(g) / step + 1;
+    double *logs = malloc(room * sizeof *logs), *lacks = malloc(room * sizeof *lacks);
+    size_t count = 0;
+    for (size_t i = 0; logs && lacks && i < gbuffer_texels(g); i += step) {
+        const double z = position_depth(camera, positions + i * 4), own = planar_by(g, type, i);
+        if (!positions_are_there(positions + i * 4) || !(z > 0 && own > 0 && isfinite(own)))
+            continue;
+        logs[count] = fabs(log(own / z));
+        lacks[count++] = z - own;
+    }
+    const bool ok = logs && lacks;
+    *apart = ok && count ? median_of(logs, count) : HUGE_VAL;
+    *lack = ok && count ? median_of(lacks, count) : 0;
+    free(logs);
+    free(lacks);
+    return ok;
+}
+
+/* What the depth beside the positions is, where only its name or nobody says so, and the near plane
+ * that it starts from. */
+static bool settle_depth_type(struct gbuffer *g, const struct gbuffer_options *options,
+                              const struct position_camera *camera, const float *positions,
+                              struct tool_error *err)
+{
+    static const enum depth_type types[] = {DEPTH_PLANAR, DEPTH_RADIAL, DEPTH_INVERSE};
+    double least = 0.01, apart, lack;
+    bool ok = true;
+    if (g->depth_type == DEPTH_RADIAL_NEAR) {
+        ok = hold_against_positions(g, DEPTH_RADIAL, camera, positions, &apart, &lack);
+        if (ok && isfinite(apart) && !(g->camera.near_plane > 0)) {
+            g->camera.near_plane = lack > 0 ? lack : 0;
+            g->depth_type = lack > 0 ? DEPTH_RADIAL_NEAR : DEPTH_RADIAL;
+        }
+    } else if (options->depth_type == DEPTH_AUTO &&
+               g->roles.kind[ROLE_DEPTH].depth_type == DEPTH_AUTO) {
+        for (size_t i = 0; ok && i < sizeof types / sizeof *types; i++) {
+            ok = hold_against_positions(g, types[i], camera, positions, &apart, &lack);
+            if (ok && apart < least) {
+                least = apart;
+                g->depth_type = types[i];
+            }
+        }
+    }
+    return ok || fail(err, EXIT_MEMORY, "out of memory for the camera of the positions");
+}
+
 static bool fail_positions(const struct gbuffer *g, const char *why, const char *path,
                            struct tool_error *err)
 {
@@ -130,8 +197,9 @@ static bool fail_positions(const struct gbuffer *g, const char *why, const char 
                 path, g->roles.kind[ROLE_DEPTH].label, why);
 }
 
-bool gbuffer_use_positions(struct gbuffer *g, const float *positions, const char *path,
-                           struct report *report, struct tool_error *err)
+bool gbuffer_use_positions(struct gbuffer *g, const struct gbuffer_options *options,
+                           const float *positions, const char *path, struct report *report,
+                           struct tool_error *err)
 {
     const struct positions p = {
         .values = positions,
@@ -151,7 +219,8 @@ bool gbuffer_use_positions(struct gbuffer *g, const float *positions, const char
         take_position_rotation(g, &camera);
     }
     if (g->depth_type != DEPTH_POSITION)
-        return true;
+        return !found || camera.is_orthographic ||
+               settle_depth_type(g, options, &camera, positions, err);
     char why[sizeof camera.why];
     memcpy(why, camera.why, sizeof why);
     if (!found && !find_known_camera(g, &p, &camera, &found, err))

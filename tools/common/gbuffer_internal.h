@@ -28,8 +28,9 @@ static inline bool gbuffer_is_foreground(const struct gbuffer *g, size_t texel)
 
 /* The camera by positions, width * height * 4, and depth from them if it is DEPTH_POSITION, which
  * it is no longer then. Errors: EXIT_CHANNELS, EXIT_MEMORY. */
-bool gbuffer_use_positions(struct gbuffer *g, const float *positions, const char *path,
-                           struct report *report, struct tool_error *err);
+bool gbuffer_use_positions(struct gbuffer *g, const struct gbuffer_options *options,
+                           const float *positions, const char *path, struct report *report,
+                           struct tool_error *err);
 /* What is not known of the camera by now, and of the type of depth, from depth and normals as read;
  * and says so. Errors: EXIT_MEMORY. */
 bool gbuffer_find_camera(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
