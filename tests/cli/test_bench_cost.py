@@ -98,6 +98,15 @@ def bent_normals_cost_more(scratch):
     check(bent['cycles'] > plain['cycles'], f'{bent} and {plain}')
 
 
+@case
+def shared_memory_is_what_every_device_has(scratch):
+    rows = [row for more in ([], ['--bent-normals'])
+            for row in passes(scratch, '--family', 'navi21', '--configs', 'fast,default,high,best',
+                              *more) if row['pass'] != 'total']
+    most = max(rows, key=lambda row: row['shared_bytes'])
+    check(0 < most['shared_bytes'] <= 16384, f'{most}')
+
+
 @cases([('family', ('--family', 'navi99'), "'navi99', want navi21"),
         ('families', ('--family', ''), '--family'),
         ('bent', ('--bent-normals', '--configs', 'sphere-16'), 'sphere-16 has none')])
