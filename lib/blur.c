@@ -5,7 +5,7 @@
 #include "vkao_blur_last.h"
 #include "vkao_blur_tile.h"
 #include "vkao_blur_tile_last.h"
-#include "vkao_upsample.h"
+#include "vkao_upsample_quads.h"
 
 #include <math.h>
 
@@ -68,10 +68,12 @@ static const struct vkao_pass upsample = {
     .name = "vkao upsample",
     .label = "upsample",
     .stage = VKAO_STAGE_BLUR,
-    VKAO_CODE(vkao_upsample),
+    VKAO_CODE(vkao_upsample_quads),
     .uses = {VKAO_READS(DEPTH, DEPTH), READS_SURFACE, VKAO_READS(SOURCE, BLURRED), WRITES_RESULT},
     .area = VKAO_AREA_IMAGE_RECT,
-    VKAO_ONE_TEXEL,
+    .texels = {2, 2},
+    .group = {VKAO_GROUP_WIDTH, VKAO_GROUP_HEIGHT},
+    .on_rows = true,
     .forms = 2,
 };
 

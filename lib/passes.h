@@ -94,6 +94,7 @@ struct vkao_pass {
     enum vkao_area area;
     VkExtent2D texels; /* of an invocation */
     VkExtent2D group;  /* invocations of a workgroup */
+    bool on_rows;      /* invocations begin at multiples of texels.height, as of texels.width */
     bool vertical;     /* VKAO_SETTING_VERTICAL */
     /* it and the next one run in turns: what either touches lives as long as both */
     bool with_next;

@@ -65,7 +65,8 @@ void vkao_dispatch(const struct vkao_recording *r, uint32_t pass, struct vkao_re
     const struct vkao_pass *row = r->frame->program->steps[pass].row;
     const uint32_t width = row->texels.width * row->group.width,
                    height = row->texels.height * row->group.height;
-    const uint32_t x0 = rect.x0 - rect.x0 % row->texels.width;
+    const uint32_t x0 = rect.x0 - rect.x0 % row->texels.width,
+                   y0 = rect.y0 - (row->on_rows ? rect.y0 % row->texels.height : 0);
     r->frame->ctx->vk.CmdDispatch(r->cmd, (rect.x1 - x0 + width - 1) / width,
-                                  (rect.y1 - rect.y0 + height - 1) / height, 1);
+                                  (rect.y1 - y0 + height - 1) / height, 1);
 }

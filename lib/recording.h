@@ -24,7 +24,8 @@ void vkao_barrier(const struct vkao_recording *r, enum vkao_access before, enum 
 
 /* Binds a pass with its push constants. */
 void vkao_bind(const struct vkao_recording *r, uint32_t pass, const void *push, size_t bytes);
-/* An invocation for each of its texels in the rect, beginning at multiples of its size. */
+/* An invocation for each of its texels in the rect, beginning at multiples of their width, and if
+ * the row says so of their height. */
 void vkao_dispatch(const struct vkao_recording *r, uint32_t pass, struct vkao_rect rect);
 
 #endif

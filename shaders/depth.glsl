@@ -17,9 +17,9 @@ float view_z_from_projected(float depth)
     return far ? 0.0 : z;
 }
 
-float view_z_from_depth(ivec2 texel)
+/* texel: of the image, where the depth lies. */
+float view_z_of(float depth, ivec2 texel)
 {
-    float depth = texelFetch(depth_image, texel, 0).x;
     float z = depth;
     if (DEPTH_ENCODING == VKAO_GLSL_DEPTH_PROJECTED) {
         z = view_z_from_projected(depth);
@@ -31,6 +31,11 @@ float view_z_from_depth(ivec2 texel)
     }
     /* Comparisons with NaN are false, so NaN is background too. */
     return z > VKAO_NEAREST_Z && z < params.far_z ? z : 0.0;
+}
+
+float view_z_from_depth(ivec2 texel)
+{
+    return view_z_of(texelFetch(depth_image, texel, 0).x, texel);
 }
 
 #endif

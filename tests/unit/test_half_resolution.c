@@ -94,17 +94,20 @@ static void odd_valid_origins_are_refused(void **state)
     world_close(&w);
 }
 
-/* Groups of that size cover want and not one more; the push constants hold want. */
+/* Groups of that size cover want, from even texels on if it is begun there, and not one more; the
+ * push constants hold want. */
 static void check_cover(const struct world *w, size_t index, struct vkao_rect want, uint32_t width,
-                        uint32_t height)
+                        uint32_t height, uint32_t begins)
 {
     const struct fake_call *dispatch = fake_nth(&w->fake, "vkCmdDispatch", index);
     const uint32_t border = index == 0 ? 2 * VKAO_VIEW_Z_BORDER : 0; /* of prepare */
     const struct fake_call *push = fake_nth(&w->fake, "vkCmdPushConstants", index);
     uint32_t packed[2];
     assert_non_null(dispatch);
-    assert_int_equal(dispatch->groups[0], (want.x1 - want.x0 + border + width - 1) / width);
-    assert_int_equal(dispatch->groups[1], (want.y1 - want.y0 + border + height - 1) / height);
+    assert_int_equal(dispatch->groups[0],
+                     (want.x1 - want.x0 / begins * begins + border + width - 1) / width);
+    assert_int_equal(dispatch->groups[1],
+                     (want.y1 - want.y0 / begins * begins + border + height - 1) / height);
     vkao_rect_pack(want, packed);
     if (memcmp(push->push, packed, sizeof packed) != 0)
         fail_msg("dispatch %zu does not cover (%u,%u)..(%u,%u)", index, want.x0, want.y0, want.x1,
@@ -152,12 +155,12 @@ static void dispatch_covers_what_the_upsampling_reads(void **state)
         fake_forget_calls(&w.fake);
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
         enum { WIDTH = VKAO_GROUP_WIDTH, HEIGHT = VKAO_GROUP_HEIGHT };
-        check_cover(&w, 0, (struct vkao_rect){0, 0, 51, 30}, WIDTH, HEIGHT);
-        check_cover(&w, 1, cases[i].ssao, WIDTH, HEIGHT);
+        check_cover(&w, 0, (struct vkao_rect){0, 0, 51, 30}, WIDTH, HEIGHT, 1);
+        check_cover(&w, 1, cases[i].ssao, WIDTH, HEIGHT, 1);
         check_cover(&w, 2, cases[i].blur, VKAO_BLUR_TILE_WIDTH,
-                    VKAO_BLUR_TILE_ROWS - 2 * (VKAO_BLUR_TILE_RADIUS + 1));
-        check_cover(&w, 3, cases[i].upsample, WIDTH, HEIGHT);
-        check_cover(&w, 4, cases[i].upsample, WIDTH, HEIGHT);
+                    VKAO_BLUR_TILE_ROWS - 2 * (VKAO_BLUR_TILE_RADIUS + 1), 1);
+        check_cover(&w, 3, cases[i].upsample, 2 * WIDTH, 2 * HEIGHT, 2);
+        check_cover(&w, 4, cases[i].upsample, WIDTH, HEIGHT, 1);
         assert_int_equal(fake_count(&w.fake, "vkCmdDispatch"), 5);
         world_close(&w);
     }
