@@ -225,8 +225,8 @@ static void fill_normals(const struct field *f, struct candidate *c)
 static bool list_candidates(const struct field *f, struct candidate **list, size_t *count)
 {
     const int width = (int)f->input->width, height = (int)f->input->height;
-    const size_t across = (size_t)((width - 1) / f->step + 1),
-                 down = (size_t)((height - 1) / f->step + 1);
+    const size_t across = ((size_t)width - 1) / (size_t)f->step + 1,
+                 down = ((size_t)height - 1) / (size_t)f->step + 1;
     struct candidate *all = malloc(across * down * sizeof *all);
     double *slopes = malloc(across * down * sizeof *slopes);
     *list = all;

@@ -122,7 +122,7 @@ static void take_position_rotation(struct gbuffer *g, const struct position_came
     snprintf(c->rotation_source, sizeof c->rotation_source, "positions");
 }
 
-/* Planar distance by the depth as stored, if that is what its type says; a near plane adds to it. */
+/* Planar distance by the depth as stored, if its type is this; a near plane adds to it. */
 static double planar_by(const struct gbuffer *g, enum depth_type type, size_t texel)
 {
     const double d = fabs((double)g->depth[texel]);
