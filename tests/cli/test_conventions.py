@@ -45,7 +45,7 @@ def depth_type_gives_the_result_of_planar(scratch, kind, name, planes):
     check_close(ao, wanted, 0.07, 2e-4, kind)
     check((ao[SCENE.sky] == 1).all(), f'{kind}: the background is not 1')
     if kind != 'reversed':
-        wrong = ao_of(scratch, channels, '--fov', FOV)
+        wrong = ao_of(scratch, channels, '--fov', FOV, '--depth-type', 'planar')
         check(np.abs(wrong - wanted).mean() > 1e-3, f'--depth-type {name} makes no difference')
 
 
@@ -137,7 +137,8 @@ def unsigned_normals_equal_signed_ones(scratch):
     found = scratch.render('in.exr', '-o', 'auto.exr', *BASE, '--fov', FOV)
     check_close(read_ao(scratch.path('auto.exr')), ao, 0, 0, 'auto')
     matches(r'warning: in\.exr: normals .N. look 0\.\.1 encoded', found.stderr, 'the warning')
-    wrong = ao_of(scratch, channels, '--fov', FOV, '--normal-encoding', 'signed')
+    wrong = ao_of(scratch, channels, '--fov', FOV, '--normal-encoding', 'signed',
+                  '--normal-space', 'camera')
     check(np.abs(wrong - wanted).mean() > 0.01, '--normal-encoding makes no difference')
 
 
@@ -323,7 +324,7 @@ def options_for_the_other_method_change_nothing(scratch):
 @case
 def auto_radius_is_five_percent_of_the_median_distance(scratch):
     write_exr(scratch.path('in.exr'), {'Z': np.full((16, 16), 3.3, np.float32)})
-    got = scratch.render('in.exr', '-o', 'ao.exr')
+    got = scratch.render('in.exr', '-o', 'ao.exr', '--depth-type', 'planar')
     matches(r'radius=0\.1[67] \(auto\)', got.stderr, 'the summary')
     equal(got.stderr.count('vkao: using: '), 1, 'number of summaries')
 

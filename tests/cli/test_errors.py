@@ -436,7 +436,7 @@ def file_size_limit_at_every_byte_leaves_all_or_nothing(scratch):
 def file_size_limit_leaves_no_preview(scratch, _, share):
     grey = np.random.default_rng(1).random((200, 200)).astype(np.float32)
     write_exr(scratch.path('in.exr'),
-              {'Z': np.full((200, 200), 5, np.float32), 'R': grey, 'G': grey, 'B': grey})
+              {'Z': 5 + grey, 'R': grey, 'G': grey, 'B': grey})
     run = ('in.exr', '--fov', FOV, '--mode', 'comp', '--compression', 'dwab')
     scratch.render(*run, '-o', 'whole.exr', '--preview', 'whole.png')
     exr, png = (os.path.getsize(scratch.path('whole.' + f)) for f in ('exr', 'png'))
@@ -462,7 +462,8 @@ def standard_output_may_have_a_size_limit(scratch):
 
 @case
 def full_disk_keeps_the_old_file(scratch):
-    write_exr(scratch.path('in.exr'), {'Z': np.full((200, 200), 5, np.float32)})
+    write_exr(scratch.path('in.exr'), {'Z': np.linspace(5, 6, 40000, dtype=np.float32)
+                                       .reshape(200, 200)})
     scratch.write('out.exr', 'old')
     scratch.fails(OUTPUT, r'out\.exr: cannot write', *RUN, '--compression', 'none', '--overwrite',
                   'always', preexec_fn=lambda: limit_file_size(20000))

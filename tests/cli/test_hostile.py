@@ -84,7 +84,7 @@ def in_json(name, seen):
 def inspect_escapes_names(scratch, _, name, seen):
     gbuffer(scratch, hostile_path(name), name)
     for more in ((), ('-v',)):
-        out, _ = run(scratch, OK, 'inspect', hostile_path(name), *more)
+        out, _ = run(scratch, CHANNELS, 'inspect', hostile_path(name), *more)
         lines = out.splitlines()
         equal(lines[0], f'in-{seen}.exr', 'the file')
         check(f" '{seen}-z' view {seen}: " in lines[1], f'the part is not told: {lines[1]!r}')
@@ -94,7 +94,7 @@ def inspect_escapes_names(scratch, _, name, seen):
 @cases(NAMES)
 def inspect_json_keeps_names(scratch, _, name, seen):
     gbuffer(scratch, hostile_path(name), name)
-    out, _ = run(scratch, OK, 'inspect', hostile_path(name), '--json')
+    out, _ = run(scratch, CHANNELS, 'inspect', hostile_path(name), '--json')
     facts = json.loads(out)
     wanted = in_json(name, seen)
     equal(facts['file'], f'in-{wanted}.exr', 'file')

@@ -5,7 +5,7 @@ import json
 
 import numpy as np
 
-from cli import (INPUT, OK, case, cases, check, corpus, equal, main, matches, oiio, write_exr)
+from cli import (CHANNELS, INPUT, OK, case, cases, check, corpus, equal, main, matches, oiio, write_exr)
 from scene import FAR, FOV, NEAR, Scene, camera, write_camera
 
 SCENE = Scene(64, 36)
@@ -82,8 +82,8 @@ def text_tells_the_same(scratch):
                     r'(?m)^  depth +Z \(float, part 0\)$', r'(?m)^  normal +N \(float, part 0\)$',
                     r'(?m)^  color ', r'(?m)^  position +-$',
                     r'(?m)^  camera +perspective, 60 degrees horizontal \(--fov\)',
-                    r'(?m)^  depth is +planar: z .* background ',
-                    r'(?m)^  normals +camera space, signed$'):
+                    r'(?m)^  depth is +planar \(.*\): z .* background \d+ %',
+                    r'(?m)^  normals +camera space, signed; agreement with depth \d'):
         matches(pattern, text, 'text')
 
 
@@ -127,11 +127,14 @@ def cameras_of_views_are_told_apart(scratch):
 @case
 def unusable_files_are_told_all_the_same(scratch):
     write_exr(scratch.path('in.exr'), {**SCENE.color(), **SCENE.normals()})
-    facts = inspect_json(scratch, 'in.exr')
+    run = scratch.run('inspect', 'in.exr', '--json')
+    equal(run.code, CHANNELS, 'exit code: that of a run')
+    facts = json.loads(run.stdout)
     equal(len(facts['parts'][0]['channels']), 7, 'number of channels')
     matches('no depth channel found', facts['views'][0]['problem'], 'problem')
     matches('--depth', facts['views'][0]['hint'], 'hint')
-    matches(r'(?m)^  problem +.*no depth channel found', inspect(scratch, 'in.exr'), 'text')
+    matches(r'(?m)^  problem +.*no depth channel found', scratch.run('inspect', 'in.exr').stdout,
+            'text')
 
 
 @cases([('name', 'problem with "quotes", ünïcode\\and\ttab'), ('plain', 'plain')])

@@ -196,6 +196,7 @@ def wrong_uses_are_refused(scratch):
 @case
 def memory_of_the_layers_is_counted(scratch):
     plane = np.full((1024, 1024), 1, np.float32)
+    plane[0, 0] = 2
     write_exr(scratch.path('in.exr'), {name: plane for name in ('Z', 'thick.V', 'second.V')})
     needs = []
     for options in ((), ('--thickness-channel', 'thick.V'), ('--layer2', 'second.V')):

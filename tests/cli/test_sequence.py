@@ -98,7 +98,7 @@ def progress_names_every_frame(scratch):
 def auto_radius_is_that_of_the_first_frame(scratch):
     for n, distance in ((1, 2.0), (2, 4.0)):
         write_exr(scratch.path(f'in.{n}.exr'), {'Z': np.full((8, 8), distance, np.float32)})
-    scratch.render('in.%d.exr', '-o', 'ao.%d.exr')
+    scratch.render('in.%d.exr', '-o', 'ao.%d.exr', '--depth-type', 'planar')
     for n in (1, 2):
         raw = read_raw(scratch.bytes(f'ao.{n}.exr'))[0]
         matches(r'"radius":0\.1,', raw.text('vkao/params'), 'parameters')

@@ -38,7 +38,8 @@ WRONG_VALUES = [
     ('--compression', ('lzma', 'ZIP', 'htj2k32'), 'none, rle, zips, zip, piz'),
     ('--overwrite', ('yes', 'skip'), 'want never or always'),
     ('--frames-syntax', ('nuke',), 'want vfx or openjd'),
-    ('--depth-type', ('linear', 'z'), 'want auto, planar, radial, radial-near, inverse or device'),
+    ('--depth-type', ('linear', 'z'), 'want auto, planar, radial, radial-near, inverse, device or '
+     'normalized'),
     ('--normal-space', ('view', 'tangent'), 'want auto, world or camera'),
     ('--normal-encoding', ('octahedral',), 'want auto, signed or unsigned'),
     ('--method', ('ssao', 'spheres'), 'want sphere, hemisphere, hbao, gtao, vbao or raymarch'),

@@ -33,8 +33,14 @@ static void check_depth_types(const struct camera *camera, float scale)
 {
     static const float values[WIDTH] = {1.0f, 0.0f, 2.5f, -1.0f, 1e30f, 0.75f};
     struct exr_channel channel = {.name = (char[]){"Z"}, .type = EXR_HALF};
-    for (int type = DEPTH_PLANAR; type <= DEPTH_DEVICE; type++) {
-        const struct gbuffer_options options = {.depth_type = (enum depth_type)type};
+    char path[] = "fuzz", name[] = "";
+    struct exr_part part = {.name = name, .compression = "none"};
+    const struct exr_info info = {.path = path, .parts = &part, .part_count = 1};
+    for (int type = DEPTH_PLANAR; type <= DEPTH_NORMALIZED; type++) {
+        const struct gbuffer_options options = {
+            .depth_type = (enum depth_type)type,
+            .depth_range = {.is_given = true, .zero = 3, .one = 1},
+        };
         struct report report = {.verbosity = REPORT_QUIET};
         struct tool_error err = {0};
         float depth[WIDTH * HEIGHT];
@@ -52,7 +58,7 @@ static void check_depth_types(const struct camera *camera, float scale)
         g.roles.kind[ROLE_DEPTH].channels[0] = &channel;
         for (int i = 0; i < WIDTH * HEIGHT; i++)
             depth[i] = values[i % WIDTH] * scale * (1.0f + (float)i / 16.0f);
-        if (!gbuffer_prepare_depth(&g, &options, "fuzz", &report, &err)) {
+        if (!gbuffer_prepare_depth(&g, &info, &options, &report, &err)) {
             fuzz_check_refusal(&err, FUZZ_CODE(EXIT_CHANNELS));
             continue;
         }

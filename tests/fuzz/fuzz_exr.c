@@ -199,7 +199,7 @@ static void load(const struct exr_info *info, const struct gbuffer_options *opti
     FUZZ_CHECK(placement.left < MOST_PADDING && placement.top < MOST_PADDING, "padded by %ux%u",
                placement.left, placement.top);
     struct setting setting = setting_default();
-    setting.params.radius = automatic_radius(&g);
+    setting.params.radius = relative_radius_of(&(struct relative_radius){0}, &g);
     setting.params.bias = automatic_bias(&g, setting.params.radius, setting.params.bias);
     for (int half = 0; half < 2; half++) {
         setting.effect.half_resolution = (VkBool32)half;

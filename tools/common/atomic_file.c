@@ -46,9 +46,16 @@ static void pending_remove(int slot)
         atomic_store(&pending[slot].state, PENDING_FREE);
 }
 
-/* Async-signal-safe: it only calls unlink. */
+/* Async-signal-safe: it only calls write and unlink. */
 static void on_signal(int number)
 {
+    static const char interrupted[] = "vkao: interrupted: the file in progress is not written\n";
+    static const char terminated[] = "vkao: terminated: the file in progress is not written\n";
+    /* Whoever closed the pipe does not listen. */
+    const bool is_int = number == SIGINT;
+    if (number != SIGPIPE && write(STDERR_FILENO, is_int ? interrupted : terminated,
+                                   (is_int ? sizeof interrupted : sizeof terminated) - 1) < 0)
+        errno = 0;
     for (int i = 0; i < PENDING_MAX; i++) {
         if (atomic_load(&pending[i].state) == PENDING_ARMED)
             unlink(pending[i].path);

@@ -126,6 +126,18 @@ static double rounded_shift(double shift)
     return fabs(shift) < 1e-6 ? 0 : shift;
 }
 
+/* Where z of NDC is 0 and 1, which is what writers of matrices mean by their planes. */
+static void take_ndc_planes(const struct matrix *m, struct camera *camera)
+{
+    const double sign = m->m[2][3] < 0 ? -1.0 : 1.0, w = fabs(m->m[2][3]);
+    const double near_plane = -m->m[3][2] / (m->m[2][2] * sign);
+    const double far_plane = m->m[3][2] / (w - m->m[2][2] * sign);
+    if (isfinite(near_plane) && isfinite(far_plane) && near_plane > 0 && far_plane > near_plane) {
+        camera->near_plane = near_plane;
+        camera->far_plane = far_plane;
+    }
+}
+
 /* camera space to NDC. What NDC is, [0,1] with y down as specified or [-1,1] with y up as others
  * write, shows on the optical axis. */
 static bool take_ndc(const struct matrix *m, const char *name, struct camera *camera)
@@ -152,6 +164,8 @@ static bool take_ndc(const struct matrix *m, const char *name, struct camera *ca
     camera->half_height = 1.0 / fabs(scale_y);
     camera->shift_x = rounded_shift(-axis_x / 2.0);
     camera->shift_y = rounded_shift((y_down ? axis_y : -axis_y) / 2.0);
+    if (perspective)
+        take_ndc_planes(m, camera);
     snprintf(camera->source, sizeof camera->source, "%s", name);
     return true;
 }
@@ -382,11 +396,11 @@ void camera_from_header(const struct exr_part *part, struct camera *camera)
                                             "cameraFarClip",
                                             "arnold/camera/far_clip",
                                             "rs/camera/farPlane"};
+    double n = 0, f = 0;
     for (size_t i = 0; i < sizeof near_names / sizeof *near_names; i++) {
-        double n = number(part, near_names[i], 0), f = number(part, far_names[i], 0);
-        if (n > 0 && !(camera->near_plane > 0))
-            camera->near_plane = n;
-        if (f > 0 && !(camera->far_plane > 0))
-            camera->far_plane = f;
+        n = n > 0 ? n : number(part, near_names[i], 0);
+        f = f > 0 ? f : number(part, far_names[i], 0);
     }
+    camera->near_plane = n > 0 ? n : camera->near_plane;
+    camera->far_plane = f > 0 ? f : camera->far_plane;
 }

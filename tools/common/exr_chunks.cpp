@@ -8,8 +8,10 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cinttypes>
 #include <cstring>
+#include <map>
 
 namespace exr
 {
@@ -234,8 +236,76 @@ int64_t count_chunks(const part_layout &part)
     return count;
 }
 
+namespace
+{
+
+/* Where a chunk belongs: part, level, row and column. */
+using place_key = std::array<int32_t, 5>;
+
+place_key key_of(const chunk &c)
+{
+    return {c.part, c.level_y, c.level_x, c.y, c.x};
+}
+
+bool tables_are_zero(input_stream &stream, const file_layout &layout)
+{
+    for (size_t i = 0; i < layout.parts.size(); i++) {
+        for (const uint64_t offset : read_table(stream, layout, i)) {
+            if (offset != 0)
+                return false;
+        }
+    }
+    return true;
+}
+
+/* Chunks name their own places: a walk over all of them finds what the tables lack. Offsets that
+ * are not found stay 0. */
+std::vector<uint64_t> walk_chunks(input_stream &stream, const file_layout &layout)
+{
+    std::map<place_key, size_t> places;
+    size_t count = 0;
+    for (size_t i = 0; i < layout.parts.size(); i++) {
+        each_place(layout, i,
+                   [&](size_t k, const chunk &place) { places.emplace(key_of(place), count + k); });
+        count += size_t(layout.parts[i].chunk_count);
+    }
+    std::vector<uint64_t> offsets(count);
+    uint64_t at = first_data(layout);
+    for (size_t found = 0; found < count && at + 4 <= stream.size(); found++) {
+        int32_t part = 0;
+        if (layout.multi_part) {
+            stream.seekg(at);
+            part = stream.get_i32();
+        }
+        chunk c;
+        if (part < 0 || size_t(part) >= layout.parts.size() ||
+            !read_chunk(stream, layout, layout.parts[size_t(part)], at, c))
+            break;
+        const auto place = places.find(key_of(c));
+        if (place == places.end())
+            break;
+        offsets[place->second] = at;
+        at = c.end;
+    }
+    return offsets;
+}
+
+void rebuild_tables(input_stream &stream, const file_layout &layout)
+{
+    std::vector<char> bytes;
+    for (const uint64_t offset : walk_chunks(stream, layout)) {
+        for (int i = 0; i < 8; i++)
+            bytes.push_back(char(offset >> (8 * i)));
+    }
+    stream.patch(layout.table_offset, std::move(bytes));
+}
+
+} // namespace
+
 uint64_t check_tables(input_stream &stream, const file_layout &layout)
 {
+    if (tables_are_zero(stream, layout))
+        rebuild_tables(stream, layout);
     const uint64_t data = first_data(layout);
     uint64_t first = UINT64_MAX;
     for (size_t i = 0; i < layout.parts.size(); i++) {

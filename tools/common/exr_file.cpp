@@ -295,6 +295,7 @@ void read_info(const char *path, exr_info *info)
     const auto file = info->input->open();
     const std::vector<part_layout> &parts = info->input->layout.parts;
     info->path = copy_string(path);
+    info->table_rebuilt = info->input->stream.is_patched();
     info->parts = allocate<exr_part>(parts.size());
     for (const part_layout &layout : parts) {
         const int i = int(info->part_count++);

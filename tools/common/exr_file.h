@@ -66,6 +66,7 @@ struct exr_info {
     char *path;
     struct exr_part *parts;
     size_t part_count;
+    bool table_rebuilt; /* the file has no chunk table: it may be unfinished in other ways, too */
     struct exr_input *input; /* of the exr_*.cpp files */
 };
 

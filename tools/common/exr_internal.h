@@ -81,6 +81,12 @@ public:
     /* Refuses a file that somebody has written to since it was opened: what was learned from it
      * then may not hold for what is read now. */
     void check_unchanged() const;
+    /* From now on these bytes are read there instead of the file's own. */
+    void patch(uint64_t position, std::vector<char> bytes);
+    bool is_patched() const
+    {
+        return !patch_.empty();
+    }
     /* Little-endian, as everything in the format. */
     uint8_t get_u8();
     int32_t get_i32();
@@ -90,6 +96,8 @@ private:
     FILE *file_ = nullptr;
     uint64_t size_ = 0, position_ = 0;
     timespec modified_ = {};
+    uint64_t patch_at_ = 0;
+    std::vector<char> patch_;
 };
 
 struct channel_layout {
@@ -140,8 +148,9 @@ file_layout read_layout(input_stream &stream);
 /* By the header: chunk_count. */
 int64_t count_chunks(const part_layout &part);
 /* Of a file whose end is missing, the chunk that lies last is the one which was cut: so that one is
- * looked at, and of the others only where they begin. Returns the offset of the chunk that lies
- * first. */
+ * looked at, and of the others only where they begin. Tables of zeros, which writers leave that
+ * ended before they filled them in, are made anew if all chunks are there: the stream is then
+ * patched. Returns the offset of the chunk that lies first. */
 uint64_t check_tables(input_stream &stream, const file_layout &layout);
 /* Checks that every chunk lies inside the file and is the one that its place in the table wants.
  * OpenEXR does neither before it makes raw copies. Tiles must also lie as it expects them. */

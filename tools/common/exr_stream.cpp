@@ -90,8 +90,18 @@ bool input_stream::read(char data[], int bytes)
     if (fread(data, 1, size_t(bytes), file_) != size_t(bytes))
         raise(EXIT_INPUT, nullptr, "%s: cannot read: %s", fileName(),
               errno ? strerror(errno) : "the file became shorter meanwhile");
-    position_ += uint64_t(bytes);
+    const uint64_t end = position_ + uint64_t(bytes), patch_end = patch_at_ + patch_.size();
+    const uint64_t from = std::max(position_, patch_at_), to = std::min(end, patch_end);
+    if (from < to)
+        memcpy(data + (from - position_), patch_.data() + (from - patch_at_), size_t(to - from));
+    position_ = end;
     return position_ < size_;
+}
+
+void input_stream::patch(uint64_t position, std::vector<char> bytes)
+{
+    patch_at_ = position;
+    patch_ = std::move(bytes);
 }
 
 void input_stream::read_all(char data[], size_t bytes)

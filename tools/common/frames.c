@@ -247,6 +247,7 @@ bool frame_pattern_parse(const char *path, struct frame_pattern *pattern, struct
         if (pattern->digits > MAX_DIGITS)
             return fail(err, EXIT_USAGE, "%s: frame numbers have at most %d digits", path,
                         MAX_DIGITS);
+        pattern->is_printf = *token == '%';
         pattern->suffix = text_copy(token + length, strlen(token + length));
     }
     pattern->prefix = text_copy(path, token ? (size_t)(token - path) : strlen(path));
@@ -274,6 +275,9 @@ char *frame_pattern_path(const struct frame_pattern *pattern, int64_t number)
     struct text path = {0};
     if (!pattern->suffix)
         text_add(&path, "%s", pattern->prefix);
+    else if (pattern->is_printf)
+        text_add(&path, "%s%0*" PRId64 "%s", pattern->prefix, pattern->digits, number,
+                 pattern->suffix);
     else
         text_add(&path, "%s%s%0*" PRId64 "%s", pattern->prefix, number < 0 ? "-" : "",
                  pattern->digits, number < 0 ? -number : number, pattern->suffix);

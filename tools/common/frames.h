@@ -35,9 +35,10 @@ void frame_list_describe(const struct frame_list *list, char *buffer, size_t siz
 /* A path with at most one frame token in its last component: a run of # or @ (one # alone means
  * four digits), %d, %4d, %04d, $F or $F4. */
 struct frame_pattern {
-    char *prefix; /* all of the path before the token */
-    char *suffix; /* and behind it; NULL if there is no token */
-    int digits;   /* least number of digits, padded with zeros */
+    char *prefix;   /* all of the path before the token */
+    char *suffix;   /* and behind it; NULL if there is no token */
+    int digits;     /* least number of digits, padded with zeros */
+    bool is_printf; /* %04d: the sign is one of the digits, as in C */
 };
 
 /* Errors: EXIT_USAGE for mixed (#@) and repeated tokens. */

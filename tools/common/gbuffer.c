@@ -12,8 +12,8 @@
 
 const char *depth_type_name(enum depth_type type)
 {
-    static const char *const names[] = {"auto",    "planar", "radial",  "radial-near",
-                                        "inverse", "device", "position"};
+    static const char *const names[] = {"auto",    "planar", "radial",     "radial-near",
+                                        "inverse", "device", "normalized", "position"};
     return names[type];
 }
 
@@ -155,14 +155,43 @@ static bool use_positions(struct gbuffer *g, const struct gbuffer_options *optio
     return ok;
 }
 
+static const struct exr_channel *alpha_channel(const struct gbuffer *g)
+{
+    const struct role *color = &g->roles.kind[ROLE_COLOR];
+    return color->found ? color->channels[ROLE_MAX_COMPONENTS] : NULL;
+}
+
+/* With alpha, if it lies beside it: to decode a part twice takes twice as long. */
 static bool read_depth(struct gbuffer *g, struct tool_error *err)
 {
-    const struct role *role = &g->roles.kind[ROLE_DEPTH];
+    const struct role *role = &g->roles.kind[ROLE_DEPTH], *color = &g->roles.kind[ROLE_COLOR];
+    const bool has_alpha = alpha_channel(g) && color->info == role->info &&
+                           color->part == role->part && g->depth_type != DEPTH_POSITION;
     g->depth = allocate(gbuffer_texels(g), 1, role->info->path, err);
     if (g->depth && g->depth_type == DEPTH_POSITION)
         return true; /* filled when the camera is known */
-    const struct exr_read read = {role->channels[0]->name, g->depth, 1};
-    return g->depth && exr_read_channels(role->info, role->part, &read, 1, err);
+    if (g->depth && has_alpha)
+        g->alpha = allocate(gbuffer_texels(g), 1, role->info->path, err);
+    struct exr_read reads[2] = {{role->channels[0]->name, g->depth, 1}};
+    if (has_alpha)
+        reads[1] = (struct exr_read){alpha_channel(g)->name, g->alpha, 1};
+    return g->depth && (!has_alpha || g->alpha) &&
+           exr_read_channels(role->info, role->part, reads, has_alpha ? 2 : 1, err);
+}
+
+/* Alpha of another part is only read if depth does not say by itself where there is nothing. */
+static bool read_alpha(struct gbuffer *g, struct tool_error *err)
+{
+    const struct role *color = &g->roles.kind[ROLE_COLOR];
+    const struct exr_channel *alpha = alpha_channel(g);
+    bool is_known = g->alpha || !alpha;
+    for (size_t i = 0; !is_known && i < gbuffer_texels(g); i++)
+        is_known = !gbuffer_is_measurable(fabs((double)g->depth[i]));
+    if (is_known)
+        return true;
+    const struct role role = {.info = color->info, .part = color->part, .channels = {alpha}};
+    g->alpha = read_role(g, &role, 1, 1.0f, err);
+    return g->alpha != NULL;
 }
 
 /* What is known beside the depth. A window that lacks a texel knows nothing of it: NaN. */
@@ -244,6 +273,8 @@ static bool check_budget(const struct exr_info *info, const struct gbuffer_optio
     const uint64_t wide = options->want_color && !same_box(window, &g->data_window)
                               ? (uint64_t)box_texels(window) * 8 * sizeof(float)
                               : 0;
+    if (alpha_channel(g))
+        add_role(g, color, 1, &texel_bytes, &for_a_while);
     for (int kind = ROLE_THICKNESS; kind < ROLE_KINDS; kind++)
         if (g->roles.kind[kind].found)
             add_role(g, &g->roles.kind[kind], 1, &texel_bytes, &for_a_while);
@@ -281,6 +312,19 @@ static bool check_files(const struct exr_info *info, const struct gbuffer_option
     return g->roles.kind[ROLE_DEPTH].info == info || check_file(info, 0, g, err);
 }
 
+static bool fail_without_color(const struct exr_info *info, const struct gbuffer_options *options,
+                               struct tool_error *err)
+{
+    struct text list = {0};
+    roles_list_colors(info, &options->roles, &list);
+    fail_hint(err, "say which it is: --color NAME");
+    fail(err, EXIT_CHANNELS,
+         "%s: no colour found, which --mode comp needs; layers with colours: %s", info->path,
+         list.data ? list.data : "none");
+    text_free(&list);
+    return false;
+}
+
 /* Everything that the header alone decides. */
 static bool resolve(const struct exr_info *info, const struct gbuffer_options *options,
                     const struct camera *camera_file, struct gbuffer *g, struct tool_error *err)
@@ -314,10 +358,8 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
                                                       : DEPTH_PLANAR;
     if (depth->depth_type == DEPTH_POSITION)
         g->depth_type = DEPTH_POSITION; /* whatever --depth-type says of numbers */
-    if (options->want_color && !g->roles.kind[ROLE_COLOR].found) {
-        fail_hint(err, "say which it is: --color NAME");
-        return fail(err, EXIT_CHANNELS, "%s: no colour found, which --mode comp needs", info->path);
-    }
+    if (options->want_color && !g->roles.kind[ROLE_COLOR].found)
+        return fail_without_color(info, options, err);
     for (int kind = ROLE_THICKNESS; kind < ROLE_KINDS; kind++)
         if (!check_role(&g->roles.kind[kind], err))
             return false;
@@ -327,12 +369,31 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
            check_budget(info, options, g, err);
 }
 
+/* What is odd about the file itself, whatever its pixels are. */
+static void warn_about_file(const struct exr_info *info, struct report *report)
+{
+    if (info->table_rebuilt)
+        report_warn(report, "chunk table",
+                    "%s: the chunk table is empty, its writer did not finish: rebuilt from the "
+                    "chunks",
+                    info->path);
+    for (size_t p = 0; p < info->part_count; p++)
+        for (size_t i = 0; i < info->parts[p].attribute_count; i++)
+            if (strcmp(info->parts[p].attributes[i].name, "multiView") == 0 &&
+                strcmp(info->parts[p].attributes[i].type, "stringvector") != 0)
+                report_warn(report, "multiView",
+                            "%s: attribute multiView is of type %s, want stringvector: the file "
+                            "is read as one without views",
+                            info->path, info->parts[p].attributes[i].type);
+}
+
 bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *options,
                   const struct camera *camera_file, struct report *report, struct gbuffer *gbuffer,
                   struct tool_error *err)
 {
     *gbuffer = (struct gbuffer){.view = ao_view_default()};
     struct gbuffer *g = gbuffer;
+    warn_about_file(info, report);
     if (!resolve(info, options, camera_file, g, err))
         return false;
     const struct role *depth = &g->roles.kind[ROLE_DEPTH], *normal = &g->roles.kind[ROLE_NORMAL];
@@ -346,15 +407,19 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         if (!g->normals)
             goto failed;
     }
-    if (!use_positions(g, options, report, err) ||
-        !gbuffer_find_camera(g, options, depth->info->path, report, err) ||
+    if (!use_positions(g, options, report, err) || !read_alpha(g, err) ||
+        !gbuffer_decode_normals(g, options->normal_encoding, normals->path, report, err))
+        goto failed;
+    gbuffer_turn_depth(g, options, report);
+    if (!gbuffer_find_camera(g, options, depth->info->path, report, err) ||
         !read_behind(g, ROLE_THICKNESS, &g->thickness, err) ||
         (!g->thickness && !read_behind(g, ROLE_BACK_DEPTH, &g->thickness, err)) ||
         !read_behind(g, ROLE_LAYER2, &g->second_depth, err) ||
-        !gbuffer_prepare_depth(g, options, depth->info->path, report, err))
+        !gbuffer_prepare_depth(g, depth->info, options, report, err) ||
+        !gbuffer_prepare_normals(g, options, normals->path, report, err))
         goto failed;
-    if (!gbuffer_prepare_normals(g, options, normals->path, report, err))
-        goto failed;
+    free(g->alpha);
+    g->alpha = NULL;
     if (options->want_color && !read_color(g, err))
         goto failed;
     return true;
@@ -369,7 +434,8 @@ void gbuffer_free(struct gbuffer *gbuffer)
     free(gbuffer->normals);
     free(gbuffer->color);
     free(gbuffer->thickness);
+    free(gbuffer->alpha);
     free(gbuffer->second_depth);
     gbuffer->depth = gbuffer->normals = gbuffer->color = NULL;
-    gbuffer->thickness = gbuffer->second_depth = NULL;
+    gbuffer->thickness = gbuffer->second_depth = gbuffer->alpha = NULL;
 }

@@ -17,6 +17,52 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+/* What --background says. */
+enum background_rule { BACKGROUND_AUTO, BACKGROUND_OFF, BACKGROUND_GIVEN };
+
+/* By what distances from a limit on are background. */
+enum background_reason {
+    BACKGROUND_NONE,        /* none are */
+    BACKGROUND_GIVEN_VALUE, /* --background */
+    BACKGROUND_FAR_PLANE,   /* it is that of the camera */
+    BACKGROUND_ALPHA,       /* alpha is 0 there */
+    BACKGROUND_NO_NORMALS,  /* normals are 0 there */
+    BACKGROUND_FAR,         /* always the same, and far behind all else */
+    BACKGROUND_DOUBT        /* always the same, but not so far: taken for a wall */
+};
+
+struct background {
+    enum background_reason reason;
+    double limit;        /* in the unit of depth; INFINITY if there is none */
+    double value, gap;   /* that repeats, and how many times as far as all else it is */
+    double share;        /* [0,1] of the texels with that value */
+    bool is_doubtful;    /* say so */
+    bool is_transparent; /* so is where alpha is 0 */
+};
+
+/* What depth is, and who says so. */
+enum depth_source {
+    DEPTH_ASSUMED,
+    DEPTH_BY_OPTION,
+    DEPTH_BY_NAME,
+    DEPTH_BY_PLANES,    /* flat things are flat */
+    DEPTH_BY_NORMALS,   /* those of depth are the stored ones */
+    DEPTH_BY_POSITIONS, /* it was none */
+    DEPTH_BY_CONVENTION /* of the program that wrote the file */
+};
+
+/* What flat things say: shares, in [0,1], of triples of texels that say so; all 0 if there are too few. */
+struct depth_planes {
+    size_t count;
+    double planar, radial, linear; /* linear: 1/planar, depth buffers, orthographic */
+    double offset_share, offset;   /* depth + offset is planar */
+};
+/* Normalised depth: 0 and 1 are these distances. */
+struct depth_range {
+    bool is_given;
+    double zero, one; /* scene units */
+};
+
 enum normal_encoding { NORMAL_ENCODING_AUTO, NORMAL_ENCODING_SIGNED, NORMAL_ENCODING_UNSIGNED };
 
 /* What was estimated of the camera of one view of a sequence, from frame to frame: AO must not
@@ -32,6 +78,9 @@ struct gbuffer_options {
     struct role_request roles;
     struct camera_flags camera;
     enum depth_type depth_type;
+    struct depth_range depth_range; /* of normalised depth */
+    enum background_rule background;
+    double background_value; /* in the unit of depth, with BACKGROUND_GIVEN */
     enum normal_space normal_space;
     enum normal_encoding normal_encoding;
     bool want_color; /* colour is an error if it is missing, and is not read otherwise */
@@ -58,12 +107,20 @@ struct gbuffer {
      * end. */
     float *thickness;
     float *second_depth; /* as depth */
+    float *alpha;        /* of the colour; NULL: there is none, or after gbuffer_load */
     float background_depth;
     bool color_has_alpha; /* else alpha is 1 throughout */
 
-    enum depth_type depth_type;     /* of the file, never AUTO */
+    enum depth_type depth_type; /* of the file, never AUTO */
+    enum depth_source depth_source;
+    struct depth_range depth_range;       /* of normalised depth */
+    bool depth_is_half, depth_is_negated; /* as stored; -z, as view space has it */
+    struct depth_planes planes;           /* if they were asked */
+    struct background background;
+    double filtered_share; /* [0,1] of edges with a texel in between, as antialiasing makes them */
     enum normal_space normal_space; /* AUTO if there are no normals */
     enum normal_encoding normal_encoding;
+    double normal_agreement; /* [0,1] of the normals with those of depth; 0 if that has too few */
     double min_z, median_z, max_z; /* view z of the foreground, scene units; 0 if there is none */
     double background_share;       /* [0,1], with the invalid ones */
     double invalid_share;          /* [0,1] of NaN, -Inf and negative values */

@@ -173,6 +173,7 @@ static bool settle_depth_type(struct gbuffer *g, const struct gbuffer_options *o
         if (ok && isfinite(apart) && !(g->camera.near_plane > 0)) {
             g->camera.near_plane = lack > 0 ? lack : 0;
             g->depth_type = lack > 0 ? DEPTH_RADIAL_NEAR : DEPTH_RADIAL;
+            g->depth_source = DEPTH_BY_POSITIONS;
         }
     } else if (options->depth_type == DEPTH_AUTO &&
                g->roles.kind[ROLE_DEPTH].depth_type == DEPTH_AUTO) {
@@ -181,6 +182,7 @@ static bool settle_depth_type(struct gbuffer *g, const struct gbuffer_options *o
             if (ok && apart < least) {
                 least = apart;
                 g->depth_type = types[i];
+                g->depth_source = DEPTH_BY_POSITIONS;
             }
         }
     }
@@ -270,6 +272,7 @@ static unsigned possible_models(const struct gbuffer *g, const struct gbuffer_op
 
 static void take_depth_type(struct gbuffer *g, const struct fit *fit)
 {
+    g->depth_source = DEPTH_BY_NORMALS;
     switch (fit->model) {
     case FIT_INVERSE:
         g->depth_type = DEPTH_INVERSE;

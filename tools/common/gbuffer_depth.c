@@ -1,96 +1,32 @@
 /* SPDX-License-Identifier: MIT */
 #include "gbuffer_internal.h"
 #include "median.h"
+#include "text.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
-/* No scene measures more or less than this, in whatever unit. Within, squares are finite and not
- * 0. */
 static const double least_z = 1e-18, largest_z = 1e18;
 
-/* What renderers write where there is nothing: Falcor, Cycles, clip ranges. No scene measures
- * exactly this. Arnold's is beyond the largest. */
-static bool is_sentinel(float z)
+/* No scene measures exactly this, nor what lossy compression makes of it. Arnold's is beyond the
+ * largest. */
+static bool is_sentinel(double z)
 {
-    static const float values[] = {1e8f, 1e10f, 1e12f};
+    static const double values[] = {1e8, 1e10, 1e12};
     for (size_t i = 0; i < sizeof values / sizeof *values; i++)
-        if (!(z < values[i]) && !(z > values[i]))
+        if (fabs(z - values[i]) < 1e-5 * values[i])
             return true;
     return false;
 }
 
-static bool is_valid(float z)
+bool gbuffer_is_measurable(double z)
 {
-    return (double)z >= least_z && (double)z <= largest_z && !is_sentinel(z);
+    return z >= least_z && z <= largest_z && !is_sentinel(z);
 }
 
-/* The median of the values as stored, without what is certainly background. */
-static bool stored_median(const struct gbuffer *g, double *median)
-{
-    size_t step = gbuffer_sample_step(g), count = 0;
-    double *values = malloc((gbuffer_texels(g) / step + 1) * sizeof *values);
-    if (!values)
-        return false;
-    for (size_t i = 0; i < gbuffer_texels(g); i += step)
-        if (is_valid(g->depth[i]))
-            values[count++] = (double)g->depth[i];
-    *median = median_of(values, count);
-    free(values);
-    return true;
-}
-
-/* An image of one number per texel, and the median of the depth beside it, which tells what is too
- * far away to belong to the scene. */
-struct plane {
-    float *values;
-    size_t count;
-    bool is_half;
-    double median;
-};
-
-/* Distances of any kind: what is no distance becomes 0, which the library takes for background. All
- * of these return how many values are invalid. */
-static size_t clean_distances(const struct plane *p)
-{
-    double limit = p->median * 1e7;
-    size_t invalid = 0;
-    for (size_t i = 0; i < p->count; i++) {
-        float z = p->values[i];
-        invalid += isnan(z) || z < 0;
-        /* 65504 is the largest half, where a far background saturates. */
-        bool saturated = p->is_half && z >= 65504.0f && p->median < 6550.4;
-        if (!is_valid(z) || (double)z >= limit || saturated)
-            p->values[i] = 0;
-    }
-    return invalid;
-}
-
-static size_t clean_inverse(const struct plane *p)
-{
-    size_t invalid = 0;
-    for (size_t i = 0; i < p->count; i++) {
-        invalid += isnan(p->values[i]) || p->values[i] < 0;
-        if (!isfinite(p->values[i]) || p->values[i] <= 0)
-            p->values[i] = 0;
-    }
-    return invalid;
-}
-
-static size_t clean_device(const struct plane *p, float background)
-{
-    size_t invalid = 0;
-    for (size_t i = 0; i < p->count; i++) {
-        bool inside = p->values[i] >= 0 && p->values[i] <= 1;
-        invalid += !inside;
-        if (!inside)
-            p->values[i] = background;
-    }
-    return invalid;
-}
-
-/* How much longer the ray of a texel is than its way along the view axis. */
-static double ray_length(const struct gbuffer *g, size_t texel)
+double gbuffer_ray_length(const struct gbuffer *g, size_t texel)
 {
     double x, y;
     if (g->camera.type == CAMERA_ORTHOGRAPHIC)
@@ -100,30 +36,62 @@ static double ray_length(const struct gbuffer *g, size_t texel)
     return sqrt(1.0 + x * x + y * y);
 }
 
-/* Rays of Mitsuba start at the near plane; in double, since the result is compared with that of
- * planar files. */
-static void near_ray_to_planar(const struct gbuffer *g, const struct plane *p)
-{
-    for (size_t i = 0; i < p->count; i++)
-        if (p->values[i] > 0)
-            p->values[i] = (float)((double)p->values[i] / ray_length(g, i) + g->camera.near_plane);
-}
+/* --- From what is stored --- */
 
-/* A depth of any layer as read becomes one of the library's encodings. */
-static size_t clean_depth(const struct gbuffer *g, const struct plane *p)
+double gbuffer_distance(const struct gbuffer *g, float depth)
 {
-    size_t invalid;
+    const double d = (double)depth;
     switch (g->depth_type) {
     case DEPTH_INVERSE:
-        return clean_inverse(p);
+        return 1.0 / d;
     case DEPTH_DEVICE:
-        return clean_device(p, g->background_depth);
+        return d >= 0 && d <= 1 ? gbuffer_view_z(g, depth, 0) : NAN;
+    case DEPTH_NORMALIZED:
+        /* The ends hold what was clamped: mostly nothing. */
+        return d > 0 && d < 1 ? g->depth_range.zero + d * (g->depth_range.one - g->depth_range.zero)
+                              : NAN;
     default:
-        invalid = clean_distances(p);
-        if (g->depth_type == DEPTH_RADIAL_NEAR)
-            near_ray_to_planar(g, p);
-        return invalid;
+        return d;
     }
+}
+
+static bool is_invalid(const struct gbuffer *g, float depth)
+{
+    const bool has_end = g->depth_type == DEPTH_DEVICE || g->depth_type == DEPTH_NORMALIZED;
+    return isnan(depth) || depth < 0 || (has_end && depth > 1);
+}
+
+/* Depth of any layer as stored becomes one of the library's encodings; what is no distance becomes
+ * what the library takes for background. Returns how many values are invalid. */
+static size_t clean(const struct gbuffer *g, float *values, bool is_half)
+{
+    const struct background *b = &g->background;
+    size_t invalid = 0;
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        const double distance = gbuffer_distance(g, values[i]);
+        /* The largest half is where a far background saturates. */
+        const bool is_saturated =
+            is_half && g->depth_type != DEPTH_INVERSE && values[i] >= 65504.0f;
+        invalid += is_invalid(g, values[i]);
+        if (!gbuffer_is_measurable(distance) || distance >= b->limit || is_saturated ||
+            (b->is_transparent && !(g->alpha[i] > 0)))
+            values[i] = g->background_depth;
+        else if (g->depth_type == DEPTH_NORMALIZED)
+            values[i] = (float)distance;
+        /* Rays of Mitsuba start at the near plane; in double, since the result is compared with
+         * that of planar files. */
+        else if (g->depth_type == DEPTH_RADIAL_NEAR)
+            values[i] = (float)(distance / gbuffer_ray_length(g, i) + g->camera.near_plane);
+    }
+    return invalid;
+}
+
+/* Lengths: 0 is unknown. */
+static void clean_lengths(float *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!gbuffer_is_measurable((double)values[i]))
+            values[i] = 0;
 }
 
 double gbuffer_view_z(const struct gbuffer *g, float depth, size_t texel)
@@ -132,7 +100,7 @@ double gbuffer_view_z(const struct gbuffer *g, float depth, size_t texel)
     const float *m = g->view.projection;
     switch (g->view.depth_encoding) {
     case VKAO_DEPTH_DISTANCE:
-        return d / ray_length(g, texel);
+        return d / gbuffer_ray_length(g, texel);
     case VKAO_DEPTH_INVERSE_Z:
         return 1.0 / d;
     case VKAO_DEPTH_PROJECTED:
@@ -154,7 +122,7 @@ static void drop_immeasurable(const struct gbuffer *g, float *values)
 }
 
 /* Thickness and second depth, when the projection is known. */
-static void prepare_behind(struct gbuffer *g, double median)
+static void prepare_behind(struct gbuffer *g)
 {
     const struct role *roles = g->roles.kind;
     const bool is_given = roles[ROLE_THICKNESS].found;
@@ -163,15 +131,13 @@ static void prepare_behind(struct gbuffer *g, double median)
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         if (!images[i])
             continue;
-        const struct plane p = {.values = images[i],
-                                .count = gbuffer_texels(g),
-                                .is_half = roles[kinds[i]].channels[0]->type == EXR_HALF,
-                                .median = kinds[i] == ROLE_THICKNESS ? g->median_z : median};
         if (kinds[i] == ROLE_THICKNESS) {
-            (void)clean_distances(&p);
+            clean_lengths(images[i], gbuffer_texels(g));
             continue;
         }
-        (void)clean_depth(g, &p);
+        for (size_t k = 0; g->depth_is_negated && k < gbuffer_texels(g); k++)
+            images[i][k] = -images[i][k];
+        (void)clean(g, images[i], roles[kinds[i]].channels[0]->type == EXR_HALF);
         drop_immeasurable(g, images[i]);
     }
 }
@@ -219,6 +185,18 @@ static struct camera_planes enclosing_planes(const struct gbuffer *g)
     return planes;
 }
 
+/* Normalised depth needs what its ends stand for. */
+static bool check_range(const struct gbuffer *g, const char *path, struct tool_error *err)
+{
+    const struct depth_range *r = &g->depth_range;
+    if (g->depth_type != DEPTH_NORMALIZED || r->is_given)
+        return true;
+    fail_hint(err, "add --depth-range NEAR,FAR, the distances of black and white; NEAR,FAR,inverted"
+                   " if white is near");
+    return fail(err, EXIT_CHANNELS, "%s: normalised depth '%s' needs its range", path,
+                g->roles.kind[ROLE_DEPTH].label);
+}
+
 static bool check_planes(const struct gbuffer *g, const char *path, struct tool_error *err)
 {
     double n = g->camera.near_plane, f = g->camera.far_plane;
@@ -254,32 +232,147 @@ static bool fail_projection(const struct gbuffer *g, const char *path,
                 planes->far_plane);
 }
 
+/* Between neighbouring half values at the median distance, in scene units. */
+static double half_step(const struct gbuffer *g)
+{
+    const double z = g->median_z;
+    const float *m = g->view.projection;
+    double stored = z, slope = 1.0;
+    if (g->depth_type == DEPTH_INVERSE) {
+        stored = 1.0 / z;
+        slope = z * z;
+    } else if (g->depth_type == DEPTH_NORMALIZED) {
+        slope = fabs(g->depth_range.one - g->depth_range.zero);
+        stored = fabs(z - g->depth_range.zero) / slope;
+    } else if (g->depth_type == DEPTH_DEVICE && g->camera.type == CAMERA_PERSPECTIVE) {
+        stored = (double)m[14] / z - (double)m[10];
+        slope = z * z / fabs((double)m[14]);
+    } else if (g->depth_type == DEPTH_DEVICE) {
+        slope = 1.0 / fabs((double)m[10]);
+        stored = fabs((double)m[14] - z * (double)m[10]);
+    }
+    /* The least half that has all digits. */
+    return ldexp(1.0, (int)floor(log2(fmax(stored, 6.1e-5))) - 10) * slope;
+}
+
+/* Of the values as stored, background and all. */
+struct stored_range {
+    float low, high;
+};
+
+static void warn_about_background(const struct gbuffer *g, const char *path, struct report *report)
+{
+    const struct background *b = &g->background;
+    char share[PERCENT_BYTES];
+    text_percent(share, b->share);
+    if (b->reason == BACKGROUND_FAR && b->is_doubtful)
+        report_warn(report, "far background",
+                    "%s: %s of the depth are at %.6g, %.2g times as far as all else: taken for "
+                    "background (--background off or DISTANCE overrides)",
+                    path, share, b->value, b->gap);
+    if (b->reason == BACKGROUND_DOUBT)
+        report_warn(report, "far wall",
+                    "%s: %s of the depth are at %.6g: taken for a wall (--background %.6g if there "
+                    "is nothing)",
+                    path, share, b->value, b->value);
+}
+
 static void warn_about_depth(const struct gbuffer *g, const char *path, struct report *report)
 {
+    char share[PERCENT_BYTES];
+    warn_about_background(g, path, report);
+    text_percent(share, g->invalid_share);
     if (g->invalid_share > 0)
         report_warn(
             report, "invalid depth",
-            "%s: %.2g %% of depth values are NaN, negative or out of range: treated as background",
-            path, g->invalid_share * 100.0);
-    if (!(g->median_z > 0))
-        report_warn(report, "no depth", "%s: all depth is background: AO is 1 everywhere", path);
+            "%s: %s of depth values are NaN, negative or out of range: treated as background", path,
+            share);
     if (g->depth_step > 0)
         report_warn(
             report, "half depth",
             "%s: depth is HALF; at the median distance %.4g the step is %.2g: expect banding", path,
             g->median_z, g->depth_step);
+    text_percent(share, g->filtered_share);
+    if (g->filtered_share > 0.3)
+        report_warn(report, "filtered depth",
+                    "%s: depth is filtered over edges (antialiased): %s of them have a texel in "
+                    "between, where AO is wrong; render it unfiltered",
+                    path, share);
 }
 
-bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *options,
-                           const char *path, struct report *report, struct tool_error *err)
+/* A pass without any shape is no depth, unless somebody says that it is. */
+static bool check_shape(const struct gbuffer *g, const struct gbuffer_options *options,
+                        const struct stored_range *stored, const char *path, struct report *report,
+                        struct tool_error *err)
 {
-    (void)options;
-    struct camera_planes planes = {g->camera.near_plane, g->camera.far_plane};
-    double median;
-    if (!check_planes(g, path, err))
+    enum { FEW = 16 };
+    const struct role *role = &g->roles.kind[ROLE_DEPTH];
+    const bool is_flat = !(stored->low < stored->high), is_empty = !(g->median_z > 0);
+    char what[96];
+    if (!is_empty && (!is_flat || g->background_share > 0 || gbuffer_texels(g) < FEW)) {
+        if (is_flat && g->background_share > 0)
+            report_warn(report, "flat depth",
+                        "%s: depth '%s' is %g wherever there is something: a matte?", path,
+                        role->label, (double)stored->low);
+        return true;
+    }
+    if (!is_flat)
+        snprintf(what, sizeof what, "all background");
+    else
+        snprintf(what, sizeof what, "%g everywhere", (double)stored->low);
+    if (options->depth_type != DEPTH_AUTO) {
+        report_warn(report, "no depth", "%s: depth '%s' is %s: AO is 1 everywhere", path,
+                    role->label, what);
+        return true;
+    }
+    fail_hint(err, "is it the right channel (--depth NAME)? If it is meant, say what it measures: "
+                   "--depth-type planar");
+    return fail(err, EXIT_CHANNELS, "%s: depth '%s' is %s: no picture of anything", path,
+                role->label, what);
+}
+
+/* Before anything is changed. */
+static struct stored_range look_at_range(const struct gbuffer *g)
+{
+    struct stored_range r = {.low = INFINITY, .high = -INFINITY};
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        r.low = g->depth[i] < r.low ? g->depth[i] : r.low;
+        r.high = g->depth[i] > r.high ? g->depth[i] : r.high;
+    }
+    return r;
+}
+
+static void warn_about_compression(const struct gbuffer *g, const struct exr_part *part,
+                                   const char *path, struct report *report)
+{
+    const struct exr_channel *channel = g->roles.kind[ROLE_DEPTH].channels[0];
+    const char *dot = strrchr(channel->name, '.');
+    const bool is_color = strchr("RGBY", dot ? dot[1] : channel->name[0]) &&
+                          strlen(dot ? dot + 1 : channel->name) == 1;
+    const bool is_b44 = strncmp(part->compression, "b44", 3) == 0 && channel->type == EXR_HALF;
+    const bool is_dwa = strncmp(part->compression, "dwa", 3) == 0 && is_color;
+    if (is_b44 || is_dwa)
+        report_warn(
+            report, "lossy depth",
+            "%s: depth '%s' is compressed with %s, which is lossy: expect dark outlines and "
+            "stains (write depth as float, with zip or piz)",
+            path, g->roles.kind[ROLE_DEPTH].label, part->compression);
+}
+
+bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
+                           const struct gbuffer_options *options, struct report *report,
+                           struct tool_error *err)
+{
+    const char *path = info->path;
+    const struct role *role = &g->roles.kind[ROLE_DEPTH];
+    g->depth_is_half = role->channels[0]->type == EXR_HALF;
+    g->depth_range = options->depth_range;
+    g->filtered_share = gbuffer_filtered_share(g);
+    const struct stored_range stored = look_at_range(g);
+    if (!gbuffer_resolve_depth_type(g, info, options, report, err) || !check_range(g, path, err) ||
+        !check_planes(g, path, err))
         return false;
-    if (!stored_median(g, &median))
-        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    struct camera_planes planes = {g->camera.near_plane, g->camera.far_plane};
     g->view.depth_encoding = g->depth_type == DEPTH_INVERSE  ? VKAO_DEPTH_INVERSE_Z
                              : g->depth_type == DEPTH_DEVICE ? VKAO_DEPTH_PROJECTED
                              : g->depth_type == DEPTH_RADIAL ? VKAO_DEPTH_DISTANCE
@@ -288,11 +381,9 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *opti
         g->background_depth = planes.near_plane > planes.far_plane ? 0.0f : 1.0f;
         camera_project(&g->camera, &planes, &g->display_window, &g->data_window, &g->view);
     }
-    const struct plane depth = {.values = g->depth,
-                                .count = gbuffer_texels(g),
-                                .is_half = g->roles.kind[ROLE_DEPTH].channels[0]->type == EXR_HALF,
-                                .median = median};
-    g->invalid_share = (double)clean_depth(g, &depth) / (double)depth.count;
+    if (!gbuffer_find_background(g, options))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    g->invalid_share = (double)clean(g, g->depth, g->depth_is_half) / (double)gbuffer_texels(g);
     if (!measure(g))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     if (g->depth_type != DEPTH_DEVICE) {
@@ -301,9 +392,12 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *opti
     }
     if (!camera_can_project(&g->view))
         return fail_projection(g, path, &planes, err);
-    prepare_behind(g, median);
-    if (depth.is_half && median > 0)
-        g->depth_step = ldexp(1.0, (int)floor(log2(median)) - 10);
+    if (!check_shape(g, options, &stored, path, report, err))
+        return false;
+    prepare_behind(g);
+    if (g->depth_is_half && g->median_z > 0)
+        g->depth_step = half_step(g);
+    warn_about_compression(g, &info->parts[role->part], path, report);
     warn_about_depth(g, path, report);
     return true;
 }

@@ -35,11 +35,58 @@ bool gbuffer_use_positions(struct gbuffer *g, const struct gbuffer_options *opti
  * and says so. Errors: EXIT_MEMORY. */
 bool gbuffer_find_camera(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
                          struct report *report, struct tool_error *err);
+/* No scene measures more or less than this, in whatever unit. Within, squares are finite and not
+ * 0. Nor does any measure what renderers write where there is nothing: Falcor, Cycles, clip ranges,
+ * and what compression makes of it. */
+bool gbuffer_is_measurable(double distance);
+/* Of a depth as stored; not finite or not positive where it is none. */
+double gbuffer_distance(const struct gbuffer *g, float depth);
+/* How much longer the ray of a texel is than its way along the view axis. */
+double gbuffer_ray_length(const struct gbuffer *g, size_t texel);
+
+/* Fills g->background; needs depth as stored, normals and alpha. False if memory ran out. */
+bool gbuffer_find_background(struct gbuffer *g, const struct gbuffer_options *options);
+
+/* Needs depth as stored and its background. False if memory ran out. */
+bool gbuffer_read_planes(const struct gbuffer *g, struct depth_planes *planes);
+/* Share of edges of the depth, as stored, that have a texel in between, as filters make them. */
+double gbuffer_filtered_share(const struct gbuffer *g);
+
+/* Turns negative z round. */
+void gbuffer_turn_depth(struct gbuffer *g, const struct gbuffer_options *options,
+                        struct report *report);
+/* Fills depth_type and depth_source; needs depth as stored. Errors:
+ * EXIT_CHANNELS with a remedy, EXIT_MEMORY. */
+bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
+                                const struct gbuffer_options *options, struct report *report,
+                                struct tool_error *err);
 /* Depth, thickness and second depth as read become what the library takes; fills projection and
  * statistics, which are those of the depth. */
-bool gbuffer_prepare_depth(struct gbuffer *g, const struct gbuffer_options *options,
-                           const char *path, struct report *report, struct tool_error *err);
-/* Needs the depth. g->normals as read becomes signed, or is freed. */
+bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
+                           const struct gbuffer_options *options, struct report *report,
+                           struct tool_error *err);
+/* What depth has for a normal at a texel, in view space, and what is stored there. */
+struct normal_pair {
+    double depth[3], stored[3], weight;
+};
+struct normal_pairs {
+    struct normal_pair *pair;
+    size_t count;
+};
+/* Needs the depth as prepared, and decoded normals. False if memory ran out. */
+bool gbuffer_pair_normals(const struct gbuffer *g, struct normal_pairs *pairs);
+void gbuffer_free_pairs(struct normal_pairs *pairs);
+/* Of stored normals, times the matrix (of columns), with those of depth. 0 without pairs. */
+struct agreement {
+    double share;  /* [0,1], whichever way the normals point */
+    double facing; /* [0,1] of them point as those of depth do */
+};
+struct agreement gbuffer_agreement(const struct normal_pairs *pairs, const float matrix[9]);
+
+/* Decides and undoes the encoding of g->normals as read. */
+bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, const char *path,
+                            struct report *report, struct tool_error *err);
+/* Needs the depth and decoded normals: finds their space, or frees them. */
 bool gbuffer_prepare_normals(struct gbuffer *g, const struct gbuffer_options *options,
                              const char *path, struct report *report, struct tool_error *err);
 

@@ -25,33 +25,46 @@ static bool finite3(const float *n)
 
 /* --- Encoding --- */
 
+/* Of normals that are there: neither zero nor, in colours, grey. */
 struct encoding_facts {
-    bool any_negative;
-    double signed_length,
-        unsigned_length; /* medians of |n| and of |2n - 1|, over what is not zero */
     size_t count;
+    double negative;                       /* share with a component clearly below zero */
+    double signed_share, unsigned_share;   /* of |n| and of |2n - 1| that are 1 */
+    double signed_length, unsigned_length; /* medians of the same */
 };
+
+static bool is_one(double length)
+{
+    return length > 0.97 && length < 1.03;
+}
 
 static bool measure_encoding(const struct gbuffer *g, struct encoding_facts *facts)
 {
-    size_t step = gbuffer_sample_step(g), room = gbuffer_texels(g) / step + 1;
+    const size_t step = gbuffer_sample_step(g), room = gbuffer_texels(g) / step + 1;
     double *as_signed = malloc(room * sizeof *as_signed),
            *as_unsigned = malloc(room * sizeof *as_unsigned);
+    const bool ok = as_signed && as_unsigned;
+    size_t negative = 0, signed_ones = 0, unsigned_ones = 0;
     *facts = (struct encoding_facts){0};
-    for (size_t i = 0; as_signed && as_unsigned && i < gbuffer_texels(g); i += step) {
+    for (size_t i = 0; ok && i < gbuffer_texels(g); i += step) {
         const float *n = g->normals + i * 4;
-        if (!gbuffer_is_foreground(g, i) || !finite3(n) || !(length3(n) > 0))
+        const float decoded[3] = {2.0f * n[0] - 1.0f, 2.0f * n[1] - 1.0f, 2.0f * n[2] - 1.0f};
+        if (!finite3(n) || !(length3(n) > 0) || length3(decoded) < 0.02)
             continue;
-        facts->any_negative |= n[0] < -0.02f || n[1] < -0.02f || n[2] < -0.02f;
-        float decoded[3] = {2.0f * n[0] - 1.0f, 2.0f * n[1] - 1.0f, 2.0f * n[2] - 1.0f};
+        negative += n[0] < -0.02f || n[1] < -0.02f || n[2] < -0.02f;
         as_signed[facts->count] = length3(n);
-        as_unsigned[facts->count++] = length3(decoded);
+        as_unsigned[facts->count] = length3(decoded);
+        signed_ones += is_one(as_signed[facts->count]);
+        unsigned_ones += is_one(as_unsigned[facts->count++]);
     }
-    if (as_signed && as_unsigned) {
+    if (ok && facts->count > 0) {
+        const double count = (double)facts->count;
+        facts->negative = (double)negative / count;
+        facts->signed_share = (double)signed_ones / count;
+        facts->unsigned_share = (double)unsigned_ones / count;
         facts->signed_length = median_of(as_signed, facts->count);
         facts->unsigned_length = median_of(as_unsigned, facts->count);
     }
-    bool ok = as_signed && as_unsigned;
     free(as_signed);
     free(as_unsigned);
     return ok;
@@ -60,6 +73,18 @@ static bool measure_encoding(const struct gbuffer *g, struct encoding_facts *fac
 static bool unit_length(double length)
 {
     return length > 0.9 && length < 1.1;
+}
+
+/* Some texels are negative in any encoding: filters overshoot. */
+static enum normal_encoding encoding_of(const struct encoding_facts *f)
+{
+    if (f->count == 0 || f->negative > 0.005 || f->signed_share > f->unsigned_share + 0.2)
+        return NORMAL_ENCODING_SIGNED;
+    if (f->unsigned_share > f->signed_share + 0.2)
+        return NORMAL_ENCODING_UNSIGNED;
+    return unit_length(f->signed_length)     ? NORMAL_ENCODING_SIGNED
+           : unit_length(f->unsigned_length) ? NORMAL_ENCODING_UNSIGNED
+                                             : NORMAL_ENCODING_AUTO;
 }
 
 static bool resolve_encoding(struct gbuffer *g, enum normal_encoding wanted, const char *path,
@@ -71,20 +96,19 @@ static bool resolve_encoding(struct gbuffer *g, enum normal_encoding wanted, con
         return true;
     if (!measure_encoding(g, &facts))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
-    g->normal_encoding = NORMAL_ENCODING_SIGNED;
-    if (facts.any_negative || facts.count == 0 || unit_length(facts.signed_length))
-        return true;
-    if (!unit_length(facts.unsigned_length)) {
+    g->normal_encoding = encoding_of(&facts);
+    if (g->normal_encoding == NORMAL_ENCODING_AUTO) {
         fail_hint(err, "add --normal-encoding signed or unsigned, or --normal none");
         return fail(
             err, EXIT_CHANNELS,
             "%s: normals '%s' are neither signed nor 0..1 encoded: median length %.3g and %.3g",
             path, g->roles.kind[ROLE_NORMAL].label, facts.signed_length, facts.unsigned_length);
     }
-    g->normal_encoding = NORMAL_ENCODING_UNSIGNED;
-    report_warn(report, "unsigned normals",
-                "%s: normals '%s' look 0..1 encoded: decoded as 2n-1 (--normal-encoding overrides)",
-                path, g->roles.kind[ROLE_NORMAL].label);
+    if (g->normal_encoding == NORMAL_ENCODING_UNSIGNED)
+        report_warn(
+            report, "unsigned normals",
+            "%s: normals '%s' look 0..1 encoded: decoded as 2n-1 (--normal-encoding overrides)",
+            path, g->roles.kind[ROLE_NORMAL].label);
     return true;
 }
 
@@ -190,49 +214,198 @@ static bool fail_without_rotation(const char *path, struct tool_error *err)
                 path);
 }
 
-/* World and camera matrices and how well they fit, then the choice. */
-static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const char *path,
-                          struct report *report, struct tool_error *err)
+/* --- By agreement with the depth --- */
+
+/* Ways to turn stored normals into view space: out of the world, or with camera axes either way. */
+enum { WAY_WORLD, WAY_CAMERA, FLIPS = 4, WAYS = WAY_CAMERA + FLIPS };
+
+struct way {
+    bool is_known;
+    float matrix[9];
+    struct agreement agreement;
+};
+
+/* What agrees comes before names and looks if it does so for this share of the normals, and for
+ * this much more than what they say. Below the last nothing agrees. */
+static const double least_agreement = 0.35, clear_agreement = 0.15, no_agreement = 0.12;
+enum { FEW_PAIRS = 200 };
+
+static void turn_round(float m[9])
 {
-    float world[9], camera[9];
+    for (int i = 0; i < 9; i++)
+        m[i] = -m[i];
+}
+
+/* Of what points away from the eye all three axes are the other way round. */
+static void judge_way(struct way *way, const struct normal_pairs *pairs)
+{
+    way->is_known = true;
+    way->agreement = gbuffer_agreement(pairs, way->matrix);
+    if (way->agreement.facing < 0.3 && way->agreement.share > least_agreement)
+        turn_round(way->matrix);
+}
+
+static void judge_ways(struct way ways[WAYS], const struct normal_pairs *pairs,
+                       const float world[9], bool has_world)
+{
+    static const float flips[FLIPS][3] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
+    memset(ways, 0, WAYS * sizeof *ways);
+    if (has_world) {
+        memcpy(ways[WAY_WORLD].matrix, world, sizeof ways->matrix);
+        judge_way(&ways[WAY_WORLD], pairs);
+    }
+    for (int f = 0; f < FLIPS; f++) {
+        struct way *way = &ways[WAY_CAMERA + f];
+        for (int c = 0; c < 3; c++)
+            way->matrix[c * 4] = flips[f][c];
+        judge_way(way, pairs);
+    }
+}
+
+/* The earlier of those that agree as well; NULL if none may be. */
+static const struct way *best_way(const struct way ways[WAYS], enum normal_space wanted)
+{
+    const struct way *best = NULL;
+    for (int w = 0; w < WAYS; w++) {
+        const enum normal_space space = w == WAY_WORLD ? NORMAL_SPACE_WORLD : NORMAL_SPACE_CAMERA;
+        if (ways[w].is_known && (wanted == NORMAL_SPACE_AUTO || wanted == space) &&
+            (!best || ways[w].agreement.share > best->agreement.share + 0.02))
+            best = &ways[w];
+    }
+    return best;
+}
+
+static void tell_way(const struct gbuffer *g, const char *path, struct report *report)
+{
+    const float *m = g->view.normal_to_view;
+    const char *label = g->roles.kind[ROLE_NORMAL].label;
+    if (g->normal_space == NORMAL_SPACE_WORLD)
+        report_warn(report, "agreeing normals",
+                    "%s: normals '%s' are in world space by agreement with the depth "
+                    "(--normal-space overrides)",
+                    path, label);
+    else
+        report_warn(report, "agreeing normals",
+                    "%s: normals '%s' are in camera space (%cx%cy%cz) by agreement with the depth "
+                    "(--normal-space overrides)",
+                    path, label, m[0] < 0 ? '-' : '+', m[4] < 0 ? '-' : '+', m[8] < 0 ? '-' : '+');
+}
+
+/* Changes what names and looks have chosen, which may be nothing, if the depth knows better. Normals
+ * that agree with it in no way are dropped. */
+static void ask_depth(struct gbuffer *g, const struct way ways[WAYS],
+                      const struct normal_pairs *pairs, enum normal_space wanted, const char *path,
+                      struct report *report)
+{
+    const bool has_chosen = g->normal_space != NORMAL_SPACE_AUTO;
+    const struct way *best = best_way(ways, wanted);
+    if (pairs->count < FEW_PAIRS || !best)
+        return;
+    g->normal_agreement = has_chosen ? gbuffer_agreement(pairs, g->view.normal_to_view).share : 0;
+    if (best->agreement.share >= least_agreement &&
+        best->agreement.share > g->normal_agreement + clear_agreement) {
+        const enum normal_space before = g->normal_space;
+        g->normal_space = best == &ways[WAY_WORLD] ? NORMAL_SPACE_WORLD : NORMAL_SPACE_CAMERA;
+        g->normal_agreement = best->agreement.share;
+        memcpy(g->view.normal_to_view, best->matrix, sizeof best->matrix);
+        if (before != g->normal_space || g->normal_space == NORMAL_SPACE_CAMERA)
+            tell_way(g, path, report);
+    }
+}
+
+/* --- The choice --- */
+
+/* By name, camera and looks; AUTO: none of them tells. */
+static bool choose_space(struct gbuffer *g, enum normal_space wanted, float world[9],
+                         struct tool_error *err, const char *path)
+{
+    float camera[9];
     struct facing by_world = {0}, by_camera;
-    const struct role *role = &g->roles.kind[ROLE_NORMAL];
-    enum normal_space space = wanted != NORMAL_SPACE_AUTO ? wanted : role->normal_space;
-    bool rotation = g->camera.has_rotation;
-    if (wanted == NORMAL_SPACE_WORLD && !rotation)
-        return fail_without_rotation(path, err);
+    const enum normal_space named = g->roles.kind[ROLE_NORMAL].normal_space;
+    const bool rotation = g->camera.has_rotation;
     if (!camera_matrix(g, camera, &by_camera) || (rotation && !world_matrix(g, world, &by_world)))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
-
-    bool camera_fits = by_camera.share > 0.98 && by_camera.median_z > 0.25;
+    const bool camera_fits = by_camera.share > 0.98 && by_camera.median_z > 0.25;
+    enum normal_space space = wanted != NORMAL_SPACE_AUTO ? wanted : named;
     if (space == NORMAL_SPACE_AUTO)
         space = rotation ? NORMAL_SPACE_WORLD : camera_fits ? NORMAL_SPACE_CAMERA : space;
     if (wanted == NORMAL_SPACE_AUTO && space == NORMAL_SPACE_WORLD && rotation && camera_fits &&
-        by_world.share < 0.9) {
+        by_world.share < 0.9)
         space = NORMAL_SPACE_CAMERA;
-        report_warn(report, "camera normals",
-                    "%s: normals '%s' are camera-space by their looks (--normal-space overrides)",
-                    path, role->label);
-    }
-    if (space == NORMAL_SPACE_AUTO || (space == NORMAL_SPACE_WORLD && !rotation)) {
+    if (space == NORMAL_SPACE_WORLD && !rotation)
+        space = NORMAL_SPACE_AUTO;
+    g->normal_space = space;
+    if (space != NORMAL_SPACE_AUTO)
+        memcpy(g->view.normal_to_view, space == NORMAL_SPACE_WORLD ? world : camera,
+               sizeof g->view.normal_to_view);
+    return true;
+}
+
+/* Normals that cannot be used, or that fit nothing. */
+static bool check_normals(struct gbuffer *g, enum normal_space wanted, size_t pairs,
+                          const char *path, struct report *report, struct tool_error *err)
+{
+    const char *label = g->roles.kind[ROLE_NORMAL].label;
+    struct facing facing;
+    if (g->normal_space == NORMAL_SPACE_AUTO) {
         report_warn(
             report, "world normals",
             "%s: normals '%s' need the rotation of the camera, which is unknown: deriving them "
             "from depth (--camera FILE.json gives it)",
-            path, role->label);
+            path, label);
         drop_normals(g);
         return true;
     }
-    bool in_world = space == NORMAL_SPACE_WORLD;
-    const struct facing *chosen = in_world ? &by_world : &by_camera;
-    memcpy(g->view.normal_to_view, in_world ? world : camera, sizeof world);
-    if (chosen->share < 0.6)
+    if (pairs >= FEW_PAIRS && g->normal_agreement < no_agreement) {
+        report_warn(
+            report, "disagreeing normals",
+            "%s: normals '%s' do not agree with the depth%s (is the camera, --depth-type or "
+            "--normal-space wrong?)",
+            path, label, wanted == NORMAL_SPACE_AUTO ? " in any space: deriving them from it" : "");
+        if (wanted == NORMAL_SPACE_AUTO) {
+            drop_normals(g);
+            return true;
+        }
+    }
+    if (!measure_facing(g, g->view.normal_to_view, &facing))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    if (facing.share < 0.6)
         report_warn(
             report, "facing normals",
             "%s: %.0f %% of the normals face away from the camera: is --normal-space or the "
             "camera wrong?",
-            path, (1.0 - chosen->share) * 100.0);
-    g->normal_space = space;
+            path, (1.0 - facing.share) * 100.0);
+    return true;
+}
+
+static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const char *path,
+                          struct report *report, struct tool_error *err)
+{
+    float world[9];
+    struct way ways[WAYS];
+    struct normal_pairs pairs;
+    if (wanted == NORMAL_SPACE_WORLD && !g->camera.has_rotation)
+        return fail_without_rotation(path, err);
+    if (!choose_space(g, wanted, world, err, path))
+        return false;
+    if (!gbuffer_pair_normals(g, &pairs))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    judge_ways(ways, &pairs, world, g->camera.has_rotation);
+    ask_depth(g, ways, &pairs, wanted, path, report);
+    const size_t count = pairs.count;
+    gbuffer_free_pairs(&pairs);
+    return check_normals(g, wanted, count, path, report, err);
+}
+
+bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, const char *path,
+                            struct report *report, struct tool_error *err)
+{
+    if (!g->normals)
+        return true;
+    if (!resolve_encoding(g, wanted, path, report, err))
+        return false;
+    decode(g);
+    g->view.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
     return true;
 }
 
@@ -246,9 +419,5 @@ bool gbuffer_prepare_normals(struct gbuffer *g, const struct gbuffer_options *op
         drop_normals(g);
         return true;
     }
-    if (!resolve_encoding(g, options->normal_encoding, path, report, err))
-        return false;
-    decode(g);
-    g->view.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
     return resolve_space(g, options->normal_space, path, report, err);
 }

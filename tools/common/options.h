@@ -117,7 +117,7 @@ void options_man(struct text *text);
 
 /* Values of apply. */
 option_apply apply_parameter, apply_flag, apply_text, apply_exr, apply_word, apply_double,
-    apply_uint, apply_count, apply_bytes, apply_fov, apply_normal, apply_layer, apply_compression,
-    apply_verbose, apply_quiet;
+    apply_uint, apply_count, apply_bytes, apply_fov, apply_depth_range, apply_background,
+    apply_normal, apply_layer, apply_compression, apply_verbose, apply_quiet;
 
 #endif

@@ -313,6 +313,50 @@ bool apply_fov(struct options *options, const struct option_row *row, const char
     return true;
 }
 
+bool apply_depth_range(struct options *options, const struct option_row *row, const char *argument,
+                       struct tool_error *err)
+{
+    char near_number[64], far_number[64];
+    double near_distance = 0, far_distance = 0;
+    const size_t first = strcspn(argument, ",");
+    const char *rest = argument[first] ? argument + first + 1 : "";
+    const size_t length = strcspn(rest, ",");
+    const bool is_inverted = strcmp(rest + length, ",inverted") == 0;
+    snprintf(near_number, sizeof near_number, "%.*s", (int)first, argument);
+    snprintf(far_number, sizeof far_number, "%.*s", (int)length, rest);
+    if (!text_to_number(near_number, &near_distance) ||
+        !text_to_number(far_number, &far_distance) || !(near_distance >= 0) ||
+        !(far_distance > near_distance) || !isfinite(far_distance) ||
+        (rest[length] && !is_inverted))
+        return fail(err, EXIT_USAGE,
+                    "--%s is %s, want NEAR,FAR or NEAR,FAR,inverted: two distances, 0 <= NEAR < "
+                    "FAR",
+                    row->name, argument);
+    options->gbuffer.depth_range =
+        (struct depth_range){.is_given = true,
+                             .zero = is_inverted ? far_distance : near_distance,
+                             .one = is_inverted ? near_distance : far_distance};
+    return true;
+}
+
+bool apply_background(struct options *options, const struct option_row *row, const char *argument,
+                      struct tool_error *err)
+{
+    struct gbuffer_options *g = &options->gbuffer;
+    double distance = 0;
+    g->background_value = 0;
+    g->background = strcmp(argument, "auto") == 0  ? BACKGROUND_AUTO
+                    : strcmp(argument, "off") == 0 ? BACKGROUND_OFF
+                                                   : BACKGROUND_GIVEN;
+    if (g->background != BACKGROUND_GIVEN)
+        return true;
+    if (!text_to_number(argument, &distance) || !(distance > 0) || !isfinite(distance))
+        return fail(err, EXIT_USAGE, "--%s is %s, want auto, off or a distance > 0", row->name,
+                    argument);
+    g->background_value = distance;
+    return true;
+}
+
 bool apply_normal(struct options *options, const struct option_row *row, const char *argument,
                   struct tool_error *err)
 {
@@ -393,6 +437,7 @@ static const struct option_word depth_types[] = {{"auto", DEPTH_AUTO},
                                                  {"radial-near", DEPTH_RADIAL_NEAR},
                                                  {"inverse", DEPTH_INVERSE},
                                                  {"device", DEPTH_DEVICE},
+                                                 {"normalized", DEPTH_NORMALIZED},
                                                  {0}};
 static const struct option_word spaces[] = {{"auto", NORMAL_SPACE_AUTO},
                                             {"world", NORMAL_SPACE_WORLD},
@@ -471,12 +516,26 @@ const struct option_row option_table[] = {
              "of INPUT. The camera is that of this file's header, or else of INPUT's."},
     {.name = "depth-type", .argument = "TYPE", .fallback = "auto",
      .help = "planar: along the view axis; radial: from the eye; radial-near: along the ray from"
-             " the near plane (Mitsuba); inverse: 1/planar (Nuke); device: a depth buffer. auto:"
-             " planar, but radial-near for channels *.T",
+             " the near plane (Mitsuba); inverse: 1/planar (Nuke); device: a depth buffer; "
+             "normalized: 0..1. auto: by name and by what flat things look like, else planar",
      .commands = RENDER | INSPECT, .apply = apply_word, .offset = AT(gbuffer.depth_type),
      .words = depth_types,
      .more = "radial-near needs the near plane; device needs both planes, and holds values "
-             "from 0 to 1."},
+             "from 0 to 1; normalized needs --depth-range. What auto cannot tell from 0..1 is "
+             "refused, as is a depth that is the same everywhere."},
+    {.name = "depth-range", .argument = "NEAR,FAR[,inverted]",
+     .help = "distances that 0 and 1 stand for, with --depth-type normalized; inverted: 1 and 0",
+     .commands = RENDER | INSPECT, .apply = apply_depth_range, .offset = AT(gbuffer.depth_range),
+     .more = "In scene units, along the view axis. Exactly 0 and 1 are background: that is where "
+             "renderers clamp."},
+    {.name = "background", .argument = "DISTANCE", .fallback = "auto",
+     .help = "as far as this or farther there is nothing, in the unit of depth; or off. auto: what"
+             " is far behind all else and always the same",
+     .commands = RENDER | INSPECT, .apply = apply_background,
+     .offset = AT(gbuffer.background_value),
+     .more = "0, infinities and 1e10 are background in any case. auto takes a far value that "
+             "repeats for background if it is the far plane, if alpha or normals are 0 there, or "
+             "if it is three times as far as nearly all else and no floor reaches it."},
     {.name = "normal", .argument = "NAME",
      .help = "layer of the normals, or none: derive them from depth",
      .commands = RENDER | INSPECT, .apply = apply_normal,

@@ -12,7 +12,8 @@ static const char attribute_name[] = "vkao/params", assumed[] = "assumed";
 
 static const char *const mode_names[] = {
     [OUTPUT_AO] = "ao", [OUTPUT_APPEND] = "append", [OUTPUT_COMP] = "comp"};
-static const char *const depth_names[] = {"planar", "radial", "radial-near", "inverse", "device"};
+static const char *const depth_names[] = {"planar",  "radial", "radial-near",
+                                          "inverse", "device", "normalized"};
 static const char *const type_names[] = {"half", "float"};
 static const char *const camera_names[] = {"perspective", "orthographic"};
 
@@ -128,6 +129,12 @@ char *record_write(const struct options *o, const struct setting *setting, const
         add_parameter(object, &parameters[i], setting);
     cJSON_AddStringToObject(root, "depth", g->roles.kind[ROLE_DEPTH].label);
     cJSON_AddStringToObject(root, "depth_type", depth_type_name(g->depth_type));
+    if (g->depth_type == DEPTH_NORMALIZED) {
+        add_number(root, "depth_zero", g->depth_range.zero);
+        add_number(root, "depth_one", g->depth_range.one);
+    }
+    if (o->gbuffer.background != BACKGROUND_AUTO)
+        add_number(root, "background", o->gbuffer.background_value);
     bool normals = g->normal_space != NORMAL_SPACE_AUTO;
     cJSON_AddStringToObject(root, "normal", normals ? g->roles.kind[ROLE_NORMAL].label : "none");
     if (normals) {
@@ -421,6 +428,20 @@ static bool read_compression(const struct reader *r, const cJSON *root, const ch
     return true;
 }
 
+/* What only some depths need. A background of 0 is none. */
+static bool read_depth_meaning(const struct reader *r, const cJSON *root, struct record *record)
+{
+    struct depth_range *range = &record->depth_range;
+    if (cJSON_HasObjectItem(root, "background")) {
+        if (!read_number(r, root, "background", -1, HUGE_VAL, &record->background_value))
+            return false;
+        record->background = record->background_value > 0 ? BACKGROUND_GIVEN : BACKGROUND_OFF;
+    }
+    range->is_given = record->depth_type == DEPTH_NORMALIZED;
+    return !range->is_given || (read_number(r, root, "depth_zero", -1, HUGE_VAL, &range->zero) &&
+                                read_number(r, root, "depth_one", -1, HUGE_VAL, &range->one));
+}
+
 static bool read_channels(const struct reader *r, const cJSON *root, struct record *record)
 {
     static const char *const spaces[] = {"world", "camera"};
@@ -433,6 +454,10 @@ static bool read_channels(const struct reader *r, const cJSON *root, struct reco
         !read_string(r, root, "normal", &normal))
         return false;
     record->depth_type = (enum depth_type)(DEPTH_PLANAR + depth);
+    if (!read_depth_meaning(r, root, record)) {
+        free(normal);
+        return false;
+    }
     const vkao_effect_info *e = &record->setting.effect;
     if ((e->thickness_input &&
          !read_string(r, root, thickness_key(e->thickness_input), &record->thickness)) ||
@@ -611,6 +636,12 @@ bool options_take_record(struct options *options, const struct record *record,
         g->roles.name[ROLE_DEPTH] = as_name(record->depth);
     if (!option_is_given(o, "depth-type"))
         g->depth_type = record->depth_type;
+    if (!option_is_given(o, "depth-range"))
+        g->depth_range = record->depth_range;
+    if (!option_is_given(o, "background")) {
+        g->background = record->background;
+        g->background_value = record->background_value;
+    }
     if (!option_is_given(o, "normal")) {
         g->roles.name[ROLE_NORMAL] = as_name(record->normal);
         g->roles.no_normals = !record->normal;

@@ -28,6 +28,9 @@ struct record {
      * they may be NULL. */
     char *depth, *normal, *color, *thickness, *second_depth;
     enum depth_type depth_type;
+    struct depth_range depth_range;
+    enum background_rule background;
+    double background_value;
     enum normal_space normal_space;
     enum normal_encoding normal_encoding;
     struct camera camera;

@@ -41,12 +41,15 @@ void report_warn(struct report *report, const char *key, const char *format, ...
             return;
     if (report->said_count < sizeof report->said / sizeof *report->said)
         report->said[report->said_count++] = key;
-    if (report->verbosity < REPORT_NORMAL)
-        return;
+    char line[LINE_BYTES];
     va_list args;
     va_start(args, format);
-    say("warning: ", format, args);
+    vsnprintf(line, sizeof line, format, args);
     va_end(args);
+    if (report->heard)
+        report->heard(report->heard_data, line);
+    if (report->verbosity >= REPORT_NORMAL)
+        print_line("vkao: ", "warning: ", line);
 }
 
 void report_note(const struct report *report, const char *format, ...)

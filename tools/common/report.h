@@ -14,8 +14,11 @@ enum verbosity { REPORT_QUIET = -1, REPORT_NORMAL = 0, REPORT_VERBOSE = 1 };
 
 struct report {
     enum verbosity verbosity;
-    const char *said[32]; /* keys of the warnings given so far; the strings are static */
+    const char *said[64]; /* keys of the warnings given so far; the strings are static */
     size_t said_count;
+    /* Hears warnings too, and however quiet the report is; NULL: nobody. */
+    void (*heard)(void *data, const char *warning);
+    void *heard_data;
 };
 
 /* Whatever the verbosity. */

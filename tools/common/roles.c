@@ -143,25 +143,30 @@ static bool contains_nocase(const char *text, const char *word, size_t length)
     return false;
 }
 
-/* Whether leaf is one of the alternatives in layers. */
-static bool layer_fits(const char *layers, const char *leaf)
+/* Whether name is one of the alternatives, or contains the word behind '~'. */
+static bool name_fits(const char *alternatives, const char *name)
 {
-    if (layers[0] == '*')
-        return true;
-    if (layers[0] == '~')
-        return contains_nocase(leaf, layers + 1, strlen(layers + 1));
-    if (layers[0] == '=')
-        return strcmp(leaf, layers + 1) == 0;
-    size_t length = strlen(leaf);
-    for (const char *p = layers; length; p++) {
+    if (alternatives[0] == '~')
+        return contains_nocase(name, alternatives + 1, strlen(alternatives + 1));
+    size_t length = strlen(name);
+    for (const char *p = alternatives; length; p++) {
         size_t word = strcspn(p, "|");
-        if (word == length && contains_nocase(leaf, p, word))
+        if (word == length && contains_nocase(name, p, word))
             return true;
         p += word;
         if (!*p)
             break;
     }
     return false;
+}
+
+static bool layer_fits(const char *layers, const char *leaf)
+{
+    if (layers[0] == '*')
+        return true;
+    if (layers[0] == '=')
+        return strcmp(leaf, layers + 1) == 0;
+    return name_fits(layers, leaf);
 }
 
 /* Bare R, G, B of a part called 'N' are normals, not colour; a part called 'beauty' may hold
@@ -192,7 +197,7 @@ static bool channel_name_is_never_depth(const struct channel_name *name)
 
 enum { MAX_HITS = 16 };
 
-static const char *const kind_names[ROLE_KINDS] = {
+static const char *const option_names[ROLE_KINDS] = {
     "depth", "normal", "color", "position", "AO", "thickness-channel", "back-depth", "layer2"};
 
 struct hit {
@@ -246,7 +251,7 @@ static const struct exr_channel *sibling(const struct search *s, size_t part_ind
         const char *channel = part->channels[i].name, *dot = strrchr(channel, '.');
         if (strncmp(channel, name->channel, name->prefix) != 0)
             break;
-        if (!text_equal_nocase(dot ? dot + 1 : channel, component))
+        if (!name_fits(component, dot ? dot + 1 : channel))
             continue;
         if (!channel_name_read(part, channel, s->view, s->info->part_count > 1, &other) ||
             !same_layer(name, &other))
@@ -305,20 +310,24 @@ static void add_hit(struct search *s, const struct hit *hit)
 
 /* Adds a hit if the channel is the first component of a set that is there as a whole. */
 static void match_sets(struct search *s, const char *const sets[][ROLE_MAX_COMPONENTS], size_t part,
-                       const struct channel_name *name)
+                       const struct exr_channel *channel, const struct channel_name *name)
 {
     for (size_t set = 0; set < ROLE_MAX_SETS && sets[set][0]; set++) {
-        if (!text_equal_nocase(name->component, sets[set][0]))
+        if (!name_fits(sets[set][0], name->component))
             continue;
         struct hit hit = {.part = part, .set = set, .bare = name->bare};
-        snprintf(hit.layer, sizeof hit.layer, "%s", name->layer);
-        for (size_t c = 0; c < ROLE_MAX_COMPONENTS && sets[set][c]; c++) {
-            hit.channels[c] = sibling(s, part, name, sets[set][c]);
-            if (!hit.channels[c])
-                return;
+        /* Several channels of a layer may contain a word: each is a hit of its own. */
+        const bool is_word = sets[set][0][0] == '~';
+        snprintf(hit.layer, sizeof hit.layer, "%s", is_word ? channel->name : name->layer);
+        bool is_whole = true;
+        for (size_t c = 0; is_whole && c < ROLE_MAX_COMPONENTS && sets[set][c]; c++) {
+            hit.channels[c] = c == 0 ? channel : sibling(s, part, name, sets[set][c]);
+            is_whole = hit.channels[c] != NULL;
             hit.channel_count++;
         }
-        hit.channels[ROLE_MAX_COMPONENTS] = sibling(s, part, name, "A");
+        if (!is_whole)
+            continue;
+        hit.channels[ROLE_MAX_COMPONENTS] = sibling(s, part, name, "A|alpha");
         add_hit(s, &hit);
     }
 }
@@ -335,14 +344,20 @@ static void search_row(struct search *s, const struct role_row *row)
             if (channel_name_read(part, part->channels[c].name, s->view, s->info->part_count > 1,
                                   &name) &&
                 row_fits(s, row, p, &name))
-                match_sets(s, row->sets, p, &name);
+                match_sets(s, row->sets, p, &part->channels[c], &name);
         }
     }
 }
 
 /* --- Names given by the user --- */
 
-/* wanted: NULL stands for every layer. */
+static bool has_channel(const struct exr_part *part, const char *name)
+{
+    const size_t i = first_with_prefix(part, name, strlen(name));
+    return i < part->channel_count && strcmp(part->channels[i].name, name) == 0;
+}
+
+/* A component stands for its layer: --normal N.X means N. wanted: NULL stands for every layer. */
 static bool names_layer(const struct search *s, size_t part_index,
                         const struct exr_channel *channel, const struct channel_name *name,
                         const char *wanted)
@@ -351,6 +366,11 @@ static bool names_layer(const struct search *s, size_t part_index,
         return true;
     const struct exr_part *part = &s->info->parts[part_index];
     size_t length = strlen(wanted);
+    const char *dot = strrchr(wanted, '.');
+    const size_t layer = dot ? (size_t)(dot - wanted) + 1 : 0;
+    if (layer && strncmp(channel->name, wanted, layer) == 0 &&
+        !strchr(channel->name + layer, '.') && has_channel(part, wanted))
+        return true;
     return strcmp(name->layer, wanted) == 0 ||
            (strncmp(channel->name, wanted, length) == 0 && channel->name[length] == '.' &&
             !strchr(channel->name + length + 1, '.')) ||
@@ -377,16 +397,16 @@ static void search_channel(struct search *s, size_t part, const char *wanted)
 
 static void search_layer(struct search *s, enum role_kind kind, size_t part, const char *wanted)
 {
-    static const char *const depth[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS] = {
-        {"Z"}, {"R"}, {"depth"}, {"Y"}, {"V"}, {"T"}, {"D"}};
-    static const char *const vector[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS] = {{"X", "Y", "Z"},
-                                                                           {"R", "G", "B"}};
     const struct exr_part *p = &s->info->parts[part];
     for (size_t c = 0; c < p->channel_count; c++) {
         struct channel_name name;
         if (channel_name_read(p, p->channels[c].name, s->view, s->info->part_count > 1, &name) &&
             names_layer(s, part, &p->channels[c], &name, wanted))
-            match_sets(s, role_is_scalar(kind) ? depth : vector, part, &name);
+            match_sets(s,
+                       role_is_scalar(kind) ? role_scalar_sets
+                       : kind == ROLE_COLOR ? role_color_sets
+                                            : role_vector_sets,
+                       part, &p->channels[c], &name);
     }
 }
 
@@ -511,11 +531,11 @@ static bool fail_ambiguous(const struct search *s, enum role_kind kind, struct t
         char label[ROLE_LABEL_MAX];
         make_label(s, &s->hits[i], label);
         text_add(&list, "%s'%s'", i ? ", " : "", label);
-        text_add(&arguments, "%s--%s '%s'", i ? " or " : "", kind_names[kind], label);
+        text_add(&arguments, "%s--%s '%s'", i ? " or " : "", option_names[kind], label);
     }
     fail_hint(err, "add %s", arguments.data ? arguments.data : "");
-    fail(err, EXIT_CHANNELS, "%s: %zu %s candidates: %s", s->info->path, s->count, kind_names[kind],
-         list.data ? list.data : "");
+    fail(err, EXIT_CHANNELS, "%s: %zu %s candidates: %s", s->info->path, s->count,
+         option_names[kind], list.data ? list.data : "");
     text_free(&list);
     text_free(&arguments);
     return false;
@@ -543,6 +563,22 @@ static void list_channels(const struct exr_info *info, const char *view, struct 
     }
 }
 
+/* Depth is often written as a picture of its own. */
+static void hint_at_depth(const struct exr_info *info, struct tool_error *err)
+{
+    const struct exr_part *part = &info->parts[0];
+    bool grey = false;
+    for (size_t i = 0; i < part->channel_count; i++)
+        grey |= strcmp(part->channels[i].name, "R") == 0;
+    if (info->part_count == 1 && part->channel_count == 1)
+        fail_hint(err, "if this channel is depth, say so: --depth %s", part->channels[0].name);
+    else if (info->part_count == 1 && grey)
+        fail_hint(err, "say which it is: --depth NAME; --depth R if this is a depth pass written "
+                       "as a grey image (R = G = B)");
+    else
+        fail_hint(err, "say which it is: --depth NAME");
+}
+
 static bool fail_missing(const struct exr_info *info, const char *view, enum role_kind kind,
                          const char *name, struct tool_error *err)
 {
@@ -552,11 +588,18 @@ static bool fail_missing(const struct exr_info *info, const char *view, enum rol
     if (name) {
         fail(err, EXIT_CHANNELS, "%s: no channel or layer '%s'%s%s; channels: %s", info->path, name,
              *view ? " in view " : "", view, channels);
-        fail_hint(err, "--%s takes a channel, a layer or part/channel", kind_names[kind]);
+        fail_hint(err,
+                  role_is_scalar(kind) ? "--%s takes a channel, a layer or part/channel"
+                                       : "--%s takes a layer with three components, X Y Z or R G "
+                                         "B, or a part with them",
+                  option_names[kind]);
     } else {
         fail(err, EXIT_CHANNELS, "%s: no %s channel found%s%s; channels: %s", info->path,
-             kind_names[kind], *view ? " in view " : "", view, channels);
-        fail_hint(err, "say which it is: --%s NAME", kind_names[kind]);
+             option_names[kind], *view ? " in view " : "", view, channels);
+        if (kind == ROLE_DEPTH)
+            hint_at_depth(info, err);
+        else
+            fail_hint(err, "say which it is: --%s NAME", option_names[kind]);
     }
     text_free(&list);
     return false;
@@ -669,10 +712,21 @@ static bool resolve_alone(struct search *s, enum role_kind kind, struct role *ro
     return true;
 }
 
+static bool fail_without_depth(const struct exr_info *info, const char *view,
+                               struct tool_error *err)
+{
+    for (size_t p = 0; p < info->part_count; p++)
+        if (info->parts[p].deep)
+            return fail_deep(info, p, err);
+    return fail_missing(info, view, ROLE_DEPTH, NULL, err);
+}
+
 bool roles_resolve(const struct exr_info *info, const struct role_request *request,
                    struct roles *roles, struct tool_error *err)
 {
     struct search s = {.info = info, .view = request->view ? request->view : ""};
+    struct role *depth = &roles->kind[ROLE_DEPTH];
+    bool ok = true;
     *roles = (struct roles){0};
     for (int kind = ROLE_DEPTH; kind < ROLE_KINDS; kind++) {
         struct role *role = &roles->kind[kind];
@@ -681,17 +735,112 @@ bool roles_resolve(const struct exr_info *info, const struct role_request *reque
             continue;
         const bool is_alone = kind < ROLE_FILES && request->file[kind];
         s.info = is_alone ? request->file[kind] : info;
-        bool ok = name       ? resolve_named(&s, (enum role_kind)kind, name, role, err)
-                  : is_alone ? resolve_alone(&s, (enum role_kind)kind, role, err)
-                             : resolve_found(&s, (enum role_kind)kind, &roles->kind[ROLE_DEPTH],
-                                             role, err);
-        if (!ok)
-            return false;
+        ok &= name       ? resolve_named(&s, (enum role_kind)kind, name, role, err)
+              : is_alone ? resolve_alone(&s, (enum role_kind)kind, role, err)
+                         : resolve_found(&s, (enum role_kind)kind, depth, role, err);
     }
-    if (roles->kind[ROLE_DEPTH].found || take_positions(roles))
-        return true;
-    for (size_t p = 0; p < info->part_count; p++)
-        if (info->parts[p].deep)
-            return fail_deep(info, p, err);
-    return fail_missing(info, s.view, ROLE_DEPTH, NULL, err);
+    if (ok && !depth->found && !take_positions(roles))
+        return fail_without_depth(info, s.view, err);
+    return ok;
+}
+
+/* --- What was not taken --- */
+
+struct passing {
+    struct search search;
+    const struct roles *roles;
+    role_listener listener;
+    void *data;
+    const struct exr_channel *told[24];
+    size_t count;
+};
+
+static bool was_told(const struct passing *p, const struct exr_channel *channel)
+{
+    for (int kind = ROLE_DEPTH; kind < ROLE_KINDS; kind++)
+        for (size_t c = 0; c <= ROLE_MAX_COMPONENTS; c++)
+            if (p->roles->kind[kind].channels[c] == channel)
+                return true;
+    for (size_t i = 0; i < p->count; i++)
+        if (p->told[i] == channel)
+            return true;
+    return false;
+}
+
+static void tell(struct passing *p, enum role_kind kind, const struct exr_channel *channel,
+                 const char *label, const char *reason)
+{
+    if (p->count == sizeof p->told / sizeof *p->told || was_told(p, channel))
+        return;
+    p->told[p->count++] = channel;
+    p->listener(p->data, kind, label, reason);
+}
+
+/* Those that a row knows, but a better one came before. */
+static void tell_later_hits(struct passing *p, enum role_kind kind)
+{
+    const struct role *taken = &p->roles->kind[kind];
+    char reason[ROLE_LABEL_MAX + 32], label[ROLE_LABEL_MAX];
+    for (size_t i = 0; i < role_table_count; i++) {
+        if (role_table[i].kind != kind)
+            continue;
+        search_row(&p->search, &role_table[i]);
+        for (size_t h = 0; h < p->search.count; h++) {
+            make_label(&p->search, &p->search.hits[h], label);
+            if (taken->found)
+                snprintf(reason, sizeof reason, "'%s' comes first", taken->label);
+            else
+                snprintf(reason, sizeof reason, "there are several");
+            tell(p, kind, p->search.hits[h].channels[0], label, reason);
+        }
+    }
+}
+
+/* Those that look like depth to people. */
+static void tell_no_depths(struct passing *p)
+{
+    const struct search *s = &p->search;
+    for (size_t i = 0; i < s->info->part_count; i++) {
+        const struct exr_part *part = &s->info->parts[i];
+        for (size_t c = 0; c < part->channel_count; c++) {
+            struct channel_name name;
+            const struct exr_channel *channel = &part->channels[c];
+            if (!channel_name_read(part, channel->name, s->view, s->info->part_count > 1, &name) ||
+                !(name_fits("Z|depth|distance", name.component) || name_fits("~depth", name.leaf)))
+                continue;
+            const char *reason = part->deep                           ? "deep data"
+                                 : !part_has_view(part, s->view)      ? "of another view"
+                                 : channel_name_is_never_depth(&name) ? "no distance by its name"
+                                 : is_vector(s, i, &name)             ? "component of a vector"
+                                                                      : "no name for depth";
+            tell(p, ROLE_DEPTH, channel, channel->name, reason);
+        }
+    }
+}
+
+void roles_passed_over(const struct exr_info *info, const struct role_request *request,
+                       const struct roles *roles, role_listener listener, void *data)
+{
+    struct passing p = {.search = {.info = info, .view = request->view ? request->view : ""},
+                        .roles = roles,
+                        .listener = listener,
+                        .data = data};
+    tell_later_hits(&p, ROLE_DEPTH);
+    tell_later_hits(&p, ROLE_NORMAL);
+    tell_later_hits(&p, ROLE_COLOR);
+    tell_no_depths(&p);
+}
+
+void roles_list_colors(const struct exr_info *info, const struct role_request *request,
+                       struct text *list)
+{
+    struct search s = {.info = info, .view = request->view ? request->view : ""};
+    struct role_row any = {.kind = ROLE_COLOR, .layers = "*"};
+    memcpy(any.sets, role_color_sets, sizeof any.sets);
+    search_row(&s, &any);
+    for (size_t i = 0; i < s.count; i++) {
+        char label[ROLE_LABEL_MAX];
+        make_label(&s, &s.hits[i], label);
+        text_add(list, "%s'%s'", i ? ", " : "", label);
+    }
 }

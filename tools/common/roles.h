@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "exr_file.h"
+#include "text.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -39,6 +40,7 @@ enum depth_type {
     DEPTH_RADIAL_NEAR, /* distance along the ray from where it crosses the near plane (Mitsuba) */
     DEPTH_INVERSE,     /* 1 / planar, 0 = infinitely far (Nuke) */
     DEPTH_DEVICE,      /* what a rasteriser's depth buffer holds, in [0,1] */
+    DEPTH_NORMALIZED,  /* planar, moved and scaled into [0,1] */
     DEPTH_POSITION     /* none: positions, three numbers per texel, from which planar depth comes */
 };
 
@@ -60,7 +62,8 @@ struct role_row {
      * "*": any layer.
      * '~' in front: the layer contains the word. '=' in front: one name, and its case counts. */
     const char *layers;
-    /* Spellings of the components, case ignored; all of one set must be there. */
+    /* Spellings of the components, case ignored; all of one set must be there. '|' separates
+     * alternatives; '~' in front: the component contains the word. */
     const char *sets[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS];
     enum role_place place;
     /* Only in parts with this channel, or in files with an attribute that starts so; NULL = no
@@ -72,6 +75,10 @@ struct role_row {
 
 extern const struct role_row role_table[];
 extern const size_t role_table_count;
+/* Components of what an option names. */
+extern const char *const role_scalar_sets[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS];
+extern const char *const role_vector_sets[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS];
+extern const char *const role_color_sets[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS];
 /* Layers that are never depth, whatever their channels are called. Lower case. */
 extern const char *const role_never_depth[];
 extern const size_t role_never_depth_count;
@@ -111,10 +118,21 @@ struct role_request {
 size_t roles_view_count(const struct exr_info *info);
 const char *roles_view_name(const struct exr_info *info, size_t index);
 
-/* Where there is no depth, positions take its place, as DEPTH_POSITION. Fails without either or
- * with several equally good hits; other roles may stay unfound, unless the request names them.
- * Errors: EXIT_CHANNELS; EXIT_INPUT if all there is is deep data. */
+/* Every role on its own: one that fails leaves the others as they are found. Where there is no
+ * depth, positions take its place, as DEPTH_POSITION. Fails without either or with several equally
+ * good hits; other roles may stay unfound, unless the request names them. Errors: EXIT_CHANNELS;
+ * EXIT_INPUT if all there is is deep data. */
 bool roles_resolve(const struct exr_info *info, const struct role_request *request,
                    struct roles *roles, struct tool_error *err);
+
+/* Tells of channels that might be taken for depth, normals or colour and were not, and why; label is
+ * in the form that the options take. At most some dozen. */
+typedef void (*role_listener)(void *data, enum role_kind kind, const char *label,
+                              const char *reason);
+void roles_passed_over(const struct exr_info *info, const struct role_request *request,
+                       const struct roles *roles, role_listener listener, void *data);
+/* "'diffuse', 'specular'": whatever has three components of a colour. */
+void roles_list_colors(const struct exr_info *info, const struct role_request *request,
+                       struct text *list);
 
 #endif

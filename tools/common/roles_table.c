@@ -4,30 +4,48 @@
 #include "roles.h"
 
 /* clang-format off */
-#define DEPTH_COMPONENTS {{"Z"}, {"R"}, {"depth"}, {"Y"}, {"V"}, {"T"}, {"D"}}
-#define VECTOR_COMPONENTS {{"X", "Y", "Z"}, {"R", "G", "B"}}
-#define COLOR_COMPONENTS {{"R", "G", "B"}, {"red", "green", "blue"}}
+#define DEPTH_COMPONENTS {{"Z"}, {"R|red"}, {"depth"}, {"Y"}, {"V"}, {"T"}, {"D"}}
+#define VECTOR_COMPONENTS \
+    {{"X", "Y", "Z"}, {"R", "G", "B"}, {"red", "green", "blue"}, {"NX", "NY", "NZ"}}
+/* OpenImageIO's own test image has Red, G and B. */
+#define COLOR_COMPONENTS \
+    {{"R", "G", "B"}, {"red", "green", "blue"}, {"R|red", "G|green", "B|blue"}}
+
+const char *const role_scalar_sets[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS] = DEPTH_COMPONENTS;
+const char *const role_vector_sets[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS] = VECTOR_COMPONENTS;
+const char *const role_color_sets[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS] = COLOR_COMPONENTS;
 
 const struct role_row role_table[] = {
     /* Blender Depth.Z, Arnold and Redshift Z.Z or depth.Z, Karma depth.Z, V-Ray ZDepth.R, Nuke
      * depth.Z, parts that are named so */
     {.kind = ROLE_DEPTH,
-     .layers = "depth|z|linearDepth|cameraDepth|camera_depth|ZDepth|VRayZDepth|CGeometry_ZDepth",
+     .layers = "depth|z|linearDepth|cameraDepth|camera_depth|ZDepth|VRayZDepth|CGeometry_ZDepth|"
+               "Z-depth|Z depth|Z_depth",
      .sets = DEPTH_COMPONENTS},
     /* RenderMan, Arnold, V-Ray, Redshift, OSPRay, old Blender; Karma; Mantra; V-Ray */
     {.kind = ROLE_DEPTH, .sets = {{"Z"}}},
     {.kind = ROLE_DEPTH, .sets = {{"depth"}}},
-    {.kind = ROLE_DEPTH, .sets = {{"Pz"}}},
+    {.kind = ROLE_DEPTH, .sets = {{"Pz"}, {"hitPz"}}},
     {.kind = ROLE_DEPTH, .sets = {{"zDepth"}, {"VRayZDepth"}}},
     /* Unreal: FinalImageMovieRenderQueue_WorldDepth.R and relatives */
     {.kind = ROLE_DEPTH, .layers = "~worlddepth", .sets = {{"R"}, {"Z"}}},
+    {.kind = ROLE_DEPTH, .layers = "ImageDepth|SceneDepth", .sets = DEPTH_COMPONENTS},
     /* RenderMan's integrator */
     {.kind = ROLE_DEPTH, .layers = "__depth", .sets = {{"R"}}},
     /* Mitsuba: the layer is the user's, the T is Mitsuba's */
     {.kind = ROLE_DEPTH, .layers = "*", .sets = {{"T"}}, .depth_type = DEPTH_RADIAL_NEAR},
+    /* Mitsuba 2 had no T: dd.y is what its manual calls the depth */
+    {.kind = ROLE_DEPTH, .layers = "dd", .sets = {{"y"}}, .depth_type = DEPTH_RADIAL},
     /* Blender, for its denoiser */
     {.kind = ROLE_DEPTH, .layers = "Denoising Depth", .sets = {{"Z"}}},
     {.kind = ROLE_DEPTH, .layers = "linearZ", .sets = {{"R"}, {"Z"}}, .depth_type = DEPTH_PLANAR},
+    /* Iray and others */
+    {.kind = ROLE_DEPTH, .layers = "distance|ray_length|raylength", .sets = DEPTH_COMPONENTS,
+     .depth_type = DEPTH_RADIAL},
+    {.kind = ROLE_DEPTH, .sets = {{"distance"}}, .depth_type = DEPTH_RADIAL},
+    /* Whatever else calls itself so */
+    {.kind = ROLE_DEPTH, .layers = "~depth", .sets = DEPTH_COMPONENTS},
+    {.kind = ROLE_DEPTH, .sets = {{"~depth"}}},
 
     /* pbrt: shading normals in the space of P, that of the camera unless told otherwise; nothing
      * else writes dzdx */
@@ -36,7 +54,7 @@ const struct role_row role_table[] = {
     {.kind = ROLE_NORMAL, .layers = "N", .sets = VECTOR_COMPONENTS, .companion = "dzdx",
      .normal_space = NORMAL_SPACE_CAMERA},
     /* V-Ray */
-    {.kind = ROLE_NORMAL, .layers = "VRayNormals|bump_normals|VRayBumpNormals",
+    {.kind = ROLE_NORMAL, .layers = "VRayNormals|bump_normals|bumpNormals|VRayBumpNormals",
      .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_CAMERA},
     {.kind = ROLE_NORMAL, .layers = "normals|normal", .sets = VECTOR_COMPONENTS,
      .attribute = "vrayInfo", .normal_space = NORMAL_SPACE_CAMERA},
@@ -49,20 +67,28 @@ const struct role_row role_table[] = {
     {.kind = ROLE_NORMAL, .layers = "normal", .sets = VECTOR_COMPONENTS},
     {.kind = ROLE_NORMAL, .layers = "normals", .sets = VECTOR_COMPONENTS},
     {.kind = ROLE_NORMAL,
-     .layers = "__Nworld|Nworld|normal_world|normW|guideNormalW|SHADING_NORMAL|"
+     .sets = {{"Nsx", "Nsy", "Nsz"}, {"NX", "NY", "NZ"}, {"N_x", "N_y", "N_z"},
+              {"normalX", "normalY", "normalZ"}, {"normal_x", "normal_y", "normal_z"}}},
+    {.kind = ROLE_NORMAL,
+     .layers = "__Nworld|Nworld|normal_world|normW|guideNormalW|SHADING_NORMAL|NormalWS|"
                "CGeometry_NormalsShading",
      .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_WORLD},
     /* Unreal */
     {.kind = ROLE_NORMAL, .layers = "~worldnormal", .sets = VECTOR_COMPONENTS,
      .normal_space = NORMAL_SPACE_WORLD},
+    {.kind = ROLE_NORMAL, .layers = "~cameranormal", .sets = VECTOR_COMPONENTS,
+     .normal_space = NORMAL_SPACE_CAMERA},
+    {.kind = ROLE_NORMAL, .layers = "NormalVS|NormalCS|ViewNormal|N_camera|Ncam|normal_camera",
+     .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_CAMERA},
     /* Geometric ones show facets, and filtered ones are blurred: better than none */
     {.kind = ROLE_NORMAL, .layers = "gn|Ng|geo_normal|GEOMETRIC_NORMAL|CGeometry_NormalsGeometry",
      .sets = VECTOR_COMPONENTS},
     {.kind = ROLE_NORMAL, .layers = "N_denoise|Denoising Normal|OptiXNormals|denoise_normal",
      .sets = VECTOR_COMPONENTS},
+    {.kind = ROLE_NORMAL, .layers = "~normal", .sets = VECTOR_COMPONENTS},
 
     {.kind = ROLE_COLOR, .sets = COLOR_COMPONENTS, .place = ROLE_SINGLE_PART},
-    {.kind = ROLE_COLOR, .layers = "rgba|rgb|beauty|Combined|C|Ci|RGB_color|color|Composite",
+    {.kind = ROLE_COLOR, .layers = "rgba|rgb|beauty|Combined|C|Ci|RGB_color|color|Composite|Image",
      .sets = COLOR_COMPONENTS},
     {.kind = ROLE_COLOR, .layers = "~_beauty", .sets = COLOR_COMPONENTS},
     {.kind = ROLE_COLOR, .layers = "~FinalImage", .sets = COLOR_COMPONENTS, .attribute = "unreal/"},
@@ -81,5 +107,5 @@ const struct role_row role_table[] = {
 /* clang-format on */
 const size_t role_table_count = sizeof role_table / sizeof *role_table;
 
-const char *const role_never_depth[] = {"mist", "zback", "crypto", "uv", "motion"};
+const char *const role_never_depth[] = {"mist", "zback", "crypto", "uv", "motion", "depthoffield"};
 const size_t role_never_depth_count = sizeof role_never_depth / sizeof *role_never_depth;

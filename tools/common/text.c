@@ -254,6 +254,19 @@ unsigned text_distance(const char *a, const char *b)
     return row[m % 3][n];
 }
 
+void text_percent(char out[PERCENT_BYTES], double share)
+{
+    const double percent = share * 100.0;
+    if (percent >= 9.95 && percent < 99.5)
+        snprintf(out, PERCENT_BYTES, "%.0f %%", percent);
+    else if (percent >= 99.5 && percent < 99.995)
+        snprintf(out, PERCENT_BYTES, "%.2f %%", percent);
+    else if (percent >= 99.995 && percent < 100)
+        snprintf(out, PERCENT_BYTES, "99.99 %%");
+    else
+        snprintf(out, PERCENT_BYTES, "%.*g %%", percent < 1 ? 1 : percent < 10 ? 2 : 3, percent);
+}
+
 bool size_multiply(size_t a, size_t b, size_t *product)
 {
     if (b && a > SIZE_MAX / b)

@@ -48,6 +48,10 @@ bool text_to_integer(const char *string, int64_t *integer);
  * bytes are cut. */
 unsigned text_distance(const char *a, const char *b);
 
+/* A share in [0,1] as people write it: "12 %", "3.4 %", "0.02 %"; 100 and 0 only if it is so. */
+enum { PERCENT_BYTES = 24 };
+void text_percent(char out[PERCENT_BYTES], double share);
+
 /* False if the product does not fit. */
 bool size_multiply(size_t a, size_t b, size_t *product);
 

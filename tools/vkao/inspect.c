@@ -4,6 +4,7 @@
 #include "commands.h"
 
 #include "atomic_file.h"
+#include "automatic.h"
 #include "json_text.h"
 #include "plan.h"
 #include "views.h"
@@ -100,22 +101,56 @@ static void add_camera(cJSON *object, const struct camera *camera)
                             camera->has_rotation ? camera->rotation_source : "unknown");
 }
 
+static const char *const reason_names[] = {
+    "none",          "--background",  "far plane",       "alpha is 0",
+    "normals are 0", "far and alike", "taken for a wall"};
+static const char *const source_names[] = {"assumed",
+                                           "--depth-type",
+                                           "by its name",
+                                           "flat things are flat so",
+                                           "agreement of the normals",
+                                           "from positions",
+                                           "convention of the program"};
+
+static void add_depth_facts(cJSON *entry, const struct gbuffer *g)
+{
+    cJSON_AddNumberToObject(entry, "min_z", g->min_z);
+    cJSON_AddNumberToObject(entry, "median_z", g->median_z);
+    cJSON_AddNumberToObject(entry, "max_z", g->max_z);
+    cJSON_AddNumberToObject(entry, "background_share", g->background_share);
+    cJSON_AddNumberToObject(entry, "invalid_share", g->invalid_share);
+    cJSON_AddNumberToObject(entry, "filtered_share", g->filtered_share);
+    const struct background *b = &g->background;
+    cJSON *background = cJSON_AddObjectToObject(entry, "background");
+    cJSON_AddStringToObject(background, "why", reason_names[b->reason]);
+    if (b->reason != BACKGROUND_NONE)
+        cJSON_AddNumberToObject(background, "value", b->value);
+    if (b->reason != BACKGROUND_NONE && b->reason != BACKGROUND_DOUBT)
+        cJSON_AddNumberToObject(background, "from", b->limit);
+    if (g->planes.count == 0)
+        return;
+    cJSON *planes = cJSON_AddObjectToObject(entry, "flat_things");
+    cJSON_AddNumberToObject(planes, "planar", g->planes.planar);
+    cJSON_AddNumberToObject(planes, "radial", g->planes.radial);
+    cJSON_AddNumberToObject(planes, "linear", g->planes.linear);
+    cJSON_AddNumberToObject(planes, "with_offset", g->planes.offset_share);
+}
+
 static void add_conventions(cJSON *object, const struct gbuffer *g)
 {
     cJSON *entry = cJSON_AddObjectToObject(object, "conventions");
     cJSON_AddStringToObject(entry, "depth_type", depth_type_name(g->depth_type));
     if (!g->depth)
         return; /* pixels could not be used: the problem says why */
-    cJSON_AddNumberToObject(entry, "min_z", g->min_z);
-    cJSON_AddNumberToObject(entry, "median_z", g->median_z);
-    cJSON_AddNumberToObject(entry, "max_z", g->max_z);
-    cJSON_AddNumberToObject(entry, "background_share", g->background_share);
-    cJSON_AddNumberToObject(entry, "invalid_share", g->invalid_share);
+    cJSON_AddStringToObject(entry, "depth_source", source_names[g->depth_source]);
+    add_depth_facts(entry, g);
     bool normals = g->normal_space != NORMAL_SPACE_AUTO;
     cJSON_AddStringToObject(entry, "normal_space",
                             normals ? normal_space_name(g->normal_space) : "none");
-    if (normals)
-        cJSON_AddStringToObject(entry, "normal_encoding", normal_encoding_name(g->normal_encoding));
+    if (!normals)
+        return;
+    cJSON_AddStringToObject(entry, "normal_encoding", normal_encoding_name(g->normal_encoding));
+    cJSON_AddNumberToObject(entry, "normal_agreement", g->normal_agreement);
 }
 
 /* The camera as it is used: the normals may have told which way it looks. */
@@ -130,20 +165,73 @@ static struct camera used_camera(const struct gbuffer *g)
     return camera;
 }
 
-/* NULL if memory ran out; whatever else is wrong becomes the problem. cameras: where the camera of
- * the view goes, as a camera file has it. */
+static void add_passed_over(void *data, enum role_kind kind, const char *label, const char *reason)
+{
+    cJSON *entry = cJSON_CreateObject();
+    cJSON_AddStringToObject(entry, "role", kind_names[kind]);
+    cJSON_AddStringToObject(entry, "name", label);
+    cJSON_AddStringToObject(entry, "why", reason);
+    cJSON_AddItemToArray(data, entry);
+}
+
+/* What a role would be good for, if it is not there. */
+static void add_missing(cJSON *object, const struct gbuffer_options *options,
+                        const struct roles *roles)
+{
+    static const char *const gains[ROLE_AO] = {
+        "nothing can be computed without: --depth NAME",
+        "they would be derived from depth: a pass of unfiltered normals makes edges exact",
+        "only --mode comp needs one: --color NAME"};
+    cJSON *missing = cJSON_AddObjectToObject(object, "missing");
+    for (int k = 0; k < ROLE_POSITION; k++)
+        if (!roles->kind[k].found)
+            cJSON_AddStringToObject(missing, kind_names[k],
+                                    k == ROLE_NORMAL && options->roles.no_normals ? "not wanted"
+                                                                                  : gains[k]);
+}
+
+/* What a run would do with these options. */
+static void add_verdict(cJSON *object, const struct options *options, const struct gbuffer *g,
+                        bool ok)
+{
+    cJSON *entry = cJSON_AddObjectToObject(object, "verdict");
+    cJSON_AddBoolToObject(entry, "can_be_processed", ok);
+    if (!ok)
+        return;
+    const bool is_auto = options->radius_is_auto;
+    const float radius =
+        is_auto ? relative_radius_of(&options->relative_radius, g) : options->setting.params.radius;
+    cJSON_AddNumberToObject(entry, "radius", (double)radius);
+    cJSON_AddBoolToObject(entry, "radius_is_auto", is_auto);
+    cJSON_AddNumberToObject(entry, "bias",
+                            (double)automatic_bias(g, radius, options->setting.params.bias));
+}
+
+static void hear_warning(void *data, const char *warning)
+{
+    cJSON_AddItemToArray(data, cJSON_CreateString(warning));
+}
+
+/* NULL if memory ran out; whatever else is wrong becomes the problem, whose exit code is kept in
+ * *code. cameras: where the camera of the view goes, as a camera file has it. */
 static cJSON *describe_view(const struct options *options, const struct frame_source *source,
                             const struct view *view, cJSON *cameras, struct report *report,
-                            struct tool_error *out_of_memory)
+                            int *code, struct tool_error *out_of_memory)
 {
     struct gbuffer_options wanted = view_options(options, view);
     struct tool_error err = {0};
     struct gbuffer g;
-    cJSON *object = cJSON_CreateObject();
+    cJSON *object = cJSON_CreateObject(), *warnings = cJSON_CreateArray();
+    struct report listening = *report;
     wanted.want_color = false;
-    bool ok = gbuffer_load(&source->info, &wanted, view->camera, report, &g, &err);
+    listening.heard = hear_warning;
+    listening.heard_data = warnings;
+    bool ok = gbuffer_load(&source->info, &wanted, view->camera, &listening, &g, &err);
     cJSON_AddStringToObject(object, "name", view->name);
     add_roles(object, &g.roles);
+    add_missing(object, &wanted, &g.roles);
+    roles_passed_over(&source->info, &wanted.roles, &g.roles, add_passed_over,
+                      cJSON_AddArrayToObject(object, "passed_over"));
     if (g.width > 0) {
         const struct camera camera = used_camera(&g);
         if (camera.source[0] && !camera.unsupported[0])
@@ -155,9 +243,12 @@ static cJSON *describe_view(const struct options *options, const struct frame_so
         camera_resolve(&wanted.camera, view->camera, &source->info, 0, &g.camera);
         add_camera(object, &g.camera);
     }
+    cJSON_AddItemToObject(object, "warnings", warnings);
+    add_verdict(object, options, &g, ok);
     if (!ok) {
         cJSON_AddStringToObject(object, "problem", err.message);
         cJSON_AddStringToObject(object, "hint", err.hint);
+        *code = *code ? *code : err.code;
     }
     gbuffer_free(&g);
     if (err.code != EXIT_MEMORY)
@@ -168,9 +259,9 @@ static cJSON *describe_view(const struct options *options, const struct frame_so
 }
 
 /* A file whose roles are not found is inspected all the same: that is what the command is for.
- * Damaged files are an error. */
+ * *code is then what a run would end with. Damaged files are an error. */
 static cJSON *describe(const struct options *options, const struct plan_frame *frame,
-                       cJSON *cameras, struct report *report, struct tool_error *err)
+                       cJSON *cameras, struct report *report, int *code, struct tool_error *err)
 {
     struct frame_source source = {0};
     struct tool_error views_err = {0};
@@ -192,10 +283,11 @@ static cJSON *describe(const struct options *options, const struct plan_frame *f
             *err = views_err; /* a camera file that cannot be read is no fact about the image */
         cJSON_AddStringToObject(root, "problem", views_err.message);
         cJSON_AddStringToObject(root, "hint", views_err.hint);
+        *code = views_err.code;
     } else {
         for (size_t i = 0; !err->code && i < source.view_count; i++)
-            cJSON_AddItemToArray(
-                views, describe_view(options, &source, &source.views[i], cameras, report, err));
+            cJSON_AddItemToArray(views, describe_view(options, &source, &source.views[i], cameras,
+                                                      report, code, err));
     }
     frame_source_close(&source);
     if (!err->code && json_is_whole(begun))
@@ -281,21 +373,66 @@ static void print_camera(const cJSON *camera)
         printf("            %s\n", text_of(camera, "remark"));
 }
 
+static void print_share(const cJSON *object, const char *key, const char *label)
+{
+    char share[PERCENT_BYTES];
+    text_percent(share, number_of(object, key));
+    printf("%s%s", label, share);
+}
+
+static void print_background(const cJSON *c)
+{
+    const cJSON *b = cJSON_GetObjectItemCaseSensitive(c, "background");
+    print_share(c, "background_share", "; background ");
+    if (has(b, "from"))
+        printf(" (%.6g and more: %s)", number_of(b, "from"), text_of(b, "why"));
+    else if (has(b, "value"))
+        printf(" (%.6g is %s)", number_of(b, "value"), text_of(b, "why"));
+}
+
 static void print_conventions(const cJSON *c)
 {
-    printf("  depth is  %s", text_of(c, "depth_type"));
-    if (has(c, "min_z"))
-        printf(": z %.5g to %.5g, median %.5g; background %.3g %%", number_of(c, "min_z"),
-               number_of(c, "max_z"), number_of(c, "median_z"),
-               number_of(c, "background_share") * 100);
+    if (!has(c, "min_z"))
+        return;
+    printf("  depth is  %s (%s): z %.5g to %.5g, median %.5g", text_of(c, "depth_type"),
+           text_of(c, "depth_source"), number_of(c, "min_z"), number_of(c, "max_z"),
+           number_of(c, "median_z"));
+    print_background(c);
     if (number_of(c, "invalid_share") > 0)
-        printf(", invalid %.3g %%", number_of(c, "invalid_share") * 100);
+        print_share(c, "invalid_share", ", invalid ");
     printf("\n");
-    if (has(c, "normal_encoding"))
-        printf("  normals   %s space, %s\n", text_of(c, "normal_space"),
-               text_of(c, "normal_encoding"));
-    else if (has(c, "normal_space"))
+    if (!has(c, "normal_encoding")) {
         printf("  normals   from depth\n");
+        return;
+    }
+    printf("  normals   %s space, %s", text_of(c, "normal_space"), text_of(c, "normal_encoding"));
+    if (number_of(c, "normal_agreement") > 0)
+        print_share(c, "normal_agreement", "; agreement with depth ");
+    printf("\n");
+}
+
+static void print_passed_over(const cJSON *view)
+{
+    const cJSON *item;
+    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(view, "passed_over"))
+    {
+        printf("  not       %s '%s': %s\n", text_of(item, "role"), text_of(item, "name"),
+               text_of(item, "why"));
+    }
+}
+
+static void print_verdict(const cJSON *view)
+{
+    const cJSON *v = cJSON_GetObjectItemCaseSensitive(view, "verdict"), *item;
+    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(view, "warnings"))
+    {
+        printf("  warning   %s\n", item->valuestring);
+    }
+    if (cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(v, "can_be_processed")))
+        printf("  vkao      can process it, with --radius %g%s --bias %.3g\n",
+               number_of(v, "radius"),
+               cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(v, "radius_is_auto")) ? " (auto)" : "",
+               number_of(v, "bias"));
 }
 
 static void print_problem(const cJSON *object)
@@ -312,6 +449,7 @@ static void print_view(const cJSON *view)
     if (*text_of(view, "name"))
         printf("view %s\n", text_of(view, "name"));
     const cJSON *roles = cJSON_GetObjectItemCaseSensitive(view, "roles");
+    const cJSON *missing = cJSON_GetObjectItemCaseSensitive(view, "missing");
     for (int k = 0; k < ROLE_KINDS; k++) {
         const cJSON *role = cJSON_GetObjectItemCaseSensitive(roles, kind_names[k]);
         if (!role)
@@ -320,12 +458,15 @@ static void print_view(const cJSON *view)
             printf("  %-9s %s (%s, part %d)\n", kind_names[k], text_of(role, "name"),
                    text_of(role, "type"), (int)number_of(role, "part"));
         else
-            printf("  %-9s -\n", kind_names[k]);
+            printf("  %-9s -%s%s\n", kind_names[k], has(missing, kind_names[k]) ? "  " : "",
+                   text_of(missing, kind_names[k]));
     }
+    print_passed_over(view);
     if (has(view, "camera"))
         print_camera(cJSON_GetObjectItemCaseSensitive(view, "camera"));
     if (has(view, "conventions"))
         print_conventions(cJSON_GetObjectItemCaseSensitive(view, "conventions"));
+    print_verdict(view);
     print_problem(view);
 }
 
@@ -411,9 +552,10 @@ static bool write_camera(const struct options *options, const char *input, cJSON
     return ok;
 }
 
-/* Of a sequence, its first frame. */
+/* Of a sequence, its first frame. Ends as a run would end. */
 int command_inspect(const struct options *options, struct report *report)
 {
+    int code = EXIT_OK;
     struct tool_error err = {0};
     struct plan plan;
     if (plan_make(options, &plan, &err)) {
@@ -424,7 +566,7 @@ int command_inspect(const struct options *options, struct report *report)
         if (!cameras)
             fail(&err, EXIT_MEMORY, "%s: out of memory", plan.frames[0].input);
         else
-            root = describe(options, &plan.frames[0], cameras, &silent, &err);
+            root = describe(options, &plan.frames[0], cameras, &silent, &code, &err);
         if (root &&
             (!options->write_camera || write_camera(options, plan.frames[0].input, cameras, &err)))
             print(root, options->json, &err);
@@ -434,5 +576,5 @@ int command_inspect(const struct options *options, struct report *report)
     }
     if (err.code != EXIT_OK)
         report_error(&err);
-    return err.code;
+    return err.code != EXIT_OK ? err.code : code;
 }

@@ -1,0 +1,468 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""What depth and normals of a file mean is decided by what they show: files of one scene as
+programs write them, in any unit and with any background, give its AO, or are refused or warned of
+with the option that helps."""
+import json
+
+import numpy as np
+
+from cli import (CHANNELS, OK, case, cases, check, equal, main, matches, oiio, read_ao,
+                 write_exr)
+from scene import FAR, FOV, MOVE, NEAR, TURN, Scene, write_camera
+
+ENOUGH = 0.012  # root mean square difference of AO that is nobody's business
+OPTIONS = ('--pixel-type', 'float', '--overwrite', 'always')
+
+
+def hidden(share, fov=FOV, **more):
+    """The scene with sky to the right, so that it takes this share of the image."""
+    scene = Scene(fov=fov, **more)
+    for column in reversed(range(scene.z.shape[1])):
+        if scene.sky.mean() >= share:
+            break
+        scene.z[:, column] = np.inf
+        scene.normal[:, column] = 0
+        scene.sky[:, column] = True
+    return scene
+
+
+def depth_of(scene, background, unit=1.0):
+    return np.where(scene.sky, background, scene.z * unit).astype(np.float32)
+
+
+def run(scratch, channels, *options, **layout):
+    write_exr(scratch.path('in.exr'), channels, **layout)
+    result = scratch.render('in.exr', '-o', 'ao.exr', *OPTIONS, *options)
+    return read_ao(scratch.path('ao.exr')), result.stderr
+
+
+def clean(scratch, scene, *options, fov=FOV, unit=1.0, normals=True):
+    """AO of the same G-buffer with nothing left to guess."""
+    channels = {'Z': depth_of(scene, 1e10, unit), **(scene.normals() if normals else {})}
+    return run(scratch, channels, '--depth-type', 'planar', '--normal-space', 'camera', '--fov',
+               fov, *options)
+
+
+def check_same(ao, wanted, what):
+    error = np.sqrt(np.mean((ao.astype(np.float64) - wanted) ** 2))
+    check(error <= ENOUGH, f'{what}: RMSE {error:.4f}')
+
+
+def inspect(scratch, *options, code=OK):
+    result = scratch.run('inspect', 'in.exr', '--json', *options)
+    equal(result.code, code, f'exit code of {result}')
+    return json.loads(result.stdout)['views'][0]
+
+
+# --- Background ---
+
+BACKGROUNDS = [('1000', 1000), ('100', 100), ('1e6', 1e6), ('1e20', 1e20), ('inf', np.inf),
+               ('0', 0), ('-1', -1), ('nan', np.nan), ('10000007168', 10000007168.0),
+               ('65504', 65504)]
+
+
+@cases(BACKGROUNDS)
+def background_is_found_whatever_it_is(scratch, _, value):
+    for share, normals in ((0.72, True), (0.3, False)):
+        scene = hidden(share)
+        wanted, said = clean(scratch, scene, normals=normals)
+        channels = {'Z': depth_of(scene, value), **(scene.normals() if normals else {})}
+        ao, told = run(scratch, channels, '--fov', FOV, '--normal-space', 'camera')
+        radius = [line.split('radius=')[1].split()[0] for line in (said + told).splitlines()
+                  if 'radius=' in line]
+        equal(radius[0], radius[1], 'automatic radius')
+        check_same(ao, wanted, f'{value} over {share} of the image')
+        check((ao[scene.sky] == 1).all(), 'the sky is not 1')
+
+
+@cases([('cm', 100.0), ('mm', 1000.0), ('km', 0.001)])
+def background_does_not_depend_on_the_unit(scratch, _, unit):
+    scene = hidden(0.5, fov=90)
+    wanted, _ = clean(scratch, scene, fov=90, unit=unit)
+    channels = {'Z': depth_of(scene, 1000 * unit, unit), **scene.normals()}
+    check_same(run(scratch, channels, '--fov', 90)[0], wanted, f'unit {unit}')
+
+
+@case
+def saturated_halves_are_background(scratch):
+    scene = hidden(0.7)
+    wanted, _ = clean(scratch, scene, unit=100, normals=False)
+    depth = depth_of(scene, 1e10, 100)
+    with np.errstate(over='ignore'):
+        ao, said = run(scratch, {'WorldDepth.R': np.minimum(depth, 65504).astype(np.float16)},
+                       '--fov', FOV)
+    check((ao[scene.sky] == 1).all(), 'the sky is not 1')
+    matches(r'radius=\d+ \(auto\)', said, 'the summary')
+    check(abs(ao.mean() - wanted.mean()) < 0.02, f'mean {ao.mean()}, want {wanted.mean()}')
+
+
+@case
+def transparent_texels_are_background(scratch):
+    scene = hidden(0.4)
+    alpha = np.where(scene.sky, 0, 1).astype(np.float32)
+    color = {c: alpha for c in 'RGBA'}
+    wanted, _ = clean(scratch, scene, normals=False)
+    noise = np.random.default_rng(3).uniform(1, 9, alpha.shape)
+    for name, value in (('always the same', 5.0), ('noise', noise)):
+        ao, _ = run(scratch, {'Z': depth_of(scene, value), **color}, '--fov', FOV)
+        check_same(ao, wanted, f'{name} where alpha is 0')
+    # In a part of its own, alpha is found as well.
+    write_exr(scratch.path('in.exr'), (color, {'name': 'rgba'}),
+              ({'Z': depth_of(scene, 5.0)}, {'name': 'depth'}))
+    scratch.render('in.exr', '-o', 'ao.exr', *OPTIONS, '--fov', FOV)
+    check_same(read_ao(scratch.path('ao.exr')), wanted, 'alpha in another part')
+
+
+@case
+def surfaces_without_alpha_are_surfaces(scratch):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene, normals=False)
+    floor = scene.normal[..., 1] > 0.99
+    color = {c: np.where(floor | scene.sky, 0, 1).astype(np.float32) for c in 'RGBA'}
+    ao, _ = run(scratch, {'Z': depth_of(scene, 1e10), **color}, '--fov', FOV)
+    check_same(ao, wanted, 'a shadow catcher')
+
+
+@case
+def wall_seen_straight_on_is_no_background(scratch):
+    # The wall of the scene, always at 6, behind a floor; then all of the image but a ball.
+    scene = Scene()
+    behind = np.where(scene.sky, 6.0, scene.z).astype(np.float32)
+    write_exr(scratch.path('in.exr'), {'Z': behind})
+    equal(inspect(scratch, '--fov', FOV)['conventions']['background_share'], 0, 'with a floor')
+    wall = np.full_like(behind, 30)
+    wall[30:50, 60:90] = 3 + np.linspace(0, 0.5, 30)
+    normals = {'N.X': 0 * wall, 'N.Y': 0 * wall, 'N.Z': 0 * wall + 1}
+    write_exr(scratch.path('in.exr'), {'Z': wall, **normals})
+    equal(inspect(scratch, '--fov', FOV)['conventions']['background_share'], 0, 'with normals')
+    # Nothing but the gap tells now: it is said.
+    write_exr(scratch.path('in.exr'), {'Z': wall})
+    matches('taken for background .--background off', str(inspect(scratch)['warnings']), 'a gap')
+    near = np.minimum(wall, 8)
+    write_exr(scratch.path('in.exr'), {'Z': near})
+    view = inspect(scratch)
+    matches('taken for a wall .--background 8', str(view['warnings']), 'a small gap')
+    equal(view['conventions']['background_share'], 0, 'with a small gap')
+    for option, share in (('8', 0.9), ('7.99', 0.9), ('off', 0), ('auto', 0)):
+        found = inspect(scratch, '--background', option)['conventions']['background_share']
+        check(abs(found - share) < 0.1, f'--background {option}: {found}')
+
+
+@case
+def far_plane_of_the_camera_is_background(scratch):
+    scene = hidden(0.6)
+    write_exr(scratch.path('in.exr'), {'Z': depth_of(scene, 12.0)},
+              attributes=[('far', 12.0), ('near', 0.1)])
+    found = inspect(scratch, '--fov', FOV)['conventions']
+    check(abs(found['background_share'] - scene.sky.mean()) < 0.001, str(found))
+    equal(found['background']['why'], 'far plane', 'why')
+
+
+# --- Kinds of depth ---
+
+@cases([('metres', 1.0, {}), ('kilometres', 0.001, {}), ('centimetres', 100.0, {}),
+        ('wide', 1.0, {'fov': 100})])
+def inverse_depth_of_nuke_is_taken_as_such(scratch, _, unit, more):
+    scene, fov = Scene(**more), more.get('fov', FOV)
+    options = ('--radius', 0.5 * unit)
+    wanted, _ = clean(scratch, scene, *options, fov=fov, unit=unit, normals=False)
+    depth = {'depth.Z': (scene.depth('inverse') / unit).astype(np.float32)}
+    ao, said = run(scratch, depth, '--fov', fov, *options,
+                   attributes=[('nuke/version', '15.1v2')])
+    check_same(ao, wanted, 'depth.Z of Nuke')
+    matches("warning: .*depth 'depth.Z' is taken as 1/z, as Nuke writes it", said, 'stderr')
+
+
+@case
+def depth_that_passed_through_nuke_stays_what_it_is(scratch):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene, normals=False)
+    ao, said = run(scratch, {'depth.Z': scene.depth()}, '--fov', FOV,
+                   attributes=[('nuke/version', '15.1v2')])
+    check_same(ao, wanted, 'planar depth.Z')
+    matches('taken as distances, not as 1/z', said, 'stderr')
+
+
+@cases(['radial', 'inverse'])
+def flat_things_tell_the_kind_of_depth(scratch, kind):
+    for fov in (FOV, 95):
+        scene = Scene(fov=fov)
+        # A tenth of a unit is 1 here, so that 1/z is not within 0..1.
+        wanted, _ = clean(scratch, scene, fov=fov, unit=0.1, normals=False)
+        depth = scene.depth(kind) * (10 if kind == 'inverse' else 0.1)
+        ao, _ = run(scratch, {'Z': depth.astype(np.float32)}, '--fov', fov)
+        check_same(ao, wanted, f'{kind} at {fov} degrees')
+        found = inspect(scratch, '--fov', fov)['conventions']
+        equal((found['depth_type'], found['depth_source']), (kind, 'flat things are flat so'),
+              'kind')
+
+
+@cases([('-1e30', -1e30), ('-inf', -np.inf), ('1e10', 1e10), ('0', 0)])
+def negative_z_is_turned(scratch, _, background):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene)
+    depth = np.where(scene.sky, background, -scene.z).astype(np.float32)
+    ao, said = run(scratch, {'Z': depth, **scene.normals()}, '--fov', FOV, '--normal-space',
+                   'camera')
+    check_same(ao, wanted, 'negative z')
+    matches('its sign is turned', said, 'stderr')
+    check((ao[scene.sky] == 1).all(), 'the sky is not 1')
+
+
+RANGES = [('black near', 1.5, 9.0, ''), ('white near', 1.5, 9.0, ',inverted'),
+          ('from the eye', 0.0, 40.0, ''), ('in cm', 150.0, 900.0, ',inverted')]
+
+
+@cases(RANGES)
+def normalised_depth_needs_its_range(scratch, _, near, far, inverted):
+    scene, unit = Scene(), 100.0 if near > 100 else 1.0
+    options = ('--radius', 0.5 * unit)
+    wanted, _ = clean(scratch, scene, *options, unit=unit, normals=False)
+    depth = np.where(scene.sky, 1, (scene.z * unit - near) / (far - near))
+    depth = (1 - depth if inverted else depth).astype(np.float32)
+    write_exr(scratch.path('in.exr'), {'ZDepth.R': depth})
+    scratch.fails(CHANNELS, "in.exr: depth 'ZDepth.R' is from .* normalised.* not in scene units",
+                  'in.exr', '-o', 'x.exr', '--fov', FOV, hint='--depth-range NEAR,FAR')
+    scratch.fails(CHANNELS, 'normalised depth .* needs its range', 'in.exr', '-o', 'x.exr',
+                  '--depth-type', 'normalized', hint='--depth-range NEAR,FAR')
+    ao, _ = run(scratch, {'ZDepth.R': depth}, '--fov', FOV, '--depth-type', 'normalized',
+                '--depth-range', f'{near},{far}{inverted}', *options)
+    check_same(ao, wanted, 'normalised')
+    # The record holds the range.
+    scratch.render('in.exr', '-o', 'again.exr', '--like', 'ao.exr')
+    check((read_ao(scratch.path('again.exr')) == ao).all(), '--like gives other AO')
+
+
+@cases(['1', '1,', '5,1', '-1,5', '1,5,upside', '1,5,', 'a,b', '1,inf'])
+def bad_ranges_are_refused(scratch, argument):
+    write_exr(scratch.path('in.exr'), {'Z': Scene().depth()})
+    scratch.fails(2, '--depth-range is .*, want NEAR,FAR', 'in.exr', '-o', 'x.exr',
+                  '--depth-range', argument)
+
+
+@cases([('device', ('--near', NEAR, '--far', FAR)), ('reversed', ('--near', FAR, '--far', NEAR))])
+def device_depth_is_not_taken_for_distances(scratch, kind, planes):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene, normals=False)
+    write_exr(scratch.path('in.exr'), {'depth': scene.depth(kind)})
+    scratch.fails(CHANNELS, "in.exr: depth 'depth' is from ", 'in.exr', '-o', 'x.exr', '--fov',
+                  FOV, hint='--near')
+    ao, _ = run(scratch, {'depth': scene.depth(kind)}, '--fov', FOV, '--depth-type', 'device',
+                *planes)
+    check_same(ao, wanted, kind)
+
+
+@case
+def small_scenes_are_scenes(scratch):
+    # All of it within one unit, and nothing behind: flat things say that it is no normalised one.
+    scene = Scene()
+    wanted, _ = clean(scratch, scene, unit=0.01, normals=False)
+    ao, _ = run(scratch, {'Z': depth_of(scene, 0, 0.01)}, '--fov', FOV)
+    check_same(ao, wanted, 'a scene of 8 cm in metres')
+
+
+@cases([('0', 0), ('1', 1), ('inf', np.inf), ('nan', np.nan), ('5', 5.0), ('1e10', 1e10)])
+def depth_without_shape_is_an_error(scratch, _, value):
+    write_exr(scratch.path('in.exr'), {'Z': np.full((20, 30), value, np.float32)})
+    scratch.fails(CHANNELS, "in.exr: depth 'Z' is .*no picture of anything", 'in.exr', '-o',
+                  'x.exr', hint='--depth NAME')
+    said = scratch.render('in.exr', '-o', 'x.exr', '--depth-type', 'planar').stderr
+    matches("warning: in.exr: depth 'Z' is .*AO is 1 everywhere", said, 'stderr')
+
+
+@case
+def filtered_depth_is_said(scratch):
+    scene = Scene(640, 360)
+    fine = depth_of(scene, 50)
+    write_exr(scratch.path('in.exr'), {'Z': fine.reshape(90, 4, 160, 4).mean(axis=(1, 3))})
+    matches(r'filtered over edges \(antialiased\)', str(inspect(scratch)['warnings']), 'warnings')
+    write_exr(scratch.path('in.exr'), {'Z': fine[1::4, 1::4].copy()})
+    check('filtered' not in str(inspect(scratch)['warnings']), 'sharp depth is called filtered')
+
+
+@cases([('b44', 'Z', np.float16, True), ('b44a', 'Z', np.float16, True),
+        ('dwaa', 'Depth.R', np.float16, True), ('dwaa', 'Z', np.float16, False),
+        ('b44a', 'Z', np.float32, False), ('piz', 'Z', np.float16, False)],
+       name=lambda row: f'{row[0]} {row[1]} {row[2].__name__}')
+def lossy_compression_is_named(scratch, compression, name, kind, is_lossy):
+    depth = np.minimum(Scene().depth(), 60000).astype(kind)
+    # OpenImageIO compresses single channels with zip instead.
+    channels = {name: depth, **{c: depth for c in 'RGB'}}
+    write_exr(scratch.path('in.exr'), channels, compression=compression)
+    said = str(inspect(scratch)['warnings'])
+    equal(f'compressed with {compression}, which is lossy' in said, is_lossy, 'warned')
+
+
+# --- Normals ---
+
+def rotation_header():
+    """worldToCamera for row vectors, looking along +z."""
+    to_camera = np.eye(4)
+    to_camera[:3, :3] = np.diag([1, 1, -1]) @ TURN
+    to_camera[:3, 3] = np.diag([1, 1, -1]) @ MOVE
+    return [('worldToCamera', oiio.TypeDesc('matrix'),
+             tuple(float(v) for v in to_camera.T.flatten()))]
+
+
+@cases([('+x+y+z', (1, 1, 1)), ('+x+y-z', (1, 1, -1)), ('+x-y+z', (1, -1, 1)),
+        ('-x+y+z', (-1, 1, 1)), ('-x-y-z', (-1, -1, -1))])
+def camera_normals_are_known_by_agreement(scratch, _, flip):
+    scene = Scene(fov=75)
+    wanted, _ = clean(scratch, scene, fov=75)
+    planes = scene.normals()
+    normals = {n: (planes[n] * f).astype(np.float32) for n, f in zip(sorted(planes), flip)}
+    for encoded in (False, True):
+        if encoded:
+            normals = {n: (v * 0.5 + 0.5).astype(np.float32) for n, v in normals.items()}
+        for attributes in (rotation_header(), []):
+            ao, said = run(scratch, {'Z': scene.depth(), **normals}, '--fov', 75,
+                           attributes=attributes)
+            check_same(ao, wanted, f'camera normals, header with {len(attributes)} matrices')
+            if attributes:
+                matches(r"normals 'N' are in camera space .* by agreement", said, 'stderr')
+
+
+@case
+def world_normals_are_known_by_agreement(scratch):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene)
+    for name in ('N', 'CameraNormal'):
+        channels = {'Z': scene.depth(), **scene.normals(name, space='world')}
+        ao, _ = run(scratch, channels, '--fov', FOV, attributes=rotation_header())
+        check_same(ao, wanted, f'world normals called {name}')
+
+
+@case
+def normals_that_agree_with_nothing_are_left_out(scratch):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene, normals=False)
+    n = scene.normals(space='world')
+    odd = {'N.X': n['N.Y'], 'N.Y': n['N.Z'], 'N.Z': n['N.X']}
+    ao, said = run(scratch, {'Z': scene.depth(), **odd}, '--fov', FOV,
+                   attributes=rotation_header())
+    check_same(ao, wanted, 'normals of another scene')
+    matches('do not agree with the depth in any space: deriving', said, 'stderr')
+
+
+NORMAL_NAMES = [
+    ('N.red', ('N.red', 'N.green', 'N.blue')), ('NX', ('NX', 'NY', 'NZ')),
+    ('Nx', ('Nx', 'Ny', 'Nz')), ('Nsx', ('Nsx', 'Nsy', 'Nsz')),
+    ('bumpNormals', ('bumpNormals.R', 'bumpNormals.G', 'bumpNormals.B')),
+    ('NormalWS', ('NormalWS.X', 'NormalWS.Y', 'NormalWS.Z')),
+    ('CameraNormal', ('FinalImageCameraNormal.R', 'FinalImageCameraNormal.G',
+                      'FinalImageCameraNormal.B')),
+    ('normal_x', ('normal_x', 'normal_y', 'normal_z')),
+    ('shadingNormals', ('shadingNormals.x', 'shadingNormals.y', 'shadingNormals.z'))]
+
+
+@cases(NORMAL_NAMES)
+def normals_are_found_by_all_their_names(scratch, _, names):
+    scene = Scene(48, 27)
+    planes = dict(zip(names, scene.normals().values()))
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **planes})
+    view = inspect(scratch, '--fov', FOV)
+    equal(view['roles']['normal'] and view['roles']['normal']['channels'], list(names), 'normals')
+
+
+@cases([('hitPz',), ('ImageDepth.R',), ('Z-depth.R',), ('dd.y',), ('Depth.V',), ('Depth',),
+        ('SceneDepthCm.R',), ('linear_depth',), ('Distance.R',)])
+def depth_is_found_by_all_its_names(scratch, name):
+    scene = Scene(48, 27)
+    write_exr(scratch.path('in.exr'), {name: scene.depth(), 'Mist.Z': scene.depth()})
+    view = inspect(scratch, '--fov', FOV)
+    equal(view['roles']['depth'] and view['roles']['depth']['channels'], [name], 'depth')
+    check({'role': 'depth', 'name': 'Mist.Z', 'why': 'no distance by its name'} in
+          view['passed_over'], str(view['passed_over']))
+    if name in ('dd.y', 'Distance.R'):
+        equal(view['conventions']['depth_type'], 'radial', 'type')
+
+
+@case
+def component_stands_for_its_layer(scratch):
+    scene = Scene(48, 27)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **scene.normals('A'),
+                                       **scene.normals('B')})
+    for name in ('A', 'A.X', 'A.Y'):
+        view = inspect(scratch, '--normal', name, '--fov', FOV)
+        equal(view['roles']['normal']['channels'], ['A.X', 'A.Y', 'A.Z'], f'--normal {name}')
+    scratch.fails(CHANNELS, "no channel or layer 'Z'; channels: A.X", 'in.exr', '-o', 'x.exr', '--normal', 'Z',
+                  hint='takes a layer with three components')
+
+
+@case
+def colours_that_might_be_meant_are_listed(scratch):
+    scene = Scene(48, 27)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **scene.normals('diffuse', letters='RGB'),
+                                       **scene.normals('glow', letters='RGB')})
+    scratch.fails(CHANNELS, "no colour found.*; layers with colours: 'diffuse', 'glow'", 'in.exr',
+                  '-o', 'x.exr', '--mode', 'comp', hint='--color NAME')
+    scratch.render('in.exr', '-o', 'x.exr', '--mode', 'comp', '--color', 'glow.R')
+
+
+@case
+def grey_images_are_hinted_at(scratch):
+    depth = Scene(48, 27).depth()
+    for channels, hint in (({c: depth for c in 'RGB'}, '--depth R if'), ({'Y': depth}, '--depth Y')):
+        write_exr(scratch.path('in.exr'), channels)
+        scratch.fails(CHANNELS, 'no depth channel found', 'in.exr', '-o', 'x.exr', hint=hint)
+
+
+# --- Files ---
+
+@case
+def empty_chunk_table_is_rebuilt(scratch):
+    scene = Scene(48, 27)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth()}, compression='zips')
+    whole = scratch.bytes('in.exr')
+    raw = bytearray(whole)
+    wanted, _ = run(scratch, {'Z': scene.depth()}, '--fov', FOV, compression='zips')
+    table = chunk_table(whole, 27)
+    raw[table:table + 27 * 8] = bytes(27 * 8)
+    scratch.write('in.exr', bytes(raw))
+    said = scratch.render('in.exr', '-o', 'ao.exr', *OPTIONS, '--fov', FOV).stderr
+    matches('warning: in.exr: the chunk table is empty', said, 'stderr')
+    check((read_ao(scratch.path('ao.exr')) == wanted).all(), 'AO differs')
+    scratch.render('in.exr', '-o', 'all.exr', '--mode', 'append', '--fov', FOV)
+    # Cut short as well, it is truncated.
+    scratch.write('in.exr', bytes(raw[:-10]))
+    scratch.fails(3, 'truncated', 'in.exr', '-o', 'x.exr')
+
+
+def chunk_table(data, count):
+    """Where the table of so many chunks begins: its first entry names the byte behind it."""
+    for at in range(8, len(data) - 8 * count):
+        if int.from_bytes(data[at:at + 8], 'little') == at + 8 * count:
+            return at
+    return check(False, 'no chunk table')
+
+
+@case
+def views_of_another_type_are_said(scratch):
+    write_exr(scratch.path('in.exr'), {'Z': Scene(48, 27).depth()},
+              attributes=[('multiView', 'left right')])
+    matches('attribute multiView is of type string', str(inspect(scratch)['warnings']), 'warnings')
+
+
+# --- What inspect tells ---
+
+@case
+def inspect_ends_as_a_run_would(scratch):
+    write_exr(scratch.path('in.exr'), {'N.X': Scene(48, 27).depth()})
+    view = inspect(scratch, code=CHANNELS)
+    equal(view['verdict'], {'can_be_processed': False}, 'verdict')
+    matches('--depth NAME', view['missing']['depth'], 'missing')
+    scene = hidden(0.3)
+    write_camera(scratch.path('camera.json'))
+    write_exr(scratch.path('in.exr'), {'Z': depth_of(scene, 1000), **scene.normals(space='world')})
+    view = inspect(scratch, '--camera', 'camera.json')
+    check(view['verdict']['can_be_processed'] and view['verdict']['radius_is_auto'], str(view))
+    check(view['conventions']['normal_agreement'] > 0.95, str(view['conventions']))
+    text = scratch.run('inspect', 'in.exr', '--camera', 'camera.json').stdout
+    matches(r'background \d+ % \(', text, 'text')
+    matches(r'(?m)^  vkao +can process it, with --radius [0-9.]+ \(auto\) --bias', text, 'text')
+    matches(r'agreement with depth \d\d(\.\d\d)? %', text, 'text')
+
+
+if __name__ == '__main__':
+    main()

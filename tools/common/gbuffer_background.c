@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What of a depth is background. Renderers write zero, infinity, some huge number, the end of the
+ * clip range or the largest half where there is nothing; compression and units change the number.
+ * What it has in common is that it is far away from all else and always the same. So is a wall seen
+ * straight on: what tells them apart is that floors meet walls, and that walls have normals and
+ * alpha. */
+#include "gbuffer_internal.h"
+#include "median.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Far more than walls are farther away than what stands before them: no other sign is needed. */
+static const double clear_gap = 20.0;
+/* Less than that may be a wall. */
+static const double least_gap = 3.0;
+/* Of texels: below it a repeated value changes nothing. */
+static const double least_share = 0.002;
+/* What lossy compression makes of one value. */
+static const double same_value = 0.99;
+
+enum { MAX_CLUSTERS = 4, MOST_VALUES = 1 << 16 };
+
+/* Far values that are alike. */
+struct cluster {
+    double value; /* the most frequent of them, which is nearly the largest */
+    double share; /* of the texels with a distance */
+    double gap;   /* how many times as far as nearly all else */
+    double rest;  /* that else: 98 % of it is nearer */
+    bool is_repeated;
+};
+
+/* What is seen where the cluster is. */
+struct surroundings {
+    size_t texels;
+    size_t normals, transparent; /* of these, with a normal, and with alpha 0 */
+    size_t borders, touching;    /* borders to something else, and those without a jump */
+};
+
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+static size_t lower_bound(const double *values, size_t count, double limit)
+{
+    size_t low = 0, high = count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (values[middle] < limit)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+/* The most frequent of sorted values. */
+static double most_frequent(const double *values, size_t count, size_t *times)
+{
+    double value = 0;
+    *times = 0;
+    for (size_t i = 0, run; i < count; i += run) {
+        for (run = 1; i + run < count && !(values[i] < values[i + run]);)
+            run++;
+        if (run >= *times) {
+            *times = run;
+            value = values[i];
+        }
+    }
+    return value;
+}
+
+/* The farthest of sorted distances. */
+static struct cluster farthest(const double *values, size_t count)
+{
+    enum { FEW = 16 };
+    struct cluster c = {0};
+    const size_t first = lower_bound(values, count, values[count - 1] * same_value);
+    size_t times;
+    c.value = most_frequent(values + first, count - first, &times);
+    c.share = (double)(count - first) / (double)count;
+    c.is_repeated = count - first >= FEW && c.share >= least_share && 2 * times >= count - first;
+    c.rest = first > 0 ? values[(size_t)((double)(first - 1) * 0.98)] : c.value;
+    c.gap = c.value / c.rest;
+    return c;
+}
+
+static bool has_normal(const struct gbuffer *g, size_t texel)
+{
+    const float *n = g->normals + texel * 4;
+    const double x = (double)n[0], y = (double)n[1], z = (double)n[2];
+    /* Grey is zero in colours. */
+    const double grey = fabs(x - 0.5) + fabs(y - 0.5) + fabs(z - 0.5);
+    return x * x + y * y + z * z > 0.25 && grey > 0.02;
+}
+
+static struct surroundings look_around(const struct gbuffer *g, const struct cluster *c)
+{
+    struct surroundings s = {0};
+    const double low = c->value * same_value, high = c->value / same_value;
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        const double d = gbuffer_distance(g, g->depth[i]);
+        if (!(d >= low && d <= high))
+            continue;
+        s.texels++;
+        s.normals += g->normals && has_normal(g, i);
+        s.transparent += g->alpha && !(g->alpha[i] > 0);
+        const size_t x = i % g->width, y = i / g->width;
+        const size_t neighbours[4] = {x > 0 ? i - 1 : i, x + 1 < g->width ? i + 1 : i,
+                                      y > 0 ? i - g->width : i,
+                                      y + 1 < g->height ? i + g->width : i};
+        for (int k = 0; k < 4; k++) {
+            const double other = gbuffer_distance(g, g->depth[neighbours[k]]);
+            if (neighbours[k] == i || (other >= low && other <= high))
+                continue;
+            s.borders++;
+            s.touching += other > c->value * 0.75;
+        }
+    }
+    return s;
+}
+
+static bool mostly(size_t part, size_t whole)
+{
+    return (double)part > 0.9 * (double)whole;
+}
+
+/* Whether the cluster is background, and why. */
+static enum background_reason judge(const struct gbuffer *g, const struct cluster *c)
+{
+    const double far_plane = g->camera.far_plane;
+    if (!c->is_repeated)
+        return BACKGROUND_NONE;
+    const struct surroundings s = look_around(g, c);
+    const bool has_normals = g->normals && mostly(s.normals, s.texels);
+    if (far_plane > 0 && c->value >= far_plane * same_value && c->value <= far_plane / same_value)
+        return BACKGROUND_FAR_PLANE;
+    if (g->alpha && mostly(s.transparent, s.texels))
+        return BACKGROUND_ALPHA;
+    if (g->normals && s.normals < s.texels / 10)
+        return c->gap > 1.0 ? BACKGROUND_NO_NORMALS : BACKGROUND_NONE;
+    if (c->gap >= clear_gap)
+        return BACKGROUND_FAR;
+    if (has_normals || (double)s.touching > 0.05 * (double)s.borders)
+        return BACKGROUND_NONE;
+    return c->gap >= least_gap ? BACKGROUND_FAR
+           : c->share > 0.02   ? BACKGROUND_DOUBT
+                               : BACKGROUND_NONE;
+}
+
+/* Distances of the picture that may be geometry, sorted. NULL if memory ran out. */
+static double *sorted_distances(const struct gbuffer *g, size_t *count)
+{
+    const size_t step = gbuffer_texels(g) / MOST_VALUES + 1;
+    double *values = malloc((gbuffer_texels(g) / step + 1) * sizeof *values);
+    *count = 0;
+    for (size_t i = 0; values && i < gbuffer_texels(g); i += step) {
+        const double d = gbuffer_distance(g, g->depth[i]);
+        if (gbuffer_is_measurable(d))
+            values[(*count)++] = d;
+    }
+    if (values)
+        qsort(values, *count, sizeof *values, compare);
+    return values;
+}
+
+/* Where alpha is 0 and depth always says the same, or says nothing that could be a surface, there
+ * is nothing. Shadow catchers and holdouts are surfaces in spite of their alpha. */
+static bool transparent_is_background(const struct gbuffer *g)
+{
+    size_t transparent = 0, surface = 0;
+    for (size_t i = g->width; i + g->width < gbuffer_texels(g); i++) {
+        const double d = gbuffer_distance(g, g->depth[i]);
+        if (g->alpha[i] > 0 || !gbuffer_is_measurable(d))
+            continue;
+        const size_t steps[2] = {1, g->width};
+        bool is_smooth = true, varies = false;
+        for (int k = 0; k < 2; k++) {
+            const double before = gbuffer_distance(g, g->depth[i - steps[k]]);
+            const double after = gbuffer_distance(g, g->depth[i + steps[k]]);
+            varies |= before < d || before > d || after < d || after > d;
+            is_smooth &= fabs(before + after - 2.0 * d) < 0.02 * d;
+        }
+        transparent++;
+        surface += is_smooth && varies;
+    }
+    return !mostly(transparent, gbuffer_texels(g)) && 2 * surface < transparent;
+}
+
+bool gbuffer_find_background(struct gbuffer *g, const struct gbuffer_options *options)
+{
+    struct background *b = &g->background;
+    *b = (struct background){.limit = INFINITY};
+    if (options->background == BACKGROUND_GIVEN) {
+        b->reason = BACKGROUND_GIVEN_VALUE;
+        b->value = options->background_value;
+        b->limit = options->background_value * (1.0 - 1e-4);
+        return true;
+    }
+    if (options->background == BACKGROUND_OFF)
+        return true;
+    size_t count;
+    double *values = sorted_distances(g, &count);
+    if (!values)
+        return false;
+    for (int i = 0; i < MAX_CLUSTERS && count > 0; i++) {
+        const struct cluster c = farthest(values, count);
+        const enum background_reason reason = judge(g, &c);
+        if (reason == BACKGROUND_NONE)
+            break;
+        b->value = c.value;
+        b->gap = c.gap;
+        b->share = c.share;
+        b->reason = reason;
+        b->is_doubtful = reason == BACKGROUND_FAR && c.gap < clear_gap;
+        if (reason == BACKGROUND_DOUBT)
+            break;
+        /* What filters mix of both lies in between. */
+        b->limit = c.gap >= clear_gap ? sqrt(c.value * c.rest) : c.value * same_value;
+        count = lower_bound(values, count, b->limit);
+    }
+    /* No scene is so deep. */
+    if (count > 0)
+        b->limit = fmin(b->limit, values[count / 2] * 1e7);
+    free(values);
+    b->is_transparent = g->alpha && transparent_is_background(g);
+    return true;
+}

@@ -1,0 +1,233 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What the values of a depth channel measure. Names seldom tell; the picture often does. What
+ * neither decides is refused or said, with the option that does. */
+#include "gbuffer_internal.h"
+#include "text.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Of the finite values. */
+struct value_facts {
+    size_t count, negative, zero, one;
+    double low, high, below_one; /* the largest below 1 */
+    bool is_endless;             /* with infinities, or with numbers that stand for them */
+};
+
+static struct value_facts look_at_values(const struct gbuffer *g)
+{
+    struct value_facts f = {.low = INFINITY, .high = -INFINITY};
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        const double d = (double)g->depth[i];
+        const bool is_zero = !(d < 0) && !(d > 0) && !isnan(d);
+        if (isnan(d) || (!is_zero && !gbuffer_is_measurable(fabs(d)))) {
+            f.is_endless |= !isnan(d);
+            continue;
+        }
+        f.count++;
+        f.zero += is_zero;
+        f.one += !(d < 1) && !(d > 1);
+        f.negative += d < 0;
+        f.low = fmin(f.low, d);
+        f.high = fmax(f.high, d);
+        f.below_one = d < 1 ? fmax(f.below_one, d) : f.below_one;
+    }
+    return f;
+}
+
+/* View space looks along -z: its z is negative wherever there is something. */
+static bool is_view_z(const struct value_facts *f)
+{
+    return f->negative > 0 && f->negative + f->zero == f->count;
+}
+
+/* --- What the planes say --- */
+
+enum planes_say { SAY_NOTHING, SAY_PLANAR, SAY_RADIAL, SAY_LINEAR, SAY_OFFSET };
+
+static enum planes_say listen(const struct gbuffer *g, const struct depth_planes *p)
+{
+    enum { MODELS = 3 };
+    const bool sees_rays = g->camera.source[0] && g->camera.type == CAMERA_PERSPECTIVE;
+    const double least = 0.2, more = 1.5;
+    const double shares[MODELS] = {p->planar, sees_rays ? p->radial : 0, p->linear};
+    int best = 0;
+    for (int i = 1; i < MODELS; i++)
+        best = shares[i] > shares[best] ? i : best;
+    if (p->offset_share >= least && p->offset_share > more * shares[best])
+        return SAY_OFFSET;
+    for (int i = 0; i < MODELS; i++)
+        if (i != best && shares[best] < more * shares[i])
+            return SAY_NOTHING;
+    return shares[best] >= least ? SAY_PLANAR + best : SAY_NOTHING;
+}
+
+/* --- Programs --- */
+
+/* Nuke's own renderer writes 1/z into depth.Z; what others wrote passes through it as it was. */
+static bool is_of_nuke(const struct exr_info *info, const struct role *depth)
+{
+    const char *name = depth->channels[0]->name;
+    bool is_nuke = false;
+    for (size_t p = 0; p < info->part_count; p++)
+        for (size_t i = 0; i < info->parts[p].attribute_count; i++)
+            is_nuke |= text_starts_with(info->parts[p].attributes[i].name, "nuke/version");
+    return is_nuke &&
+           (text_ends_with(name, "depth.Z") ||
+            (strcmp(name, "Z") == 0 && text_starts_with(info->parts[depth->part].name, "depth")));
+}
+
+static void take(struct gbuffer *g, enum depth_type type, enum depth_source source)
+{
+    g->depth_type = type;
+    g->depth_source = source;
+}
+
+static void take_from_nuke(struct gbuffer *g, const struct value_facts *f, enum planes_say say,
+                           const char *path, struct report *report)
+{
+    const char *label = g->roles.kind[ROLE_DEPTH].label;
+    /* As an image behind 1: what is nearer than a unit is rare. */
+    const bool is_inverse = say == SAY_LINEAR || (say != SAY_PLANAR && f->high <= 1.0);
+    const bool is_seen = say == SAY_LINEAR || say == SAY_PLANAR;
+    take(g, is_inverse ? DEPTH_INVERSE : DEPTH_PLANAR,
+         is_seen ? DEPTH_BY_PLANES : DEPTH_BY_CONVENTION);
+    report_warn(report, "nuke depth",
+                is_inverse ? "%s: depth '%s' is taken as 1/z, as Nuke writes it%s (--depth-type "
+                             "overrides)"
+                           : "%s: depth '%s' of Nuke is taken as distances, not as 1/z, by its "
+                             "values%s (--depth-type overrides)",
+                path, label, is_seen ? "; flat things agree" : "");
+}
+
+/* --- Deciding --- */
+
+static bool fail_unknown(const struct gbuffer *g, const struct value_facts *f, enum planes_say say,
+                         const char *path, struct tool_error *err)
+{
+    const char *label = g->roles.kind[ROLE_DEPTH].label;
+    if (say == SAY_LINEAR) {
+        fail_hint(err, "--depth-type device with --near and --far (near > far if it is reversed), "
+                       "or --depth-type inverse");
+        return fail(err, EXIT_CHANNELS,
+                    "%s: depth '%s' is from %.4g to %.4g and no distance: a depth buffer or 1/z",
+                    path, label, f->low, f->high);
+    }
+    fail_hint(err, "--depth-type normalized --depth-range NEAR,FAR[,inverted]; device with --near "
+                   "and --far; inverse; or planar or radial if these are scene units");
+    return fail(err, EXIT_CHANNELS,
+                "%s: depth '%s' is from %.4g to %.4g: normalised%s, not in scene units?", path,
+                label, f->low, f->high, say == SAY_OFFSET ? " by its looks" : "");
+}
+
+/* Depth in scene units that no name explains. */
+static void take_seen(struct gbuffer *g, const struct value_facts *f, enum planes_say say,
+                      const char *path, struct report *report)
+{
+    const char *label = g->roles.kind[ROLE_DEPTH].label;
+    const bool is_perspective = g->camera.type == CAMERA_PERSPECTIVE;
+    switch (say) {
+    case SAY_RADIAL:
+        take(g, DEPTH_RADIAL, DEPTH_BY_PLANES);
+        return;
+    case SAY_LINEAR:
+        if (is_perspective && g->camera.source[0]) {
+            take(g, DEPTH_INVERSE, DEPTH_BY_PLANES);
+            report_warn(report, "inverse depth",
+                        "%s: depth '%s' is taken as 1/z: flat things are flat only then "
+                        "(--depth-type overrides)",
+                        path, label);
+            return;
+        }
+        if (is_perspective)
+            report_warn(report, "orthographic depth",
+                        "%s: depth '%s' looks orthographic, or like 1/z (--ortho WIDTH or "
+                        "--depth-type inverse)",
+                        path, label);
+        break;
+    case SAY_OFFSET:
+        report_warn(report, "offset depth",
+                    "%s: depth '%s', from %.4g to %.4g, looks normalised or measured from the near "
+                    "plane: flat things are flat only if %.3g is added (--depth-type normalized "
+                    "--depth-range NEAR,FAR, or radial-near with --near)",
+                    path, label, f->low, f->high, g->planes.offset);
+        break;
+    case SAY_PLANAR:
+        take(g, DEPTH_PLANAR, DEPTH_BY_PLANES);
+        return;
+    case SAY_NOTHING:
+        if (f->high <= 1.5 && !f->is_endless)
+            report_warn(report, "normalised depth",
+                        "%s: depth '%s' is from %.4g to %.4g: normalised? (--depth-type normalized "
+                        "--depth-range NEAR,FAR[,inverted])",
+                        path, label, f->low, f->high);
+        break;
+    }
+    take(g, DEPTH_PLANAR, DEPTH_ASSUMED);
+}
+
+static bool is_constant(const struct value_facts *f)
+{
+    return !(f->low < f->high);
+}
+
+void gbuffer_turn_depth(struct gbuffer *g, const struct gbuffer_options *options,
+                        struct report *report)
+{
+    const struct role *role = &g->roles.kind[ROLE_DEPTH];
+    if (role->depth_type == DEPTH_POSITION || options->depth_type == DEPTH_DEVICE)
+        return;
+    const struct value_facts f = look_at_values(g);
+    if (!is_view_z(&f))
+        return;
+    for (size_t i = 0; i < gbuffer_texels(g); i++)
+        g->depth[i] = g->depth[i] < 0 ? -g->depth[i] : INFINITY;
+    g->depth_is_negated = true;
+    report_warn(report, "negative depth",
+                "%s: depth '%s' is negative, as z of view space is: its sign is turned",
+                role->info->path, role->label);
+}
+
+bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
+                                const struct gbuffer_options *options, struct report *report,
+                                struct tool_error *err)
+{
+    const struct role *role = &g->roles.kind[ROLE_DEPTH];
+    g->background.limit = INFINITY;
+    if (g->depth_source == DEPTH_BY_NORMALS || g->depth_source == DEPTH_BY_POSITIONS)
+        return true;
+    if (role->depth_type == DEPTH_POSITION) {
+        take(g, DEPTH_PLANAR, DEPTH_BY_POSITIONS);
+        return true;
+    }
+    const struct value_facts seen = look_at_values(g);
+    if (options->depth_type != DEPTH_AUTO) {
+        take(g, options->depth_type, DEPTH_BY_OPTION);
+        return true;
+    }
+    if (role->depth_type != DEPTH_AUTO) {
+        take(g, role->depth_type, DEPTH_BY_NAME);
+        return true;
+    }
+    if (!gbuffer_read_planes(g, &g->planes))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", info->path);
+    const enum planes_say say = listen(g, &g->planes);
+    if (is_of_nuke(info, role)) {
+        take_from_nuke(g, &seen, say, info->path, report);
+        return true;
+    }
+    const bool is_within_one = seen.low >= 0 && seen.high <= 1.0 && !seen.is_endless;
+    /* White is where normalised depth is clamped; a far background is far behind all else. */
+    const bool is_clamped = (double)seen.one > 0.002 * (double)seen.count && seen.below_one > 0.05;
+    const bool is_seen = (say == SAY_PLANAR || say == SAY_RADIAL) && !is_clamped;
+    if (is_within_one && !is_seen && !is_constant(&seen))
+        return fail_unknown(g, &seen, say, info->path, err);
+    if (is_within_one && is_seen)
+        report_warn(report, "small depth",
+                    "%s: depth '%s' is from %.4g to %.4g, taken for scene units since flat things "
+                    "are flat (--depth-type normalized --depth-range NEAR,FAR if it is not)",
+                    info->path, role->label, seen.low, seen.high);
+    take_seen(g, &seen, say, info->path, report);
+    return true;
+}

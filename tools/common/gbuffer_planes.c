@@ -1,0 +1,132 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What depth measures, told by the flat things that it shows. Of three texels in a row on a plane
+ * the one in the middle is the harmonic mean of the others if depth is a distance along the view
+ * axis, and the arithmetic mean if it is one over that, or of a depth buffer, or seen without
+ * perspective. Where depth was moved by an offset c, as normalised depth is, it is something in
+ * between which tells c. Distances from the eye are the first once they are divided by the length
+ * of their ray. Curved things tell anything, each something else. */
+#include "gbuffer_internal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+    MOST_TRIPLES = 1 << 15,
+    FEW_TRIPLES = 60,
+    OFFSETS = 48 /* that are tried */
+};
+
+/* How far a triple may be from where a model wants it. */
+static const double tolerance = 0.05;
+
+struct triple {
+    double planar; /* 1: harmonic mean, 0: arithmetic mean */
+    double radial; /* the same of depth divided by the length of its ray */
+    double depth;
+};
+
+/* Where the middle stands between the arithmetic (0) and the harmonic mean (1). */
+static bool place_between(double a, double m, double b, double noise, double *place)
+{
+    const double arithmetic = (a + b) / 2.0, harmonic = 2.0 * a * b / (a + b);
+    const double between = arithmetic - harmonic;
+    *place = (arithmetic - m) / between;
+    return between > 0 && m * noise < 0.02 * between;
+}
+
+/* Relative size of the steps in which depth is stored: half values, or 24 bits of noise. */
+static double storage_noise(const struct gbuffer *g)
+{
+    return g->depth_is_half ? ldexp(1.0, -11) : 2e-6;
+}
+
+static size_t collect(const struct gbuffer *g, struct triple *triples)
+{
+    const size_t reach = g->depth_is_half ? 10 : 4, width = g->width, texels = gbuffer_texels(g);
+    const size_t step = texels * 2 / MOST_TRIPLES + 1;
+    const double noise = storage_noise(g);
+    size_t count = 0;
+    for (size_t i = 0; i < texels && count + 2 <= MOST_TRIPLES; i += step) {
+        const size_t x = i % width, y = i / width;
+        const bool fits[2] = {x >= reach && x + reach < width, y >= reach && y + reach < g->height};
+        const size_t offset[2] = {reach, reach * width};
+        for (int axis = 0; axis < 2; axis++) {
+            if (!fits[axis])
+                continue;
+            const size_t at[3] = {i - offset[axis], i, i + offset[axis]};
+            double d[3], r[3];
+            bool ok = true;
+            for (int k = 0; k < 3; k++) {
+                d[k] = (double)g->depth[at[k]];
+                ok &= gbuffer_is_measurable(d[k]) && d[k] < g->background.limit;
+                r[k] = d[k] / gbuffer_ray_length(g, at[k]);
+            }
+            /* Beyond these slopes lie edges. */
+            if (!ok || d[0] > 2.0 * d[2] || d[2] > 2.0 * d[0])
+                continue;
+            struct triple *t = &triples[count];
+            t->depth = d[1];
+            if (!place_between(d[0], d[1], d[2], noise, &t->planar))
+                continue;
+            if (!place_between(r[0], r[1], r[2], noise, &t->radial))
+                t->radial = NAN;
+            count++;
+        }
+    }
+    return count;
+}
+
+static double share_near(const struct triple *triples, size_t count, double place, bool radial)
+{
+    size_t near_it = 0;
+    for (size_t i = 0; i < count; i++)
+        near_it += fabs((radial ? triples[i].radial : triples[i].planar) - place) < tolerance;
+    return (double)near_it / (double)count;
+}
+
+/* Of depth + c being the distance. */
+static double share_with_offset(const struct triple *triples, size_t count, double c)
+{
+    size_t near_it = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double place = triples[i].depth / (triples[i].depth + c);
+        near_it += fabs(triples[i].planar - place) < tolerance * fmin(1.0, fabs(place));
+    }
+    return (double)near_it / (double)count;
+}
+
+static double best_offset(const struct triple *triples, size_t count, double *offset)
+{
+    double best = 0;
+    *offset = 0;
+    for (size_t k = 0; k < OFFSETS; k++) {
+        const struct triple *t = &triples[k * count / OFFSETS];
+        const double c = t->depth * (1.0 / t->planar - 1.0);
+        const double share = isfinite(c) ? share_with_offset(triples, count, c) : 0;
+        if (share > best) {
+            best = share;
+            *offset = c;
+        }
+    }
+    return best;
+}
+
+bool gbuffer_read_planes(const struct gbuffer *g, struct depth_planes *planes)
+{
+    struct triple *triples = malloc(MOST_TRIPLES * sizeof *triples);
+    *planes = (struct depth_planes){0};
+    if (!triples)
+        return false;
+    const size_t count = collect(g, triples);
+    if (count >= FEW_TRIPLES) {
+        planes->planar = share_near(triples, count, 1.0, false);
+        planes->linear = share_near(triples, count, 0.0, false);
+        planes->radial = share_near(triples, count, 1.0, true);
+        planes->offset_share = best_offset(triples, count, &planes->offset);
+    }
+    planes->count = count;
+    free(triples);
+    return true;
+}
