@@ -386,14 +386,15 @@ def component_stands_for_its_layer(scratch):
     for name in ('A', 'A.X', 'A.Y'):
         view = inspect(scratch, '--normal', name, '--fov', FOV)
         equal(view['roles']['normal']['channels'], ['A.X', 'A.Y', 'A.Z'], f'--normal {name}')
-    scratch.fails(CHANNELS, "no channel or layer 'Z'; channels: A.X", 'in.exr', '-o', 'x.exr', '--normal', 'Z',
-                  hint='takes a layer with three components')
+    scratch.fails(CHANNELS, "no channel or layer 'Z'; channels: A.X", 'in.exr', '-o', 'x.exr',
+                  '--normal', 'Z', hint='takes a layer with three components')
 
 
 @case
 def colours_that_might_be_meant_are_listed(scratch):
     scene = Scene(48, 27)
-    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **scene.normals('diffuse', letters='RGB'),
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(),
+                                       **scene.normals('diffuse', letters='RGB'),
                                        **scene.normals('glow', letters='RGB')})
     scratch.fails(CHANNELS, "no colour found.*; layers with colours: 'diffuse', 'glow'", 'in.exr',
                   '-o', 'x.exr', '--mode', 'comp', hint='--color NAME')
@@ -403,7 +404,8 @@ def colours_that_might_be_meant_are_listed(scratch):
 @case
 def grey_images_are_hinted_at(scratch):
     depth = Scene(48, 27).depth()
-    for channels, hint in (({c: depth for c in 'RGB'}, '--depth R if'), ({'Y': depth}, '--depth Y')):
+    for channels, hint in (({c: depth for c in 'RGB'}, '--depth R if'),
+                           ({'Y': depth}, '--depth Y')):
         write_exr(scratch.path('in.exr'), channels)
         scratch.fails(CHANNELS, 'no depth channel found', 'in.exr', '-o', 'x.exr', hint=hint)
 

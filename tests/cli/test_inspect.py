@@ -5,7 +5,8 @@ import json
 
 import numpy as np
 
-from cli import (CHANNELS, INPUT, OK, case, cases, check, corpus, equal, main, matches, oiio, write_exr)
+from cli import (CHANNELS, INPUT, OK, case, cases, check, corpus, equal, main, matches, oiio,
+                 write_exr)
 from scene import FAR, FOV, NEAR, Scene, camera, write_camera
 
 SCENE = Scene(64, 36)

@@ -272,7 +272,8 @@ FLAT = ('--depth-type', 'planar')  # the same depth everywhere is meant
 CORPUS = [
     ('poc_heap_write', INPUT, ()), ('poc_heap_read', INPUT, ()),
     ('fuzz_opaque_attr_1.7GB', INPUT, ()), ('disp_10000', OK, ()), ('disp_16384', OK, ()),
-    ('dwab_8k', MEMORY, ('--max-memory', '900M')), ('tall65536_zip', DEVICE, ('--device', 'cpu', *FLAT)),
+    ('dwab_8k', MEMORY, ('--max-memory', '900M')),
+    ('tall65536_zip', DEVICE, ('--device', 'cpu', *FLAT)),
     ('denormal_pixel', OK, ()), ('odd_crop', OK, ('--quality', 'fast', *FLAT)),
     ('mip_dup_tile', INPUT, ('--mode', 'append', *FLAT)),
     ('fuzz_ripmap_append_unreadable', INPUT, ('--mode', 'append', '--depth', 'R')),

@@ -51,7 +51,8 @@ enum depth_source {
     DEPTH_BY_CONVENTION /* of the program that wrote the file */
 };
 
-/* What flat things say: shares, in [0,1], of triples of texels that say so; all 0 if there are too few. */
+/* What flat things say: shares, in [0,1], of triples of texels that say so; all 0 if there are too
+ * few. */
 struct depth_planes {
     size_t count;
     double planar, radial, linear; /* linear: 1/planar, depth buffers, orthographic */
@@ -134,7 +135,8 @@ struct gbuffer {
 bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *options,
                   const struct camera *camera_file, struct report *report, struct gbuffer *gbuffer,
                   struct tool_error *err);
-/* The colour in the data window of its own part, which *window becomes; malloc'ed, NULL on error. */
+/* The colour in the data window of its own part, which *window becomes; malloc'ed, NULL on
+ * error. */
 float *gbuffer_read_color(const struct gbuffer *gbuffer, struct exr_box *window,
                           struct tool_error *err);
 void gbuffer_free(struct gbuffer *gbuffer);

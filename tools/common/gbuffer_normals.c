@@ -291,8 +291,7 @@ static void tell_way(const struct gbuffer *g, const char *path, struct report *r
                     path, label, m[0] < 0 ? '-' : '+', m[4] < 0 ? '-' : '+', m[8] < 0 ? '-' : '+');
 }
 
-/* Changes what names and looks have chosen, which may be nothing, if the depth knows better. Normals
- * that agree with it in no way are dropped. */
+/* Changes what names and looks have chosen, which may be nothing, if the depth knows better. */
 static void ask_depth(struct gbuffer *g, const struct way ways[WAYS],
                       const struct normal_pairs *pairs, enum normal_space wanted, const char *path,
                       struct report *report)

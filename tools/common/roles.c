@@ -92,8 +92,8 @@ static bool is_view(const struct exr_part *part, const char *word, size_t length
 }
 
 /* In single-part stereo files the last but one component is the view (Blender names all views so,
- * OpenEXR leaves out the default one), or the first (Nuke). False if the channel belongs to another view than the wanted
- * one. */
+ * OpenEXR leaves out the default one), or the first (Nuke). False if the channel belongs to another
+ * view than the wanted one. */
 static bool channel_name_read(const struct exr_part *part, const char *channel, const char *view,
                               bool multi_part, struct channel_name *name)
 {

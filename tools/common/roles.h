@@ -125,8 +125,8 @@ const char *roles_view_name(const struct exr_info *info, size_t index);
 bool roles_resolve(const struct exr_info *info, const struct role_request *request,
                    struct roles *roles, struct tool_error *err);
 
-/* Tells of channels that might be taken for depth, normals or colour and were not, and why; label is
- * in the form that the options take. At most some dozen. */
+/* Tells of channels that might be taken for depth, normals or colour and were not, and why; label
+ * is in the form that the options take. At most some dozen. */
 typedef void (*role_listener)(void *data, enum role_kind kind, const char *label,
                               const char *reason);
 void roles_passed_over(const struct exr_info *info, const struct role_request *request,
