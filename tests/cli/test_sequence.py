@@ -85,6 +85,76 @@ def camera_file_may_be_a_sequence(scratch):
                   '--camera', 'camera.0004.json')
 
 
+# --- Cameras beside the frames ---
+
+BESIDE = ('--normal-space', 'camera', '--radius', RADIUS)
+
+
+def with_cameras(scratch, numbers):
+    sequence(scratch)
+    for n in numbers:
+        write_camera(scratch.path(f'in.{n:04d}.camera.json'), camera(fov=50 + 5 * n))
+
+
+@case
+def camera_beside_a_frame_is_its_camera(scratch):
+    with_cameras(scratch, (1, 2))
+    run = scratch.render('in.####.exr', '-o', 'ao.####.exr', '--frames', '1-2', *BESIDE)
+    equal(run.stderr.count('camera: in.0001.camera.json, beside the input, and so for each frame'),
+          1, 'lines that say so')
+    for n in (1, 2):
+        scratch.render(f'in.000{n}.exr', '-o', 'one.exr', '--overwrite', 'always', '--camera',
+                       f'in.000{n}.camera.json', *BESIDE)
+        equal(scratch.bytes(f'ao.000{n}.exr'), scratch.bytes('one.exr'), f'frame {n}')
+
+
+@case
+def camera_option_comes_before_the_camera_beside(scratch):
+    with_cameras(scratch, (1,))
+    write_camera(scratch.path('other.json'), camera(fov=90))
+    frame_1 = ('in.0001.exr', '--overwrite', 'always', *BESIDE)
+    scratch.render(*frame_1, '-o', 'beside.exr')
+    other = scratch.render(*frame_1, '-o', 'other.exr', '--camera', 'other.json')
+    none = scratch.render(*frame_1, '-o', 'none.exr', '--camera', 'none', '--fov', 90)
+    for run in (other, none):
+        check('camera: in.0001' not in run.stderr, f'it is said to be taken:\n{run.stderr}')
+    equal(scratch.bytes('other.exr') == scratch.bytes('beside.exr'), False, 'the camera is taken')
+    equal(read_ao(scratch.path('none.exr')).tolist(), read_ao(scratch.path('other.exr')).tolist(),
+          'AO with 90 degrees')
+    # What AO was made with is what --like makes it with.
+    like = scratch.render(*frame_1, '-o', 'like.exr', '--like', 'other.exr')
+    check('camera: in.0001' not in like.stderr, f'it is said to be taken:\n{like.stderr}')
+    equal(scratch.bytes('like.exr'), scratch.bytes('other.exr'), 'the camera of the record')
+
+
+@case
+def camera_beside_some_frames_is_an_error(scratch):
+    with_cameras(scratch, (1, 3))
+    sequence_ = ('in.####.exr', '-o', 'ao.####.exr', *BESIDE)
+    scratch.fails(INPUT, r'in\.0002\.camera\.json: cannot open', *sequence_, hint='--camera none')
+    equal(outputs(scratch), [], 'outputs')
+    run = scratch.run(*sequence_, '--continue-on-error')
+    equal(run.code, SOME_FRAMES, f'exit code of {run}')
+    matches(r'vkao: in\.0002\.camera\.json: cannot open', run.stderr, 'the message')
+    equal(outputs(scratch), ['ao.0001.exr', 'ao.0003.exr'], 'outputs')
+    scratch.render(*sequence_, '--overwrite', 'always', '--camera', 'none', '--frames', '2')
+    equal(len(outputs(scratch)), 3, 'outputs without them')
+
+
+@case
+def damaged_camera_beside_the_input_is_an_error(scratch):
+    sequence(scratch, (1,))
+    scratch.write('in.0001.camera.json', '{')
+    scratch.fails(INPUT, r'in\.0001\.camera\.json: ', 'in.0001.exr', '-o', 'ao.exr', *BESIDE)
+
+
+@case
+def output_over_the_camera_beside_is_refused(scratch):
+    with_cameras(scratch, (1,))
+    scratch.fails(USAGE, 'are the same file', 'in.0001.exr', '-o', 'ao.exr', '--preview',
+                  'in.0001.camera.json', '--overwrite', 'always', *BESIDE)
+
+
 @case
 def progress_names_every_frame(scratch):
     sequence(scratch)

@@ -151,7 +151,9 @@ static void check_plan(const struct options *options, const struct plan *plan)
         FUZZ_CHECK(strcmp(f->input, f->output) != 0, "'%s' is written to itself", f->input);
         FUZZ_CHECK(i == 0 || strcmp(f->output, f[-1].output) != 0, "'%s' is written twice",
                    f->output);
-        FUZZ_CHECK(!options->camera_file == !f->camera, "frame %zu lacks its camera", i);
+        const bool named = options->camera_file && strcmp(options->camera_file, "none") != 0;
+        FUZZ_CHECK(named ? f->camera != NULL : plan->cameras_lie_beside || !f->camera,
+                   "frame %zu lacks its camera", i);
     }
 }
 

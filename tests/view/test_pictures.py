@@ -171,8 +171,11 @@ def stereo_file_shows_the_eye_asked_for(scratch):
 def camera_beside_the_file_is_taken(scratch):
     write_exr(scratch.path('in.exr'), gbuffer())
     scratch.write('in.camera.json', '{"fov_x_deg": %g}' % FOV)
-    same_picture(shoot(scratch, 'in.exr', '--radius', RADIUS), preview(scratch, 'in.exr', *READ),
-                 'AO')
+    wanted = preview(scratch, 'in.exr', *READ, '--camera', 'none')
+    same_picture(shoot(scratch, 'in.exr', '--radius', RADIUS), wanted, 'AO of the viewer')
+    same_picture(preview(scratch, 'in.exr', '--radius', RADIUS), wanted, 'AO of the tool')
+    wide = ('--radius', RADIUS, '--camera', 'none', '--fov', 90)
+    same_picture(shoot(scratch, 'in.exr', *wide), preview(scratch, 'in.exr', *wide), 'AO without')
 
 
 @case

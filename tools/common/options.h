@@ -39,7 +39,7 @@ struct options {
     int overwrite;
     bool continue_on_error;
 
-    const char *camera_file; /* may hold a frame token */
+    const char *camera_file; /* may hold a frame token; "none": not that beside INPUT either */
     const char *view;        /* NULL = decide, "all" */
     struct gbuffer_options gbuffer;
 

@@ -585,10 +585,12 @@ const struct option_row option_table[] = {
      .help = "one view of a stereo file, or all. Default: all if the camera file has views",
      .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(view)},
     {.heading = "Camera", .name = "camera", .argument = "FILE",
-     .help = "JSON camera, see vkao(1); may hold a frame token. Default: what header, "
-             "positions, or depth and normals say",
+     .help = "JSON camera, see vkao(1); may hold a frame token. Default: FILE.camera.json beside "
+             "FILE.exr, else what header, positions, or depth and normals say",
      .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(camera_file),
-     .more = "Options come before the camera file, and that before the header. Where nobody tells, "
+     .more = "none: not the file beside INPUT either. Where one frame has a file beside it, all "
+             "must; with --like, the camera is that of the record. "
+             "Options come before the camera file, and that before the header. Where nobody tells, "
              "positions do, exactly, or depth and normals, with a bound; where these cannot, 40 "
              "degrees are assumed. Either is said in a warning."},
     {.name = "write-camera", .argument = "FILE",

@@ -35,6 +35,11 @@ static const struct {
     [PATH_NORMAL] = {"--normal-file", false, false}, [PATH_COLOR] = {"--color-file", false, false},
 };
 
+static bool camera_is_none(const struct options *o)
+{
+    return o->camera_file && strcmp(o->camera_file, "none") == 0;
+}
+
 /* What the options say. */
 static const char *given_path(const struct options *o, enum path_kind kind)
 {
@@ -42,7 +47,7 @@ static const char *given_path(const struct options *o, enum path_kind kind)
         [PATH_INPUT] = o->input,
         [PATH_OUTPUT] = o->output,
         [PATH_PREVIEW] = o->preview,
-        [PATH_CAMERA] = o->camera_file,
+        [PATH_CAMERA] = camera_is_none(o) ? NULL : o->camera_file,
         [PATH_LIKE] = o->like,
         [PATH_DEPTH] = o->file[ROLE_DEPTH],
         [PATH_NORMAL] = o->file[ROLE_NORMAL],
@@ -194,6 +199,51 @@ static bool list_frames(const struct options *o, const struct patterns *patterns
     return ok;
 }
 
+/* FILE.exr -> FILE.camera.json, malloc'ed; NULL if memory runs out. */
+static char *camera_path_beside(const char *input)
+{
+    struct text path = {0};
+    size_t stem = strlen(input);
+    if (text_ends_with(input, ".exr"))
+        stem -= strlen(".exr");
+    text_add(&path, "%.*s.camera.json", (int)stem, input);
+    if (path.out_of_memory)
+        text_free(&path);
+    return path.data;
+}
+
+bool plan_take_cameras(const struct options *options, struct plan *plan, struct tool_error *err)
+{
+    size_t beside = 0;
+    if (options->camera_file || options->like)
+        return true;
+    for (size_t i = 0; i < plan->count; i++) {
+        struct plan_frame *frame = &plan->frames[i];
+        if (!frame->camera && exists(frame->input))
+            frame->camera = camera_path_beside(frame->input);
+        if (!frame->camera && exists(frame->input))
+            return fail(err, EXIT_MEMORY, "%s: out of memory", frame->input);
+        beside += frame->camera && exists(frame->camera);
+    }
+    plan->cameras_lie_beside = beside > 0;
+    for (size_t i = 0; beside == 0 && i < plan->count; i++) {
+        free(plan->frames[i].camera);
+        plan->frames[i].camera = NULL;
+    }
+    return true;
+}
+
+void plan_say_cameras(const struct plan *plan, const struct report *report)
+{
+    for (size_t i = 0; plan->cameras_lie_beside && i < plan->count; i++) {
+        if (!plan->frames[i].camera)
+            continue;
+        report_note(report, "camera: %s, beside the input%s; --camera takes another, or none",
+                    plan->frames[i].camera, plan->is_sequence ? ", and so for each frame" : "");
+        return;
+    }
+}
+
 static bool same_inode(const char *a, const char *b)
 {
     struct stat x, y;
@@ -286,7 +336,11 @@ static bool check_there(const struct plan *plan, struct tool_error *err)
             struct stat s;
             if (!path || stat(path, &s) == 0)
                 continue;
-            if (plan->is_sequence)
+            if (k == PATH_CAMERA && plan->cameras_lie_beside)
+                fail_hint(err,
+                          "other frames have one beside them; --camera FILE serves all frames, "
+                          "--camera none leaves these out");
+            else if (plan->is_sequence)
                 fail_hint(err, "it is %s of frame %" PRId64 ", input %s", path_table[k].name,
                           plan->frames[i].number, plan->frames[i].input);
             return fail(err, EXIT_INPUT, "%s: cannot open: %s", path, strerror(errno));
@@ -301,7 +355,8 @@ static bool check_cameras(const struct plan *plan, struct tool_error *err)
     for (size_t i = 0; i < plan->count; i++) {
         struct camera_set cameras = {0};
         const char *path = plan->frames[i].camera;
-        if (!path || (i > 0 && strcmp(path, plan->frames[i - 1].camera) == 0))
+        const char *before = i > 0 ? plan->frames[i - 1].camera : NULL;
+        if (!path || (before && strcmp(path, before) == 0))
             continue;
         if (!camera_set_read(path, &cameras, err))
             return false;
@@ -314,7 +369,8 @@ bool plan_make(const struct options *options, struct plan *plan, struct tool_err
 {
     struct patterns patterns;
     *plan = (struct plan){0};
-    bool ok = parse_patterns(options, &patterns, err) && list_frames(options, &patterns, plan, err);
+    bool ok = parse_patterns(options, &patterns, err) &&
+              list_frames(options, &patterns, plan, err) && plan_take_cameras(options, plan, err);
     for (size_t i = 0; ok && options->output && i < plan->count; i++)
         ok = check_distinct(&plan->frames[i], err);
     for (size_t i = 0; ok && options->output && !options->continue_on_error && i < plan->count; i++)

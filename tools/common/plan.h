@@ -6,6 +6,7 @@
 
 #include "error.h"
 #include "options.h"
+#include "report.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -21,7 +22,8 @@ struct plan {
     struct plan_frame *frames;
     size_t count;
     bool is_sequence;
-    char found[256]; /* "1-99, 102-240": the frames that exist, of a sequence */
+    bool cameras_lie_beside; /* nobody named them */
+    char found[256];         /* "1-99, 102-240": the frames that exist, of a sequence */
 };
 
 /* Errors: EXIT_USAGE (patterns, an output that is an input), EXIT_OUTPUT (outputs that exist) and
@@ -29,6 +31,14 @@ struct plan {
  * --continue-on-error; EXIT_INPUT (no file matches). */
 bool plan_make(const struct options *options, struct plan *plan, struct tool_error *err);
 void plan_free(struct plan *plan);
+
+/* The one rule for cameras that nobody names: FILE.camera.json is that of FILE.exr, unless there is
+ * --camera, also as none, or --like, whose record has one. Where one frame has such a file each
+ * must: half a sequence by another camera would jump. plan_make does it; it is for plans that are
+ * made without. Errors: EXIT_MEMORY. */
+bool plan_take_cameras(const struct options *options, struct plan *plan, struct tool_error *err);
+/* One line, if there are any. */
+void plan_say_cameras(const struct plan *plan, const struct report *report);
 
 /* Whether an output of the frame is in the way. */
 bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,

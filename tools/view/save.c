@@ -81,6 +81,8 @@ static void add_file_options(const struct viewer *v, struct text *out)
     if (l->camera_path) {
         text_add(out, " --camera ");
         text_add_quoted(out, l->camera_path);
+    } else if (v->source.options.camera_file) {
+        text_add(out, " --camera none");
     }
     if (!has_view && *l->files.views[l->view].name) {
         text_add(out, " --view ");

@@ -162,11 +162,10 @@ static bool load_frame(struct source *s, const struct plan_frame *frame, size_t 
                        struct loaded_frame *l, struct report *report, struct tool_error *err)
 {
     l->path = copy_or_null(frame->input);
-    l->camera_path =
-        frame->camera ? copy_or_null(frame->camera) : beside(frame->input, ".camera.json");
+    l->camera_path = copy_or_null(frame->camera);
     l->reference_path =
         s->reference_given ? copy_or_null(s->reference_given) : beside(frame->input, ".gt.exr");
-    if (!l->path)
+    if (!l->path || (frame->camera && !l->camera_path))
         return fail(err, EXIT_MEMORY, "%s: out of memory", frame->input);
     if (!load_gbuffer(s, l, view, report, err))
         return false;
@@ -257,14 +256,21 @@ bool source_drop(struct source *source, char *const *paths, size_t count, struct
 {
     struct source *s = source;
     struct plan plan = {0};
+    /* --camera was said of other files; none is said of all. */
+    struct options options = s->options;
+    if (options.camera_file && strcmp(options.camera_file, "none") != 0)
+        options.camera_file = NULL;
     const bool camera = count == 1 && s->now.path && text_ends_with(paths[0], ".json");
     const bool reference = count == 1 && s->now.path && !camera && is_reference(paths[0]);
     char *const same[] = {s->now.path};
-    bool ok = camera || reference
-                  ? make_plan(same, 1, camera ? paths[0] : s->now.camera_path, &plan, err)
-                  : make_plan(paths, count, NULL, &plan, err);
-    if (!ok)
+    bool ok =
+        camera || reference
+            ? make_plan(same, 1, camera ? paths[0] : s->now.camera_path, &plan, err)
+            : make_plan(paths, count, NULL, &plan, err) && plan_take_cameras(&options, &plan, err);
+    if (!ok) {
+        plan_free(&plan);
         return false;
+    }
     *undo = (struct source_undo){.plan = s->plan,
                                  .frame = s->frame,
                                  .radius = s->radius,

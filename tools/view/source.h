@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * The files that are looked at: a G-buffer, or a sequence of them, read as the command line tool
- * reads them, and kept on the device. Beside FILE.exr lie, if there are any, its camera
- * FILE.camera.json and its reference FILE.gt.exr. */
+ * reads them, and kept on the device. Beside FILE.exr may lie its reference FILE.gt.exr. */
 #ifndef VKAO_VIEW_SOURCE_H_
 #define VKAO_VIEW_SOURCE_H_
 

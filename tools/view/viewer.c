@@ -202,6 +202,7 @@ static bool open_images(struct viewer *viewer, struct tool_error *err)
         return false;
     if (!a->options.input)
         return true;
+    plan_say_cameras(&viewer->source.plan, &viewer->report);
     if (!source_load(&viewer->source, 0, 0, &viewer->report, err))
         return false;
     complete_settings(viewer);

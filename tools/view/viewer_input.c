@@ -193,10 +193,12 @@ static void take_drop(struct viewer *v, const struct input *in)
 {
     struct source_undo undo;
     struct tool_error err = {0};
-    if (v->live)
+    if (v->live) {
         fail(&err, EXIT_INPUT, "%s: a live scene takes no files", in->dropped[0]);
-    else if (source_drop(&v->source, in->dropped, in->dropped_count, &undo, &err))
+    } else if (source_drop(&v->source, in->dropped, in->dropped_count, &undo, &err)) {
+        plan_say_cameras(&v->source.plan, &v->report);
         source_settle(&v->source, &undo, viewer_load(v, v->source.frame, v->source.now.view));
+    }
     if (err.code)
         viewer_say_error(v, &err);
 }

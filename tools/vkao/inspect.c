@@ -559,6 +559,7 @@ int command_inspect(const struct options *options, struct report *report)
     struct tool_error err = {0};
     struct plan plan;
     if (plan_make(options, &plan, &err)) {
+        plan_say_cameras(&plan, report);
         struct report silent = *report;
         silent.verbosity = report->verbosity == REPORT_VERBOSE ? REPORT_VERBOSE : REPORT_QUIET;
         cJSON *cameras = cJSON_CreateObject();

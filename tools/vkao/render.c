@@ -397,6 +397,7 @@ int command_render(const struct options *options, struct report *report)
         return err.code;
     }
     session.is_sequence = plan.is_sequence;
+    plan_say_cameras(&plan, report);
     int code = render_plan(&session, &plan);
     session_end(&session);
     plan_free(&plan);
