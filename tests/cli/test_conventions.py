@@ -337,7 +337,8 @@ def summary_radius(run):
 def radius_in_percent_is_of_the_median_distance(scratch):
     write_exr(scratch.path('in.exr'), {'Z': np.full((16, 16), 3.3, np.float32)})
     for option, wanted in (('5%', '0.165'), ('12.5%', '0.412'), ('200%', '6.6')):
-        run = scratch.render('in.exr', '-o', 'ao.exr', '--overwrite', 'always', '-r', option)
+        run = scratch.render('in.exr', '-o', 'ao.exr', '--overwrite', 'always', '-r', option,
+                             '--depth-type', 'planar')
         equal(summary_radius(run), wanted, option)
 
 
@@ -348,10 +349,10 @@ def radius_in_pixels_is_rows_at_the_median_distance(scratch):
     for aspect, wanted in ((1.0, '1.5'), (2.0, '0.75')):
         write_exr(scratch.path('in.exr'), planes, attributes=(('PixelAspectRatio', aspect),))
         run = scratch.render('in.exr', '-o', 'ao.exr', '--overwrite', 'always', '-r', '3px',
-                             '--fov', 90)
+                             '--fov', 90, '--depth-type', 'planar')
         equal(summary_radius(run), wanted, f'pixel aspect {aspect}')
     run = scratch.render('in.exr', '-o', 'ao.exr', '--overwrite', 'always', '-r', '3px',
-                         '--ortho', 64)
+                         '--ortho', 64, '--depth-type', 'planar')
     equal(summary_radius(run), '3', 'orthographic')
 
 

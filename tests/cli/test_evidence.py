@@ -198,6 +198,20 @@ def flat_things_tell_the_kind_of_depth(scratch, kind):
               'kind')
 
 
+@case
+def what_nothing_tells_is_said(scratch):
+    # A ball alone has nothing flat; with normals that agree there is no doubt.
+    scene = Scene(fov=20)
+    ball = np.abs(scene.normal[..., 2]) < 0.999
+    ball &= scene.normal[..., 1] < 0.999
+    depth = np.where(ball & ~scene.sky, scene.z, 1e10).astype(np.float32)
+    write_exr(scratch.path('in.exr'), {'Z': depth})
+    matches('nothing shows what it measures', str(inspect(scratch, '--fov', 20)['warnings']), 'one')
+    write_exr(scratch.path('in.exr'), {'Z': depth, **scene.normals()})
+    said = str(inspect(scratch, '--fov', 20)['warnings'])
+    check('nothing shows' not in said, said)
+
+
 @cases([('-1e30', -1e30), ('-inf', -np.inf), ('1e10', 1e10), ('0', 0)])
 def negative_z_is_turned(scratch, _, background):
     scene = Scene()

@@ -369,6 +369,17 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
            check_budget(info, options, g, err);
 }
 
+/* Curved things alone say nothing; normals that agree with the depth do. */
+static void warn_about_assumption(const struct gbuffer *g, struct report *report)
+{
+    const struct role *depth = &g->roles.kind[ROLE_DEPTH];
+    if (g->depth_source == DEPTH_ASSUMED && g->normal_agreement < 0.5 && g->median_z > 0)
+        report_warn(report, "assumed depth",
+                    "%s: depth '%s' is taken for planar: nothing shows what it measures "
+                    "(--depth-type planar, radial or inverse says it)",
+                    depth->info->path, depth->label);
+}
+
 /* What is odd about the file itself, whatever its pixels are. */
 static void warn_about_file(const struct exr_info *info, struct report *report)
 {
@@ -418,6 +429,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         !gbuffer_prepare_depth(g, depth->info, options, report, err) ||
         !gbuffer_prepare_normals(g, options, normals->path, report, err))
         goto failed;
+    warn_about_assumption(g, report);
     free(g->alpha);
     g->alpha = NULL;
     if (options->want_color && !read_color(g, err))

@@ -145,7 +145,9 @@ static void take_seen(struct gbuffer *g, const struct value_facts *f, enum plane
                         "%s: depth '%s' looks orthographic, or like 1/z (--ortho WIDTH or "
                         "--depth-type inverse)",
                         path, label);
-        break;
+        else
+            take(g, DEPTH_PLANAR, DEPTH_BY_PLANES);
+        return;
     case SAY_OFFSET:
         report_warn(report, "offset depth",
                     "%s: depth '%s', from %.4g to %.4g, looks normalised or measured from the near "
