@@ -53,7 +53,7 @@ Texel load_texel(ivec2 at)
     vec4 v = textureLod(sampler2D(source_image, nearest), vec2(at) + 0.5, 0.0);
     t.v = BENT_NORMALS ? v : v.xxxx;
     t.v.w = decode_hidden(t.v.w);
-    if (t.z == BACKGROUND_Z)
+    if (!NOISY_CODES && t.z == BACKGROUND_Z)
         t.v = vec4(0.0);
     t.normal = vec4(0.0);
     if (HAS_NORMALS) {
@@ -111,7 +111,7 @@ vec4 blurred(Texel window[2 * REACH + 3])
 {
     Texel center = window[LEFT];
     float slope = local_slope(window[LEFT - 1].z, center.z, window[LEFT + 1].z);
-    float edge = edge_stop(center.z, params.sharpness, params.reference_z);
+    float edge = edge_stop(center.z, params.sharpness, ORTHOGRAPHIC ? params.reference_z : 0.0);
     vec4 sum = center.v;
     float weights = 1.0;
     [[unroll]] for (int k = -REACH; k <= REACH; ++k) {
@@ -130,7 +130,8 @@ vec4 blurred(Texel window[2 * REACH + 3])
     }
     sum /= weights;
     /* an ao_noisy of the caller's may hold anything */
-    sum.w = is_sane(sum.w) ? sum.w : 0.0;
+    if (!NOISY_CODES)
+        sum.w = is_sane(sum.w) ? sum.w : 0.0;
     return sum;
 }
 

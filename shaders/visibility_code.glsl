@@ -17,7 +17,7 @@ const float VISIBILITY_UNIT = NOISY_CODES ? 1.0 / VKAO_CODE_SCALE : 1.0;
 
 float decode_hidden(float stored)
 {
-    return NOISY_CODES ? roundEven(stored * 255.0) - VKAO_VISIBILITY_OPEN : stored - 1.0;
+    return NOISY_CODES ? roundEven(stored * 255.0 - VKAO_VISIBILITY_OPEN) : stored - 1.0;
 }
 
 float decode_visibility(float stored)
