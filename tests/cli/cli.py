@@ -282,8 +282,10 @@ def read_parts(path):
     return parts
 
 
-def read_ao(path, channel='AO', part=0):
-    return read_parts(path)[part][channel].astype(np.float32)
+def read_ao(path, channel=None, part=0):
+    """By its name in a file of its own, or else beside other things."""
+    channels = read_parts(path)[part].channels
+    return channels[channel or ('R' if 'R' in channels else 'AO')].astype(np.float32)
 
 
 def make_spec(channels, compression='zip', name='', view='', x=0, y=0, display=None, tile=0,

@@ -83,7 +83,7 @@ def compare(scratch, name, truths, depths, run, measured):
     equal(len(parts), len(truths), 'number of parts')
     channel = 'AO_falloff' if run[1] == 'smooth' else 'AO_threshold'
     for part, (wanted, _), depth in zip(parts, truths, depths):
-        check_truth(part['AO'], depth, wanted[channel], measured,
+        check_truth(part['R'], depth, wanted[channel], measured,
                     ' '.join((name, part.attributes.get('view', ''), *run)))
 
 
@@ -213,7 +213,7 @@ def process_beachball(scratch, name):
     windows = {p.name: (p.data_window, p.display_window) for p in before}
     equal([p.name for p in parts], ['ao.right', 'ao.left'], 'parts')
     for part in parts:
-        check_ao(part['AO'].astype(np.float32), part.name)
+        check_ao(part['R'].astype(np.float32), part.name)
         equal((part.data_window, part.display_window), windows[part.name.replace('ao.', 'depth_')],
               f'windows of {part.name}')
 

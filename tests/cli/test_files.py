@@ -53,7 +53,7 @@ def whole(scratch, *options):
 
 @cases(DEPTHS)
 def depth_alone_needs_no_name(scratch, name, make):
-    wanted = whole(scratch)['AO']
+    wanted = whole(scratch)['R']
     write_elements(scratch, depth=make())
     scratch.render('beauty.exr', '--depth-file', 'z.exr', '--normal-file', 'n.exr', '-o', 'ao.exr',
                    *BASE)
@@ -62,7 +62,7 @@ def depth_alone_needs_no_name(scratch, name, make):
 
 @cases(NORMALS)
 def normals_alone_need_no_name(scratch, name, make):
-    wanted = whole(scratch)['AO']
+    wanted = whole(scratch)['R']
     write_elements(scratch, depth={'Z': SCENE.depth()}, normals=make())
     scratch.render('z.exr', '--normal-file', 'n.exr', '-o', 'ao.exr', *BASE)
     check_close(read_ao(scratch.path('ao.exr')), wanted, 0, 0, name)
@@ -81,7 +81,7 @@ def color_may_be_in_a_file_of_its_own(scratch):
 
 @case
 def names_are_those_of_the_file(scratch):
-    wanted = whole(scratch)['AO']
+    wanted = whole(scratch)['R']
     planes = {'a.Z': SCENE.depth(), 'b.Z': SCENE.depth() * 2}
     write_elements(scratch, depth=planes)
     line = ('beauty.exr', '--depth-file', 'z.exr', '--normal-file', 'n.exr', '-o', 'ao.exr', *BASE)
@@ -95,7 +95,7 @@ def names_are_those_of_the_file(scratch):
 @case
 def windows_are_placed(scratch):
     """A renderer that crops each element to what is in it."""
-    wanted = whole(scratch)['AO']
+    wanted = whole(scratch)['R']
     rows, columns = np.flatnonzero(~SCENE.sky.all(1)), np.flatnonzero(~SCENE.sky.all(0))
     cut = slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
     write_elements(scratch, depth={'Z': SCENE.depth()})
@@ -108,7 +108,7 @@ def windows_are_placed(scratch):
 
 @case
 def sequences_have_a_token_in_each(scratch):
-    wanted = whole(scratch)['AO']
+    wanted = whole(scratch)['R']
     for frame in (7, 8):
         depth = {'Z': SCENE.depth() * np.float32(1 if frame == 8 else 3)}
         write_elements(scratch, depth=depth, suffix=f'.{frame:04d}')
@@ -193,7 +193,7 @@ def camera_is_that_of_the_depth_or_else_of_the_input(scratch):
 
 @case
 def append_adds_to_the_input(scratch):
-    wanted = whole(scratch)['AO']
+    wanted = whole(scratch)['R']
     write_elements(scratch)
     scratch.render('beauty.exr', '--depth-file', 'z.exr', '--normal-file', 'n.exr', '-o', 'all.exr',
                    '--mode', 'append', *BASE)

@@ -270,8 +270,8 @@ def all_views_are_written_as_parts(scratch, _, write):
     equal([(p.name, p.attributes.get('view')) for p in parts],
           [('ao.left', 'left'), ('ao.right', 'right')], 'parts')
     for part, view in zip(parts, EYES):
-        check_close(part['AO'].astype(np.float32), mono(scratch, view), 0, 0, view)
-    check(not np.array_equal(parts[0]['AO'], parts[1]['AO']), 'both views are the same')
+        check_close(part['R'].astype(np.float32), mono(scratch, view), 0, 0, view)
+    check(not np.array_equal(parts[0]['R'], parts[1]['R']), 'both views are the same')
 
 
 @cases(WRITERS)
@@ -281,7 +281,7 @@ def one_view_is_chosen(scratch, _, write):
         scratch.render('in.exr', '-o', f'{view}.exr', '--view', view, *VIEW)
         parts = read_parts(scratch.path(f'{view}.exr'))
         equal(len(parts), 1, 'number of parts')
-        check_close(parts[0]['AO'].astype(np.float32), mono(scratch, view), 0, 0, view)
+        check_close(parts[0]['R'].astype(np.float32), mono(scratch, view), 0, 0, view)
 
 
 @cases(WRITERS)
@@ -301,8 +301,8 @@ def camera_file_with_views_means_all(scratch, _, write):
     options = ('--camera', 'camera.json', '--normal-space', 'camera', '--radius', RADIUS)
     scratch.render('in.exr', '-o', 'ao.exr', *options)
     parts = read_parts(scratch.path('ao.exr'))
-    check_close(parts[0]['AO'].astype(np.float32), mono(scratch, 'left'), 0.02, 1e-4, 'left')
-    check(np.abs(parts[1]['AO'] - mono(scratch, 'right')).mean() > 0.002,
+    check_close(parts[0]['R'].astype(np.float32), mono(scratch, 'left'), 0.02, 1e-4, 'left')
+    check(np.abs(parts[1]['R'] - mono(scratch, 'right')).mean() > 0.002,
           'the camera of the right view is not used')
     write_camera(scratch.path('camera.json'), {'views': {'left': camera()}})
     scratch.fails(CHANNELS, "no camera for view 'right', only for left", 'in.exr', '-o', 'x.exr',

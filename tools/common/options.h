@@ -30,7 +30,7 @@ struct options {
     const char *input;
     const char *file[ROLE_FILES]; /* of what is not in input; may hold a frame token */
 
-    const char *output, *frames, *part_name, *preview;
+    const char *output, *frames, *part_name, *channel, *preview;
     const char *like; /* EXR file whose record holds the settings; may hold a frame token */
     enum frame_syntax frame_syntax;
     enum output_mode mode;

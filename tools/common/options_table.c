@@ -460,7 +460,7 @@ const struct option_row option_table[] = {
      .commands = RENDER, .apply = apply_exr, .offset = AT(output),
      .more = "It appears whole or not at all, and must not be the input."},
     {.name = "mode", .argument = "MODE", .fallback = "ao",
-     .help = "ao: a file with channel AO alone; append: all of INPUT, untouched, and a new part "
+     .help = "ao: a file with AO alone; append: all of INPUT, untouched, and a new part "
              "'ao'; comp: colour times AO",
      .commands = RENDER, .apply = apply_word, .offset = AT(mode), .words = modes,
      .more = "Of a stereo file each view has a part of its own, ao.VIEW. append leaves pixels "
@@ -469,6 +469,14 @@ const struct option_row option_table[] = {
     {.name = "part-name", .argument = "NAME",
      .help = "name of the new part, instead of ao",
      .commands = RENDER, .apply = apply_text, .offset = AT(part_name)},
+    {.name = "channel", .argument = "NAME",
+     .help = "name of the channel of AO. Default: R, G and B alike, a grey image that every "
+             "program shows; AO with --mode append",
+     .commands = RENDER, .apply = apply_text, .offset = AT(channel),
+     .more = "To a file of Blender's with a layer ViewLayer, --mode append adds a part "
+             "ViewLayer.AO with a channel ViewLayer.AO.V, which its compositor lists among the "
+             "passes; SSAO if there is a pass AO already. Give --part-name and --channel to choose "
+             "both."},
     {.name = "like", .argument = "FILE",
      .help = "take every setting from the record in FILE, which vkao wrote; other options come "
              "before it. May hold a frame token",

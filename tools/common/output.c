@@ -12,9 +12,14 @@
 
 enum { NAME_BYTES = 512, STRINGS = 3 };
 
+/* Of the part, and of the channel of AO in it; "": R, G and B alike. */
+struct ao_names {
+    char part[NAME_BYTES], channel[NAME_BYTES];
+};
+
 /* What exr_new_part points into. */
 struct part_storage {
-    char name[NAME_BYTES];
+    char name[NAME_BYTES], channel[NAME_BYTES];
     struct exr_write channels[7];
     struct exr_string strings[STRINGS];
     char *params, version[VERSION_BYTES];
@@ -22,11 +27,61 @@ struct part_storage {
 
 /* --- Names --- */
 
-/* 'ao', 'ao.left'; a lone AO part needs no name. */
-static void ao_part_name(const struct options *o, const char *view, char name[NAME_BYTES])
+static bool is_blender(const struct exr_info *info)
 {
-    const char *base = o->part_name ? o->part_name : o->mode == OUTPUT_APPEND || *view ? "ao" : "";
-    snprintf(name, NAME_BYTES, "%s%s%s", base, *view ? "." : "", view);
+    for (size_t p = 0; p < info->part_count; p++)
+        for (size_t i = 0; i < info->parts[p].attribute_count; i++)
+            if (strcmp(info->parts[p].attributes[i].name, "BlenderMultiChannel") == 0)
+                return true;
+    return false;
+}
+
+static bool has_channel(const struct exr_info *info, const char *name)
+{
+    for (size_t p = 0; p < info->part_count; p++)
+        for (size_t c = 0; c < info->parts[p].channel_count; c++)
+            if (strcmp(info->parts[p].channels[c].name, name) == 0)
+                return true;
+    return false;
+}
+
+/* Blender lists a pass 'ViewLayer.AO.V' where it lists 'ViewLayer.Depth.Z'. Its own pass AO is of
+ * three channels. False if the depth is not called so. */
+static bool blender_names(const struct exr_info *info, const struct role *depth, const char *view,
+                          struct ao_names *names)
+{
+    char own[NAME_BYTES];
+    if (!depth->found || depth->info != info || !is_blender(info) ||
+        info->parts[depth->part].multi_view_count > 0)
+        return false;
+    const char *channel = depth->channels[0]->name, *pass = strrchr(channel, '.');
+    while (pass && pass > channel && pass[-1] != '.')
+        pass--;
+    if (!pass || pass == channel)
+        return false;
+    const int layer = (int)(pass - channel);
+    snprintf(own, sizeof own, "%.*sAO.R", layer, channel);
+    const char *name = has_channel(info, own) ? "SSAO" : "AO";
+    snprintf(names->part, NAME_BYTES, "%.*s%s%s%s", layer, channel, name, *view ? "-" : "", view);
+    snprintf(names->channel, NAME_BYTES, "%.*s%s.V", layer, channel, name);
+    return true;
+}
+
+/* 'ao', 'ao.left'; a lone AO part needs no name. R, G and B are what every program shows as it is; of
+ * Y alone ffmpeg stretches the contrast. Zip makes hardly more of three than of one. */
+static struct ao_names name_ao(const struct options *o, const struct exr_info *info,
+                               const struct role *depth, const char *view)
+{
+    struct ao_names names;
+    const bool is_appended = o->mode == OUTPUT_APPEND;
+    const char *base = o->part_name ? o->part_name : is_appended || *view ? "ao" : "";
+    if (!is_appended || o->part_name || !blender_names(info, depth, view, &names)) {
+        snprintf(names.part, NAME_BYTES, "%s%s%s", base, *view ? "." : "", view);
+        snprintf(names.channel, NAME_BYTES, "%s", is_appended ? "AO" : "");
+    }
+    if (o->channel)
+        snprintf(names.channel, NAME_BYTES, "%s", o->channel);
+    return names;
 }
 
 static void color_part_name(const struct options *o, const struct rendered_view *view,
@@ -81,20 +136,43 @@ static bool check_previews(const struct plan_frame *frame, const struct frame_so
     return true;
 }
 
+static const char *const bent_names[] = {"bent.X", "bent.Y", "bent.Z"};
+
+static bool check_channel(const struct options *o, struct tool_error *err)
+{
+    if (!o->channel)
+        return true;
+    if (o->mode == OUTPUT_COMP)
+        return fail(err, EXIT_USAGE,
+                    "--channel names the channel of AO, which --mode comp does not write");
+    for (size_t i = 0; o->setting.effect.bent_normals && i < 3; i++)
+        if (strcmp(o->channel, bent_names[i]) == 0)
+            return fail(err, EXIT_USAGE, "--channel is '%s', which --bent-normals writes",
+                        o->channel);
+    return true;
+}
+
 bool output_check_names(const struct options *options, const struct plan_frame *frame,
                         const struct frame_source *source, struct tool_error *err)
 {
     if (frame->preview && !options->overwrite && !check_previews(frame, source, err))
         return false;
-    char name[NAME_BYTES];
+    if (!check_channel(options, err))
+        return false;
     for (size_t v = 0; options->mode == OUTPUT_APPEND && v < source->view_count; v++) {
-        ao_part_name(options, source->views[v].name, name);
+        const struct gbuffer_options view = view_options(options, &source->views[v]);
+        struct roles roles = {0};
+        struct tool_error unseen = {0}; /* whoever loads the view tells */
+        roles_resolve(&source->info, &view.roles, &roles, &unseen);
+        const struct ao_names names =
+            name_ao(options, &source->info, &roles.kind[ROLE_DEPTH], source->views[v].name);
         for (size_t p = 0; p < source->info.part_count; p++) {
             const char *taken = source->info.parts[p].name;
-            if (!taken || strcmp(taken, name) != 0)
+            if (!taken || strcmp(taken, names.part) != 0)
                 continue;
             fail_hint(err, "give the new part another name: --part-name NAME");
-            return fail(err, EXIT_OUTPUT, "%s: has a part '%s' already", source->info.path, name);
+            return fail(err, EXIT_OUTPUT, "%s: has a part '%s' already", source->info.path,
+                        names.part);
         }
     }
     return true;
@@ -139,10 +217,9 @@ static void restore_alpha(const struct rendered_view *view)
 }
 
 static size_t fill_channels(const struct options *o, const struct rendered_view *view,
-                            struct exr_write channels[7])
+                            const char *ao, struct exr_write channels[7])
 {
     static const char *const names[] = {"R", "G", "B", "A"};
-    static const char *const bent[] = {"bent.X", "bent.Y", "bent.Z"};
     size_t count = 0;
     if (o->mode == OUTPUT_COMP) {
         restore_alpha(view);
@@ -150,12 +227,36 @@ static size_t fill_channels(const struct options *o, const struct rendered_view 
         for (; count < colors; count++)
             channels[count] =
                 (struct exr_write){names[count], o->pixel_type, view->result.output + count, 4};
+    } else if (*ao) {
+        channels[count++] = (struct exr_write){ao, o->pixel_type, view->result.ao, 1};
     } else {
-        channels[count++] = (struct exr_write){"AO", o->pixel_type, view->result.ao, 1};
+        for (; count < 3; count++)
+            channels[count] = (struct exr_write){names[count], o->pixel_type, view->result.ao, 1};
     }
     for (size_t i = 0; view->result.bent && i < 3; i++)
-        channels[count++] = (struct exr_write){bent[i], o->pixel_type, view->result.bent + i, 4};
+        channels[count++] =
+            (struct exr_write){bent_names[i], o->pixel_type, view->result.bent + i, 4};
     return count;
+}
+
+/* Of an attribute that it does not know ffmpeg 5 and 6 read 255 bytes, and take the rest for
+ * attributes: a name and a type of 255 characters, and a value of 255. A text that ends where such
+ * a one would is read as if nothing had happened. Spaces behind JSON mean nothing. */
+static char *pad_record(char *json)
+{
+    enum { KNOWN = 255, TAKEN = 255 + 1 + 255 + 1 + 4 + 255 };
+    const size_t length = strlen(json);
+    if (length <= KNOWN)
+        return json;
+    const size_t rest = (length - KNOWN) % TAKEN, spaces = rest ? TAKEN - rest : 0;
+    char *padded = malloc(length + spaces + 1);
+    if (padded) {
+        memcpy(padded, json, length);
+        memset(padded + length, ' ', spaces);
+        padded[length + spaces] = '\0';
+    }
+    free(json);
+    return padded;
 }
 
 static bool fill_part(const struct options *o, const struct frame_source *source,
@@ -167,6 +268,8 @@ static bool fill_part(const struct options *o, const struct frame_source *source
     const struct role *likeness = &g->roles.kind[o->mode == OUTPUT_COMP ? ROLE_COLOR : ROLE_DEPTH];
     version_string(storage->version);
     storage->params = record_write(o, &view->setting, view->name, g, device);
+    if (storage->params)
+        storage->params = pad_record(storage->params);
     if (!storage->params)
         return fail(err, EXIT_MEMORY, "%s: out of memory", source->info.path);
     storage->strings[0] = (struct exr_string){"vkao/version", storage->version};
@@ -174,8 +277,10 @@ static bool fill_part(const struct options *o, const struct frame_source *source
     storage->strings[2] = (struct exr_string){"vkao/source", file_name(source->info.path)};
     if (o->mode == OUTPUT_COMP)
         color_part_name(o, view, source->view_count, storage->name);
-    else
-        ao_part_name(o, view->name, storage->name);
+    const struct ao_names names = name_ao(o, &source->info, &g->roles.kind[ROLE_DEPTH], view->name);
+    if (o->mode != OUTPUT_COMP)
+        memcpy(storage->name, names.part, sizeof storage->name);
+    memcpy(storage->channel, names.channel, sizeof storage->channel);
     /* A file that names its views in channels must not name them in parts as well. */
     bool views_in_channels = o->mode == OUTPUT_APPEND && source->info.parts[0].multi_view_count > 0;
     *part = (struct exr_new_part){
@@ -186,7 +291,7 @@ static bool fill_part(const struct options *o, const struct frame_source *source
         .pixel_aspect = g->pixel_aspect,
         .compression = o->compression,
         .channels = storage->channels,
-        .channel_count = fill_channels(o, view, storage->channels),
+        .channel_count = fill_channels(o, view, storage->channel, storage->channels),
         .strings = storage->strings,
         .string_count = STRINGS,
         .attributes_from = likeness->info,

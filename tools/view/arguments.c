@@ -153,12 +153,25 @@ static const struct own_option own_options[] = {
 };
 
 /* Of vkao, but not for a viewer. */
-static const char *const foreign[] = {
-    "output",        "mode",         "part-name",         "pixel-type",
-    "compression",   "preview",      "overwrite",         "json",
-    "frames-syntax", "bent-normals", "continue-on-error", "like",
-    "depth-file",    "normal-file",  "color-file",        "thickness-channel",
-    "back-depth",    "layer2"};
+static const char *const foreign[] = {"output",
+                                      "mode",
+                                      "part-name",
+                                      "channel",
+                                      "pixel-type",
+                                      "compression",
+                                      "preview",
+                                      "overwrite",
+                                      "json",
+                                      "frames-syntax",
+                                      "bent-normals",
+                                      "continue-on-error",
+                                      "like",
+                                      "depth-file",
+                                      "normal-file",
+                                      "color-file",
+                                      "thickness-channel",
+                                      "back-depth",
+                                      "layer2"};
 
 static const struct own_option *find_own(const char *name, size_t length)
 {
