@@ -80,6 +80,7 @@ static struct gbuffer any_gbuffer(void)
     for (int i = 0; g.camera.has_rotation && i < 9; i++)
         g.camera.world_to_view[i] = uniform() * 2 - 1;
     snprintf(g.camera.source, sizeof g.camera.source, "%s", uniform() < 0.5 ? "" : "--fov");
+    g.camera.is_assumed = !g.camera.source[0];
     if (g.camera.has_rotation)
         snprintf(g.camera.rotation_source, sizeof g.camera.rotation_source, "camera file");
     return g;

@@ -18,6 +18,8 @@ enum job_image {
     IMAGE_BENT,
     IMAGE_THICKNESS,
     IMAGE_SECOND_DEPTH,
+    IMAGE_ALBEDO,
+    IMAGE_SPECULAR,
     IMAGE_COUNT
 };
 
@@ -116,6 +118,10 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
         [IMAGE_BENT] = {job->setting.effect.bent_normals, VK_FORMAT_R32G32B32A32_SFLOAT,
                         VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT},
         [IMAGE_THICKNESS] = {has_thickness, VK_FORMAT_R32_SFLOAT, VK_IMAGE_USAGE_SAMPLED_BIT},
+        [IMAGE_ALBEDO] = {effect->multi_bounce, VK_FORMAT_R32G32B32A32_SFLOAT,
+                          VK_IMAGE_USAGE_SAMPLED_BIT},
+        [IMAGE_SPECULAR] = {effect->specular != VKAO_SPECULAR_NONE, VK_FORMAT_R32G32B32A32_SFLOAT,
+                            VK_IMAGE_USAGE_SAMPLED_BIT},
         [IMAGE_SECOND_DEPTH] = {effect->second_layer, VK_FORMAT_R32_SFLOAT,
                                 VK_IMAGE_USAGE_SAMPLED_BIT},
     };
@@ -142,6 +148,10 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
         images.thickness = gpu_image_slot(&session->images[IMAGE_THICKNESS]);
     if (effect->second_layer)
         images.second_depth = gpu_image_slot(&session->images[IMAGE_SECOND_DEPTH]);
+    if (effect->multi_bounce)
+        images.albedo = gpu_image_slot(&session->images[IMAGE_ALBEDO]);
+    if (effect->specular)
+        images.specular = gpu_image_slot(&session->images[IMAGE_SPECULAR]);
     vkao_result result = vkao_frame_create(session->effect,
                                            &(vkao_frame_info){
                                                .struct_size = sizeof(vkao_frame_info),
@@ -181,7 +191,9 @@ uint64_t ao_job_texel_bytes(bool has_normals, bool has_color, const vkao_effect_
     const uint64_t color = has_color ? vector : 0, bent = effect->bent_normals ? vector : 0;
     const uint64_t thickness = effect->thickness_input ? sizeof(float) : 0;
     const uint64_t second = effect->second_layer ? sizeof(float) : 0;
-    const uint64_t images = 2 * sizeof(float) + normals + 2 * color + bent + thickness + second;
+    const uint64_t light = (effect->multi_bounce ? vector : 0) + (effect->specular ? vector : 0);
+    const uint64_t images =
+        light + 2 * sizeof(float) + normals + 2 * color + bent + thickness + second;
     const uint64_t results = sizeof(float) + color + bent;
     const uint64_t scratch = (bent ? 24 : 8) + second;
     return images + results + scratch + (normals || color || bent ? vector : sizeof(float));
@@ -202,10 +214,14 @@ static bool upload_behind(struct ao_session *session, const struct ao_job *job, 
     if ((effect->thickness_input && !job->thickness) ||
         (effect->second_layer && !job->second_depth))
         return fail(err, EXIT_BUG, "no image of thickness or second depth");
+    if ((effect->multi_bounce && !job->albedo) || (effect->specular && !job->specular))
+        return fail(err, EXIT_BUG, "no image of albedo or specular light");
     return (!effect->thickness_input ||
             upload(session, IMAGE_THICKNESS, job->thickness, texels, err)) &&
            (!effect->second_layer ||
-            upload(session, IMAGE_SECOND_DEPTH, job->second_depth, texels, err));
+            upload(session, IMAGE_SECOND_DEPTH, job->second_depth, texels, err)) &&
+           (!effect->multi_bounce || upload(session, IMAGE_ALBEDO, job->albedo, texels, err)) &&
+           (!effect->specular || upload(session, IMAGE_SPECULAR, job->specular, texels, err));
 }
 
 static double now_ms(void)

@@ -18,6 +18,8 @@ struct ao_job {
     /* width * height each, where setting.effect asks for them: what its thickness_input says, and
      * depth as that above */
     const float *thickness, *second_depth;
+    /* width * height * 4 each, where setting.effect has multi_bounce and specular */
+    const float *albedo, *specular;
     struct ao_view view;
     struct setting setting; /* the job itself decides stages, encodings, projection and ao_format */
 };

@@ -212,6 +212,30 @@ static void complete_alpha(const struct gbuffer *g, float *color, size_t texels)
         color[i * 4 + 3] = 1.0f;
 }
 
+/* Objects that do not cast are not there. */
+static bool take_out(struct gbuffer *g, struct tool_error *err)
+{
+    const struct role *role = &g->roles.kind[ROLE_NO_CAST];
+    float *mask = role->found ? read_role(g, role, 1, 0.0f, err) : NULL;
+    if (role->found && !mask)
+        return false;
+    for (size_t i = 0; mask && i < gbuffer_texels(g); i++)
+        if (mask[i] >= 0.5f)
+            g->depth[i] = g->background_depth;
+    free(mask);
+    return true;
+}
+
+/* Only numbers in [0,1] are let through. */
+static bool read_holdout(struct gbuffer *g, struct tool_error *err)
+{
+    if (!read_behind(g, ROLE_HOLDOUT, &g->holdout, err))
+        return false;
+    for (size_t i = 0; g->holdout && i < gbuffer_texels(g); i++)
+        g->holdout[i] = g->holdout[i] > 0.0f ? fminf(g->holdout[i], 1.0f) : 0.0f;
+    return true;
+}
+
 static bool read_color(struct gbuffer *g, struct tool_error *err)
 {
     const struct role *role = &g->roles.kind[ROLE_COLOR];
@@ -221,6 +245,38 @@ static bool read_color(struct gbuffer *g, struct tool_error *err)
     g->color_has_alpha = role->channels[ROLE_MAX_COMPONENTS] != NULL;
     complete_alpha(g, g->color, gbuffer_texels(g));
     return true;
+}
+
+/* What of the colour AO is to darken, and what belongs to that. */
+static bool read_light(struct gbuffer *g, struct tool_error *err)
+{
+    const struct role *roles = g->roles.kind;
+    const size_t texels = gbuffer_texels(g);
+    float *indirect = NULL, *roughness = NULL;
+    bool ok = read_color(g, err);
+    if (ok && roles[ROLE_INDIRECT].found)
+        ok = (indirect = read_role(g, &roles[ROLE_INDIRECT], 4, 0.0f, err)) != NULL;
+    if (ok && roles[ROLE_ALBEDO].found)
+        ok = (g->albedo = read_role(g, &roles[ROLE_ALBEDO], 4, 0.0f, err)) != NULL;
+    if (ok && roles[ROLE_SPECULAR].found)
+        ok = (g->specular = read_role(g, &roles[ROLE_SPECULAR], 4, 0.0f, err)) != NULL;
+    if (ok && roles[ROLE_ROUGHNESS].found)
+        ok = (roughness = read_role(g, &roles[ROLE_ROUGHNESS], 1, 0.5f, err)) != NULL;
+    for (size_t i = 0; ok && g->specular && i < texels; i++)
+        g->specular[i * 4 + 3] = roughness ? roughness[i] : 0.5f;
+    if (ok && (indirect || g->specular))
+        ok = (g->kept = allocate(texels, 4, roles[ROLE_COLOR].info->path, err)) != NULL;
+    for (size_t i = 0; ok && g->kept && i < texels * 4; i++) {
+        const float specular = g->specular ? g->specular[i] : 0.0f;
+        const float darkened = indirect ? indirect[i] : g->color[i] - specular;
+        if (i % 4 == 3)
+            continue; /* alpha stays */
+        g->kept[i] = g->color[i] - darkened - specular;
+        g->color[i] = darkened;
+    }
+    free(indirect);
+    free(roughness);
+    return ok;
 }
 
 float *gbuffer_read_color(const struct gbuffer *gbuffer, struct exr_box *window,
@@ -277,7 +333,10 @@ static bool check_budget(const struct exr_info *info, const struct gbuffer_optio
         add_role(g, color, 1, &texel_bytes, &for_a_while);
     for (int kind = ROLE_THICKNESS; kind < ROLE_KINDS; kind++)
         if (g->roles.kind[kind].found)
-            add_role(g, &g->roles.kind[kind], 1, &texel_bytes, &for_a_while);
+            add_role(g, &g->roles.kind[kind], role_is_scalar((enum role_kind)kind) ? 1 : 4,
+                     &texel_bytes, &for_a_while);
+    if (g->roles.kind[ROLE_INDIRECT].found || g->roles.kind[ROLE_SPECULAR].found)
+        texel_bytes += 4 * sizeof(float); /* what is kept of the colour */
     const uint64_t work = work_texels * (options->work_texel_bytes +
                                          (normal->found ? options->work_normals_texel_bytes : 0));
     const uint64_t bytes = options->held_bytes + wide + work_texels * texel_bytes +
@@ -325,6 +384,16 @@ static bool fail_without_color(const struct exr_info *info, const struct gbuffer
     return false;
 }
 
+static bool check_light(const struct gbuffer *g, struct tool_error *err)
+{
+    const struct role *specular = &g->roles.kind[ROLE_SPECULAR];
+    if (!specular->found || g->roles.kind[ROLE_NORMAL].found)
+        return true;
+    fail_hint(err, "name the normals with --normal, or leave --specular out");
+    return fail(err, EXIT_CHANNELS, "%s: --specular needs normals, and there are none",
+                specular->info->path);
+}
+
 /* Everything that the header alone decides. */
 static bool resolve(const struct exr_info *info, const struct gbuffer_options *options,
                     const struct camera *camera_file, struct gbuffer *g, struct tool_error *err)
@@ -366,7 +435,7 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
     return check_files(info, options, g, err) && check_role(depth, err) &&
            check_role(&g->roles.kind[ROLE_NORMAL], err) &&
            (!options->want_color || check_role(&g->roles.kind[ROLE_COLOR], err)) &&
-           check_budget(info, options, g, err);
+           check_light(g, err) && check_budget(info, options, g, err);
 }
 
 /* Curved things alone say nothing; normals that agree with the depth do. */
@@ -426,13 +495,13 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         !read_behind(g, ROLE_THICKNESS, &g->thickness, err) ||
         (!g->thickness && !read_behind(g, ROLE_BACK_DEPTH, &g->thickness, err)) ||
         !read_behind(g, ROLE_LAYER2, &g->second_depth, err) ||
-        !gbuffer_prepare_depth(g, depth->info, options, report, err) ||
+        !gbuffer_prepare_depth(g, depth->info, options, report, err) || !take_out(g, err) ||
         !gbuffer_prepare_normals(g, options, normals->path, report, err))
         goto failed;
     warn_about_assumption(g, report);
     free(g->alpha);
     g->alpha = NULL;
-    if (options->want_color && !read_color(g, err))
+    if ((options->want_color && !read_light(g, err)) || !read_holdout(g, err))
         goto failed;
     return true;
 failed:
@@ -448,6 +517,11 @@ void gbuffer_free(struct gbuffer *gbuffer)
     free(gbuffer->thickness);
     free(gbuffer->alpha);
     free(gbuffer->second_depth);
+    free(gbuffer->kept);
+    free(gbuffer->albedo);
+    free(gbuffer->specular);
+    free(gbuffer->holdout);
+    gbuffer->kept = gbuffer->albedo = gbuffer->specular = gbuffer->holdout = NULL;
     gbuffer->depth = gbuffer->normals = gbuffer->color = NULL;
     gbuffer->thickness = gbuffer->second_depth = gbuffer->alpha = NULL;
 }

@@ -108,7 +108,11 @@ struct gbuffer {
      * end. */
     float *thickness;
     float *second_depth; /* as depth */
-    float *alpha;        /* of the colour; NULL: there is none, or after gbuffer_load */
+    /* What the composite does with the colour, see light.h; width * height * 4 each, NULL: nothing
+     * else. specular: roughness in alpha. */
+    float *kept, *albedo, *specular;
+    float *holdout; /* width * height, [0,1]: how little AO a texel gets; NULL: all of it */
+    float *alpha;   /* of the colour; NULL: there is none, or after gbuffer_load */
     float background_depth;
     bool color_has_alpha; /* else alpha is 1 throughout */
 

@@ -161,6 +161,21 @@ static bool check_together(const struct options *o, struct tool_error *err)
     return true;
 }
 
+/* Options that change nothing are mistakes; a record may bring the mode. */
+static bool check_light(const struct options *o, struct tool_error *err)
+{
+    static const enum role_kind kinds[] = {ROLE_INDIRECT, ROLE_ALBEDO, ROLE_SPECULAR,
+                                           ROLE_ROUGHNESS};
+    static const char *const names[] = {"indirect", "albedo", "specular", "roughness"};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+        if (o->command == COMMAND_RENDER && !o->like && o->gbuffer.roles.name[kinds[i]] &&
+            o->mode != OUTPUT_COMP)
+            return fail(err, EXIT_USAGE, "--%s needs --mode comp", names[i]);
+    if (o->gbuffer.roles.name[ROLE_ROUGHNESS] && !o->gbuffer.roles.name[ROLE_SPECULAR] && !o->like)
+        return fail(err, EXIT_USAGE, "--roughness needs --specular");
+    return true;
+}
+
 bool options_parse(int argc, char **argv, struct options *options, struct tool_error *err)
 {
     if (option_table_count > MAX_OPTIONS)
@@ -183,7 +198,8 @@ bool options_parse(int argc, char **argv, struct options *options, struct tool_e
         options->input = argv[optind++];
     if (optind < argc)
         return fail_positional(options->input, argv[optind], err);
-    return check_together(options, err) && options_settle(options, NULL, err);
+    return check_together(options, err) && check_light(options, err) &&
+           options_settle(options, NULL, err);
 }
 
 /* --- Options, preset and record together --- */
@@ -260,6 +276,11 @@ bool options_settle(struct options *options, const struct setting *like, struct 
                                         : names[ROLE_BACK_DEPTH] ? VKAO_THICKNESS_BACK_DEPTH
                                                                  : VKAO_THICKNESS_AS_SEEN;
     o->setting.effect.second_layer = names[ROLE_LAYER2] != NULL;
+    o->setting.effect.multi_bounce = names[ROLE_ALBEDO] && o->gbuffer.want_color;
+    o->setting.effect.specular = !names[ROLE_SPECULAR] || !o->gbuffer.want_color
+                                     ? VKAO_SPECULAR_NONE
+                                 : o->setting.effect.bent_normals ? VKAO_SPECULAR_FROM_BENT
+                                                                  : VKAO_SPECULAR_FROM_AO;
     /* A record may bring another method. */
     const bool all_is_known = like || !o->like;
     return !all_is_known || check_methods(o, err);

@@ -570,6 +570,43 @@ const struct option_row option_table[] = {
     {.name = "color-file", .argument = "FILE",
      .help = "EXR file that the colour is in, likewise",
      .commands = RENDER | INSPECT, .apply = apply_text, .offset = AT(file[ROLE_COLOR])},
+    {.name = "indirect", .argument = "NAME",
+     .help = "layer of indirect light, the part of the colour that AO darkens, for --mode comp. "
+             "Default: all of it",
+     .commands = RENDER | INSPECT, .apply = apply_layer,
+     .offset = AT(gbuffer.roles.name[ROLE_INDIRECT]),
+     .more = "In the units of the colour, with the albedo in it: the composite is the colour less "
+             "this, plus this times AO."},
+    {.name = "albedo", .argument = "NAME",
+     .help = "layer of diffuse reflectance: AO is brightened by light that bounces on, for --mode "
+             "comp",
+     .commands = RENDER | INSPECT, .apply = apply_layer,
+     .offset = AT(gbuffer.roles.name[ROLE_ALBEDO]),
+     .more = "After Jimenez et al. 2016, for each colour."},
+    {.name = "specular", .argument = "NAME",
+     .help = "layer of indirect specular light, which is in the colour and is darkened by a factor "
+             "of its own, for --mode comp; needs normals",
+     .commands = RENDER | INSPECT, .apply = apply_layer,
+     .offset = AT(gbuffer.roles.name[ROLE_SPECULAR]),
+     .more = "By AO and roughness (Lagarde and de Rousiers 2014); with --bent-normals by the cone "
+             "around the bent normal (Oat and Sander 2007)."},
+    {.name = "roughness", .argument = "NAME",
+     .help = "channel of roughness, 0 to 1, for --specular. Default: 0.5 everywhere",
+     .commands = RENDER | INSPECT, .apply = apply_layer,
+     .offset = AT(gbuffer.roles.name[ROLE_ROUGHNESS])},
+    {.name = "holdout", .argument = "NAME",
+     .help = "channel of a matte, 0 to 1: what it covers gets no AO, and still casts it",
+     .commands = RENDER | INSPECT, .apply = apply_layer,
+     .offset = AT(gbuffer.roles.name[ROLE_HOLDOUT]),
+     .more = "AO becomes 1 - (1 - AO) (1 - matte), and with --mode comp the colour is mixed with "
+             "what it was."},
+    {.name = "no-cast", .argument = "NAME",
+     .help = "channel of a matte: what is 0.5 or more is taken for background, casts nothing and "
+             "gets AO 1",
+     .commands = RENDER | INSPECT, .apply = apply_layer,
+     .offset = AT(gbuffer.roles.name[ROLE_NO_CAST]),
+     .more = "What is behind it is not known, so it leaves a hole: render without the object "
+             "where its place is to get AO."},
     {.name = "thickness-channel", .argument = "NAME",
      .help = "channel of how thick things are at each texel, along the view axis, in scene units; "
              "for vbao and raymarch",

@@ -68,7 +68,9 @@ bool placement_expand(struct gbuffer *gbuffer, struct placement *placement, stru
         !pad(&g->normals, g, placement, 4, 0.0f, err) ||
         !pad(&g->thickness, g, placement, 1, 0.0f, err) ||
         !pad(&g->second_depth, g, placement, 1, g->background_depth, err) ||
-        !pad(&g->color, g, placement, 4, 0.0f, err))
+        !pad(&g->color, g, placement, 4, 0.0f, err) ||
+        !pad(&g->albedo, g, placement, 4, 0.0f, err) ||
+        !pad(&g->specular, g, placement, 4, 0.0f, err))
         return false;
     /* Half resolution wants to begin at even texels: a column and a row of background do no
      * harm. */
@@ -91,6 +93,7 @@ void placement_crop(const struct placement *placement, struct gbuffer *gbuffer,
     crop(result->output, gbuffer, placement, 4);
     crop(result->bent, gbuffer, placement, 4);
     crop(gbuffer->color, gbuffer, placement, 4);
+    crop(gbuffer->specular, gbuffer, placement, 4);
 }
 
 /* Puts an image of the data window into one of the window. */

@@ -77,6 +77,15 @@ static void add_parameter(cJSON *object, const vkao_parameter *p, const struct s
     text_free(&value);
 }
 
+/* What else options name, if they do. */
+static const struct {
+    enum role_kind kind;
+    const char *key;
+} more_channels[] = {{ROLE_ROUGHNESS, "roughness"}, {ROLE_HOLDOUT, "holdout"},
+                     {ROLE_NO_CAST, "no_cast"},     {ROLE_INDIRECT, "indirect"},
+                     {ROLE_ALBEDO, "albedo"},       {ROLE_SPECULAR, "specular"}};
+enum { MORE_CHANNELS = sizeof more_channels / sizeof *more_channels };
+
 static const char *thickness_key(vkao_thickness_input input)
 {
     return input == VKAO_THICKNESS_GIVEN ? "thickness_channel" : "back_depth";
@@ -150,6 +159,10 @@ char *record_write(const struct options *o, const struct setting *setting, const
                                 g->roles.kind[is_given ? ROLE_THICKNESS : ROLE_BACK_DEPTH].label);
     if (effect->second_layer)
         cJSON_AddStringToObject(root, "layer2", g->roles.kind[ROLE_LAYER2].label);
+    for (size_t i = 0; i < MORE_CHANNELS; i++)
+        if (g->roles.kind[more_channels[i].kind].found)
+            cJSON_AddStringToObject(root, more_channels[i].key,
+                                    g->roles.kind[more_channels[i].kind].label);
     add_camera(root, &g->camera);
     char *json = json_text(root, false, begun);
     cJSON_Delete(root);
@@ -283,7 +296,8 @@ static bool can_be_asked_for(const vkao_parameter *p)
 {
     return option_of_parameter(p) || parameter_is_of_images(p) ||
            p == parameter_named("half_resolution") || p == parameter_named("thickness_input") ||
-           p == parameter_named("second_layer");
+           p == parameter_named("second_layer") || p == parameter_named("multi_bounce") ||
+           p == parameter_named("specular");
 }
 
 /* Of what only some methods have. */
@@ -478,6 +492,20 @@ static bool read_channels(const struct reader *r, const cJSON *root, struct reco
     return true;
 }
 
+static bool read_more_channels(const struct reader *r, const cJSON *root, struct record *record)
+{
+    for (size_t i = 0; i < MORE_CHANNELS; i++)
+        if (cJSON_GetObjectItemCaseSensitive(root, more_channels[i].key) &&
+            !read_string(r, root, more_channels[i].key, &record->more[more_channels[i].kind]))
+            return false;
+    const vkao_effect_info *e = &record->setting.effect;
+    if (e->multi_bounce && !record->more[ROLE_ALBEDO])
+        return wrong(r, "albedo", NULL, "a string");
+    if (e->specular && !record->more[ROLE_SPECULAR])
+        return wrong(r, "specular", NULL, "a string");
+    return true;
+}
+
 static bool read_output(const struct reader *r, const cJSON *root, struct record *record)
 {
     uint32_t mode, type;
@@ -526,7 +554,7 @@ bool record_parse(const char *json, const char *path, struct record *record, str
               read_string(&r, root, "device", &record->device) &&
               read_string(&r, root, "view", &record->view) && read_output(&r, root, record) &&
               read_parameters(r, root, &record->setting) && read_channels(&r, root, record) &&
-              read_camera(r, root, &record->camera);
+              read_more_channels(&r, root, record) && read_camera(r, root, &record->camera);
     cJSON_Delete(root);
     if (!ok)
         record_free(record);
@@ -592,6 +620,8 @@ void record_free(struct record *record)
     free(record->color);
     free(record->thickness);
     free(record->second_depth);
+    for (int kind = 0; kind < ROLE_KINDS; kind++)
+        free(record->more[kind]);
     *record = (struct record){0};
 }
 
@@ -659,5 +689,10 @@ bool options_take_record(struct options *options, const struct record *record,
     }
     if (!option_is_given(o, "layer2"))
         g->roles.name[ROLE_LAYER2] = as_name(record->second_depth);
+    for (size_t i = 0; i < MORE_CHANNELS; i++) {
+        const enum role_kind kind = more_channels[i].kind;
+        if (!option_is_given(o, kind == ROLE_NO_CAST ? "no-cast" : more_channels[i].key))
+            g->roles.name[kind] = as_name(record->more[kind]);
+    }
     return options_settle(o, &record->setting, err);
 }

@@ -27,6 +27,7 @@ struct record {
     /* As --depth, --normal, --color, --thickness-channel or --back-depth, --layer2; but for depth
      * they may be NULL. */
     char *depth, *normal, *color, *thickness, *second_depth;
+    char *more[ROLE_KINDS]; /* likewise, of the roles that only options find; NULL: not named */
     enum depth_type depth_type;
     struct depth_range depth_range;
     enum background_rule background;

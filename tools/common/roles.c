@@ -198,7 +198,9 @@ static bool channel_name_is_never_depth(const struct channel_name *name)
 enum { MAX_HITS = 16 };
 
 static const char *const option_names[ROLE_KINDS] = {
-    "depth", "normal", "color", "position", "AO", "thickness-channel", "back-depth", "layer2"};
+    "depth",      "normal",  "color",     "position", "AO",      "thickness-channel",
+    "back-depth", "layer2",  "roughness", "holdout",  "no-cast", "indirect",
+    "albedo",     "specular"};
 
 struct hit {
     size_t part;

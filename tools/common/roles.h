@@ -22,6 +22,12 @@ enum role_kind {
     ROLE_THICKNESS,
     ROLE_BACK_DEPTH,
     ROLE_LAYER2,
+    ROLE_ROUGHNESS,
+    ROLE_HOLDOUT,
+    ROLE_NO_CAST,
+    ROLE_INDIRECT,
+    ROLE_ALBEDO,
+    ROLE_SPECULAR,
     ROLE_KINDS
 };
 /* Depth, normals and colour may each lie in a file of its own. */
@@ -29,7 +35,7 @@ enum { ROLE_FILES = ROLE_COLOR + 1 };
 /* One number per texel. */
 static inline bool role_is_scalar(enum role_kind kind)
 {
-    return kind == ROLE_DEPTH || kind >= ROLE_THICKNESS;
+    return kind == ROLE_DEPTH || (kind >= ROLE_THICKNESS && kind < ROLE_INDIRECT);
 }
 
 /* What a depth value measures. */

@@ -171,7 +171,13 @@ static const char *const foreign[] = {"output",
                                       "color-file",
                                       "thickness-channel",
                                       "back-depth",
-                                      "layer2"};
+                                      "layer2",
+                                      "indirect",
+                                      "albedo",
+                                      "specular",
+                                      "roughness",
+                                      "holdout",
+                                      "no-cast"};
 
 static const struct own_option *find_own(const char *name, size_t length)
 {

@@ -15,8 +15,9 @@
 #include <string.h>
 #include <sys/stat.h>
 
-static const char *const kind_names[ROLE_KINDS] = {"depth", "normal",    "color",      "position",
-                                                   "ao",    "thickness", "back_depth", "layer2"};
+static const char *const kind_names[ROLE_KINDS] = {
+    "depth",  "normal",    "color",   "position", "ao",       "thickness", "back_depth",
+    "layer2", "roughness", "holdout", "no_cast",  "indirect", "albedo",    "specular"};
 
 /* --- Collecting --- */
 

@@ -4,6 +4,7 @@
 #include "ao.h"
 #include "automatic.h"
 #include "gpu.h"
+#include "light.h"
 #include "output.h"
 #include "parallel.h"
 #include "placement.h"
@@ -140,7 +141,8 @@ static void tell_details(const struct session *s, const struct frame_source *sou
                          const struct rendered_view *view)
 {
     static const char *const names[ROLE_KINDS] = {
-        "depth", "normal", "color", "position", "AO", "thickness", "back depth", "second layer"};
+        "depth",        "normal",    "color",   "position", "AO",       "thickness", "back depth",
+        "second layer", "roughness", "holdout", "no cast",  "indirect", "albedo",    "specular"};
     const struct gbuffer *g = &view->gbuffer;
     for (int k = 0; k < ROLE_KINDS; k++)
         if (g->roles.kind[k].found)
@@ -167,12 +169,15 @@ static bool compute(struct session *s, struct rendered_view *view, struct tool_e
         .color = g->color,
         .thickness = g->thickness,
         .second_depth = g->second_depth,
+        .albedo = g->albedo,
+        .specular = g->specular,
         .view = g->view,
         .setting = view->setting,
     };
     if (!ao_run(s->ao, &job, &view->result, err))
         return false;
     placement_crop(&placement, g, &view->result);
+    light_finish(g, &view->result);
     return placement_widen(g, &view->result, err);
 }
 
@@ -298,7 +303,12 @@ static bool render_view(struct session *s, const struct options *frame_options,
     free(g->normals);
     free(g->thickness);
     free(g->second_depth);
+    free(g->kept);
+    free(g->albedo);
+    free(g->specular);
+    free(g->holdout);
     g->depth = g->normals = g->thickness = g->second_depth = NULL;
+    g->kept = g->albedo = g->specular = g->holdout = NULL;
     return ok;
 }
 
