@@ -20,12 +20,8 @@ layout(push_constant) uniform Block { vkao_dispatch here; };
 layout(binding = VKAO_BINDING_BREAKS_X_WRITE) uniform writeonly uimage2D breaks_x_image;
 layout(binding = VKAO_BINDING_BREAKS_Y_WRITE) uniform writeonly uimage2D breaks_y_image;
 
-/* Texels that a group looks at in a turn, and of each line of them one before and two behind. */
-const int TURN_BITS = 10, TURN = 1 << TURN_BITS, BESIDE = 3;
-
 /* Of the rows, or columns, that the group has. */
 shared uint words[WORD];
-shared float depths[TURN + WORD * BESIDE];
 
 float depth_at(ivec2 texel)
 {
@@ -39,42 +35,31 @@ void find_breaks(bool vertical, int shift, ivec2 low, ivec2 high, ivec2 first)
     const ivec2 along = vertical ? ivec2(0, 1) : ivec2(1, 0), across = ivec2(1) - along;
     ivec2 block = ivec2(gl_WorkGroupID.xy), blocks = ((high - first - 1) >> 5) + 1;
     int at = vertical ? block.y : block.x, count = vertical ? blocks.y : blocks.x;
+    int line = WORD * (vertical ? block.x : block.y);
     int word = at >> shift, sharing = min(1 << shift, count - (word << shift));
     int lines = (WORD + sharing - 1) / sharing, begin = (at - (word << shift)) * lines;
-    lines = min(lines, WORD - begin);
-    ivec2 origin = first + (WORD * (vertical ? block.x : block.y) + begin) * across +
-                   (word << 5 << shift) * along;
-    int thread = int(gl_LocalInvocationIndex);
+    int length = WORD << shift, thread = int(gl_LocalInvocationIndex);
+
     if (thread < WORD)
         words[thread] = 0u;
-    /* Powers of two: lines of a turn, and how much of them. */
-    int bits = min(5 + shift, TURN_BITS), size = 1 << bits, rows = TURN >> bits;
-    int pitch = size + BESIDE;
-    for (int line = 0; line < lines; line += rows) {
-        for (int from = 0; from < WORD << shift; from += size) {
-            barrier();
-            /* Threads side by side have texels side by side. */
-            for (int i = thread; i < rows * pitch; i += THREADS) {
-                int k = vertical ? i & (rows - 1) : i / pitch,
-                    step = vertical ? i >> TURN_BITS - bits : i - k * pitch;
-                depths[k * pitch + step] =
-                    depth_at(origin + (line + k) * across + (from + step - 1) * along);
-            }
-            barrier();
-            for (int i = thread; i < TURN; i += THREADS) {
-                int k = i >> bits, step = i & (size - 1), d = k * pitch + step;
-                ivec2 texel = origin + (line + k) * across + (from + step) * along;
-                if (line + k < lines && all(greaterThanEqual(texel, low)) &&
-                    all(lessThan(texel + along, high)) &&
-                    break_between(depths[d], depths[d + 1], depths[d + 2], depths[d + 3]) > 0.0)
-                    atomicOr(words[line + k], 1u << (from + step >> shift));
-            }
-        }
+    barrier();
+    for (int i = thread; i < lines * length; i += THREADS) {
+        /* Threads side by side have texels side by side. */
+        int k = vertical ? i % lines : i >> (5 + shift),
+            step = vertical ? i / lines : i & (length - 1);
+        ivec2 texel = first + (line + begin + k) * across + ((word << 5 << shift) + step) * along;
+        if (begin + k >= WORD || any(lessThan(texel, low)) ||
+            any(greaterThanEqual(texel + along, high)))
+            continue;
+        float before = depth_at(texel - along), z = depth_at(texel), next = depth_at(texel + along),
+              behind = depth_at(texel + 2 * along);
+        if (break_between(before, z, next, behind) > 0.0)
+            atomicOr(words[k], 1u << (step >> shift));
     }
     barrier();
-    ivec2 to = origin + thread * across;
-    if (thread < lines && all(lessThan(to * across, high * across + along))) {
-        to = (to - first) * across + word * along;
+    ivec2 to = (line + begin + thread) * across + word * along;
+    if (thread < lines && begin + thread < WORD &&
+        all(lessThan((first + to) * across, high * across + along))) {
         if (vertical)
             imageStore(breaks_y_image, to, uvec4(words[thread]));
         else
