@@ -38,6 +38,18 @@ def line_column(picture):
     return int(columns[0])
 
 
+def screen(scratch, viewer, size):
+    """What is on the screen, without a key that ends it."""
+    done = subprocess.run(
+        ['import', '-silent', '-window', 'root', '-crop', f'{size[0]}x{size[1]}+0+0', '+repage',
+         '-depth', '8', 'png24:screen.png'],
+        cwd=scratch.directory, capture_output=True, text=True,
+        env={**os.environ, 'DISPLAY': viewer.display.name})
+    if done.returncode:
+        skip(f'ImageMagick cannot take pictures: {done.stderr}')
+    return read_png(scratch.path('screen.png'))
+
+
 # --- Keys ---
 
 @case
@@ -236,15 +248,9 @@ def window_on_the_screen_has_the_picture(scratch):
         skip('ImageMagick is not installed')
     with opened(scratch, *WHOLE) as viewer:
         time.sleep(0.5)
-        done = subprocess.run(
-            ['import', '-silent', '-window', 'root', '-crop', f'{WIDTH}x{HEIGHT}+0+0', '+repage',
-             '-depth', '8', 'png24:screen.png'],
-            cwd=scratch.directory, capture_output=True, text=True,
-            env={**os.environ, 'DISPLAY': viewer.display.name})
-        if done.returncode:
-            skip(f'ImageMagick cannot take pictures: {done.stderr}')
+        seen = screen(scratch, viewer, (WIDTH, HEIGHT))
         shown = viewer.finish()
-    same_picture(read_png(scratch.path('screen.png')), shown, 'the screen', 0)
+    same_picture(seen, shown, 'the screen', 0)
 
 
 # --- Panel ---
@@ -274,6 +280,71 @@ def slider_changes_the_picture(scratch):
     wanted = preview(scratch, 'in.exr', '--fov', FOV, '--radius', radius)
     top = (700 - HEIGHT) // 2
     same_picture(shown[top:top + HEIGHT, PANEL_WIDTH:], wanted, 'AO')
+
+
+@case
+def tab_after_a_click_in_the_panel_opens_no_text_field(scratch):
+    with opened(scratch, '--versus', '--method hbao', size=(WIDTH + PANEL_WIDTH, 700)) as viewer:
+        viewer.click(80, 198)  # radius
+        viewer.key('Tab')
+        viewer.wait_title(HBAO)
+        time.sleep(0.5)
+        viewer.key('3')
+        viewer.wait_title('- Composite -')
+        viewer.finish()
+
+
+@case
+def escape_closes_a_list_before_the_window(scratch):
+    with opened(scratch, size=(WIDTH + PANEL_WIDTH, 700)) as viewer:
+        viewer.click(80, 175)  # method
+        time.sleep(0.5)
+        viewer.key('Escape')
+        time.sleep(0.5)
+        viewer.click(26, 129)  # 'fast', which an open list would cover or close instead
+        viewer.wait_title('A vbao half')
+        viewer.key('F1', 'Escape')
+        viewer.key('2')
+        time.sleep(0.5)
+        equal(viewer.process.poll(), None, 'the window is there')
+        viewer.finish()
+
+
+@case
+def what_was_changed_is_undone_and_redone(scratch):
+    with opened(scratch, *WHOLE, size=(WIDTH + PANEL_WIDTH, 700)) as viewer:
+        viewer.key('ctrl+z', 'p')  # nothing to undo yet
+        time.sleep(0.5)
+        viewer.click(26, 129)  # 'fast'
+        viewer.wait_title('A vbao half')
+        viewer.key('ctrl+z')
+        viewer.wait_title('A vbao -')
+        viewer.key('ctrl+y')
+        viewer.wait_title('A vbao half')
+        viewer.key('ctrl+z')
+        viewer.wait_title('A vbao -')
+        viewer.key('ctrl+shift+z')
+        viewer.wait_title('A vbao half')
+        viewer.finish()
+
+
+def yellow(picture):
+    """Texels in the colour of warnings."""
+    return int(((picture[..., 0] > 200) & (picture[..., 2] < 120)).sum())
+
+
+@case
+def warnings_show_in_the_panel(scratch):
+    size = (WIDTH + PANEL_WIDTH, 700)
+    with opened(scratch, size=size) as viewer:
+        equal(yellow(viewer.finish()), 0, 'texels of warnings of a file without')
+    depth = SCENE.depth()
+    write_exr(scratch.path('in.exr'), {'Z': np.minimum(depth, 60000).astype(np.float16)})
+    with Viewer(scratch, 'in.exr', *READ, '--quiet', size=size) as viewer:
+        viewer.wait_title('^in.exr')
+        shown = viewer.finish()
+        equal(viewer.err, '', 'stderr')
+    check(yellow(shown[:, :PANEL_WIDTH]) > 100, 'no warning that depth is HALF')
 
 
 # --- Save ---
@@ -435,6 +506,24 @@ def dropped_rubbish_is_refused(scratch):
         shown = viewer.finish()
         check('rubbish.exr' in viewer.err, f'nothing is said:\n{viewer.err}')
     same_picture(shown, preview(scratch, 'in.2.exr', *READ), 'AO')
+
+
+@case
+def dropped_rubbish_is_told_in_a_window_without_the_panel(scratch):
+    scratch.write('rubbish.exr', 'rubbish')
+    size = (500, 300)
+    with opened(scratch, *WHOLE, size=size) as viewer:
+        before = screen(scratch, viewer, size)
+        drop_files(viewer, scratch.path('rubbish.exr'))
+        time.sleep(1)
+        told = screen(scratch, viewer, size)
+        viewer.key('2')
+        time.sleep(1)
+        after = screen(scratch, viewer, size)
+        viewer.finish()
+    check((told[-50:] != before[-50:]).any(axis=-1).sum() > 1000, 'nothing is said')
+    same_picture(told[:-50], before[:-50], 'the picture above it')
+    same_picture(after, before, 'the picture after a key')
 
 
 @case

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The viewer's table of parameters against the command line of vkao, quoting, and the probe's
+ * The viewer's table of parameters against the command line of vkao, undo, quoting, and the probe's
  * arithmetic. */
+#include "history.h"
 #include "options.h"
 #include "probe.h"
 #include "settings.h"
@@ -237,6 +238,35 @@ static void probe_knows_background(void **unused)
     }
 }
 
+/* --- Undo --- */
+
+static void undo_brings_back_what_was_and_forgets_what_was_undone(void **unused)
+{
+    static struct history h;
+    struct setting now[HISTORY_SIDES] = {setting_default(), setting_default()};
+    (void)unused;
+    history_reset(&h, now);
+    assert_false(history_step(&h, -1, now));
+    for (int i = 1; i <= 2 * HISTORY_STATES; i++) {
+        now[i % 2].params.radius = (float)i;
+        history_note(&h, now);
+        history_note(&h, now); /* no change, no state */
+    }
+    assert_false(history_step(&h, 1, now));
+    int steps = 0;
+    while (history_step(&h, -1, now))
+        steps++;
+    assert_int_equal(steps, HISTORY_STATES - 1);
+    assert_true(now[1].params.radius == (float)(HISTORY_STATES + 1));
+    assert_true(history_step(&h, 1, now));
+    assert_true(now[0].params.radius == (float)(HISTORY_STATES + 2));
+    now[0].effect.half_resolution = VK_TRUE;
+    history_note(&h, now);
+    assert_false(history_step(&h, 1, now));
+    assert_true(history_step(&h, -1, now));
+    assert_false(now[0].effect.half_resolution);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -245,6 +275,7 @@ int main(void)
         cmocka_unit_test(defaults_are_known_and_come_back),
         cmocka_unit_test(vkao_reads_back_what_save_writes),
         cmocka_unit_test(standard_setting_needs_radius_and_bias_alone),
+        cmocka_unit_test(undo_brings_back_what_was_and_forgets_what_was_undone),
         cmocka_unit_test(shell_reads_back_what_was_quoted),
         cmocka_unit_test(probe_finds_the_point_that_was_projected),
         cmocka_unit_test(probe_knows_background),

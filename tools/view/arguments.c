@@ -5,6 +5,15 @@
 #include <stdio.h>
 #include <string.h>
 
+#define KEYS                                                                                       \
+    "Keys: 1 raw AO 2 AO 3 composite 4 depth 5 normals 6 bent normals 7 difference\n"              \
+    "  Tab A or B   W wipe: drag the line   P panel   S save   F1 ? help   Q, Esc quit\n"          \
+    "  + - wheel zoom   drag pan   0, F fit   Z 1:1   Left Right frames of a sequence\n"           \
+    "  Ctrl+Z, Ctrl+Y undo, redo   Ctrl+C copies what the mouse is on   Drop: opens\n"             \
+    "  Live: drag turns, right drag moves, wheel nears, O projection, Space the clock\n"
+
+const char arguments_keys[] = KEYS;
+
 const char arguments_help[] =
     "Usage: vkao-view [FILE.exr] [OPTION]...     FILE may hold a frame token: ####\n"
     "       vkao-view --scene cubes|room [OPTION]...\n"
@@ -20,12 +29,7 @@ const char arguments_help[] =
     "  --time X            a live scene's clock stands still at X seconds\n"
     "  --no-panel, --help, --version; --validation, --device NAME; and what says how\n"
     "  to read a file and what AO of it is wanted, as vkao has it: see 'vkao --help'.\n"
-    "  The camera is that of --camera, FILE.camera.json if there, or the header's.\n"
-    "Keys: 1 raw AO 2 AO 3 composite 4 depth 5 normals 6 bent normals 7 difference\n"
-    "  Tab A or B   W wipe: drag the line   P panel   S save   Q, Esc quit\n"
-    "  + - wheel zoom   drag pan   0, F fit   Z 1:1   Left Right frames of a sequence\n"
-    "  Files dropped on the window are opened: G-buffers, a reference, a camera.\n"
-    "  Live: drag turns, right drag moves, wheel nears, O projection, Space the clock\n"
+    "  The camera is that of --camera, FILE.camera.json if there, or the header's.\n" KEYS
     "Exit status: 0 done, 2 usage, 3 input, 4 channels, 5 no display or no device,\n"
     "6 output, 33 out of memory, 70 a validation message or other mistake of vkao.\n";
 

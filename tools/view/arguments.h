@@ -45,5 +45,6 @@ struct arguments {
 bool arguments_parse(int argc, char **argv, struct arguments *arguments, struct tool_error *err);
 /* The text of --help: at most 24 lines of 80 columns. */
 extern const char arguments_help[];
+extern const char arguments_keys[]; /* of it: what the keys do */
 
 #endif

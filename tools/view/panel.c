@@ -123,6 +123,10 @@ static void file_rows(struct viewer *v)
     ui_text("%u x %u", l->gbuffer.width, l->gbuffer.height);
     if (l->camera_path)
         ui_help(l->camera_path);
+    if (s->plan.cameras_lie_beside && l->camera_path)
+        ui_paragraph(UI_DIM, l->camera_path);
+    if (v->warnings.length && !v->warnings.out_of_memory)
+        ui_paragraph(UI_WARNING, v->warnings.data);
     if (s->plan.count > 1) {
         uint32_t frame = (uint32_t)s->frame + 1;
         if (ui_slider_uint("frame", &frame, 1, (uint32_t)s->plan.count, false) &&
@@ -292,6 +296,9 @@ static void labels(const struct viewer *v)
         missing = "no reference: drop one here, or give --reference";
     if (missing)
         ui_label(middle_x - (float)strlen(missing) * 3.5f, middle_y, 1, missing);
+    /* The panel says it otherwise. */
+    if (v->status.bad && v->status.is_new && !v->show_panel)
+        ui_label(0, (float)area.extent.height - 40.0f, 1, v->status.text);
     if (!v->wipe || !v->show_panel)
         return;
     char title[64];
@@ -306,6 +313,9 @@ void viewer_panel(struct viewer *viewer)
 {
     struct viewer *v = viewer;
     labels(v);
+    if (v->show_help)
+        ui_overlay((float)v->swapchain.extent.width, (float)v->swapchain.extent.height,
+                   arguments_keys);
     if (!v->show_panel)
         return;
     ui_begin_panel(PANEL_WIDTH, (float)v->swapchain.extent.height);

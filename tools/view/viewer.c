@@ -34,7 +34,7 @@ void viewer_say_error(struct viewer *viewer, const struct tool_error *err)
         return;
     }
     viewer_say(viewer, "%s%s%s", err->message, err->hint[0] ? "\n" : "", err->hint);
-    viewer->status.bad = true;
+    viewer->status.bad = viewer->status.is_new = true;
     report_error(err); /* the panel may be hidden, and says one thing at a time */
 }
 
@@ -174,8 +174,10 @@ bool viewer_load(struct viewer *viewer, size_t frame, size_t view)
         if (!viewer->bias_is_given[i])
             viewer->settings[i].params.bias = viewer->arguments->settings[i].params.bias;
     }
-    if (other_files)
+    if (other_files) {
         complete_settings(viewer);
+        history_reset(&viewer->history, viewer->settings);
+    }
     const VkExtent2D after = viewer_image_extent(viewer);
     if (before.width != after.width || before.height != after.height)
         viewer_fit(viewer);
@@ -264,11 +266,20 @@ static bool create_timestamps(struct viewer *viewer, struct tool_error *err)
     return gpu_ok(err, "vkCreateQueryPool", result);
 }
 
+static void hear_warning(void *data, const char *warning)
+{
+    struct text *warnings = data;
+    text_add(warnings, "%s", warnings->length ? "\n" : "");
+    text_add_printable(warnings, warning);
+}
+
 bool viewer_open(struct viewer *viewer, const struct arguments *arguments, struct tool_error *err)
 {
     struct viewer *v = viewer;
     *v = (struct viewer){.arguments = arguments,
-                         .report = {.verbosity = arguments->options.verbosity},
+                         .report = {.verbosity = arguments->options.verbosity,
+                                    .heard = hear_warning,
+                                    .heard_data = &v->warnings},
                          .view = arguments->view,
                          .wipe = arguments->wipe >= 0,
                          .wipe_at = arguments->wipe,
@@ -290,6 +301,7 @@ bool viewer_open(struct viewer *viewer, const struct arguments *arguments, struc
     if (!v->context || !open_images(v, err) || !open_window(v, err) || !open_panel(v, err) ||
         !create_timestamps(v, err))
         return false;
+    history_reset(&v->history, v->settings);
     viewer_mark_stale(v);
     viewer_fit(v);
     if (arguments->zoom > 0) {
@@ -317,6 +329,7 @@ void viewer_close(struct viewer *viewer)
         vkDestroySurfaceKHR(v->gpu.instance, v->surface, NULL);
     window_destroy(&v->window);
     source_close(&v->source);
+    text_free(&v->warnings);
     live_destroy(v->live);
     vkao_context_destroy(v->context);
     if (v->timestamps)

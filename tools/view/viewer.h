@@ -7,6 +7,7 @@
 #include "arguments.h"
 #include "compute.h"
 #include "display.h"
+#include "history.h"
 #include "live.h"
 #include "probe.h"
 #include "settings.h"
@@ -27,12 +28,14 @@ struct placing {
 
 struct status {
     bool bad;
+    bool is_new; /* no key was pressed since */
     char text[1400];
 };
 
 struct viewer {
     const struct arguments *arguments;
     struct report report;
+    struct text warnings; /* of the files that are open, a line each */
     struct gpu gpu;
     struct window window;
     VkSurfaceKHR surface;
@@ -47,6 +50,7 @@ struct viewer {
     struct live *live;    /* a scene; NULL: files */
 
     struct setting settings[SIDES];
+    struct history history;
     bool bias_is_given[SIDES];
     enum side active;
     enum view_kind view;
@@ -62,7 +66,7 @@ struct viewer {
     double error[SIDES]; /* RMS difference to the reference; < 0: not known */
     struct probe_result probed;
 
-    bool show_panel;
+    bool show_panel, show_help;
     struct placing placing;
     enum drag drag;
     double drag_x, drag_y;

@@ -76,6 +76,39 @@ static void toggle_wipe(struct viewer *v)
     v->wipe_is_placed = true;
 }
 
+/* Ends what is open; the window only if nothing is. */
+static void escape(struct viewer *v)
+{
+    if (widgets_close_choice())
+        return;
+    if (v->show_help)
+        v->show_help = false;
+    else
+        v->quit = true;
+}
+
+static void copy_probe(struct viewer *v)
+{
+    const struct probe_result *r = &v->probed;
+    const VkOffset2D offset = viewer_image_offset(v);
+    struct text text = {0};
+    if (!r->valid)
+        return;
+    text_add(&text, "texel %d %d AO %.6g", r->x - offset.x, r->y - offset.y, (double)r->ao[0]);
+    if (v->wipe)
+        text_add(&text, " B %.6g", (double)r->ao[1]);
+    if (r->background)
+        text_add(&text, " background");
+    else
+        text_add(&text, " position %.6g %.6g %.6g normal %.6g %.6g %.6g", r->position[0],
+                 r->position[1], r->position[2], r->normal[0], r->normal[1], r->normal[2]);
+    if (!text.out_of_memory) {
+        window_set_clipboard(&v->window, text.data);
+        viewer_say(v, "copied: %s", text.data);
+    }
+    text_free(&text);
+}
+
 static void press_key(struct viewer *v, enum key_action key)
 {
     if (key >= KEY_VIEW_1 && key < KEY_VIEW_1 + VIEW_KINDS) {
@@ -119,6 +152,20 @@ static void press_key(struct viewer *v, enum key_action key)
     case KEY_PAUSE:
         if (v->live)
             v->live->running = !v->live->running;
+        break;
+    case KEY_UNDO:
+    case KEY_REDO:
+        if (history_step(&v->history, key == KEY_UNDO ? -1 : 1, v->settings))
+            viewer_mark_stale(v);
+        break;
+    case KEY_COPY:
+        copy_probe(v);
+        break;
+    case KEY_HELP:
+        v->show_help = !v->show_help;
+        break;
+    case KEY_ESCAPE:
+        escape(v);
         break;
     case KEY_QUIT:
         v->quit = true;
@@ -196,8 +243,15 @@ static void take_drop(struct viewer *v, const struct input *in)
     if (v->live) {
         fail(&err, EXIT_INPUT, "%s: a live scene takes no files", in->dropped[0]);
     } else if (source_drop(&v->source, in->dropped, in->dropped_count, &undo, &err)) {
+        struct text before = v->warnings;
+        v->warnings = (struct text){0};
+        v->report.said_count = 0;
         plan_say_cameras(&v->source.plan, &v->report);
-        source_settle(&v->source, &undo, viewer_load(v, v->source.frame, v->source.now.view));
+        const bool loaded = viewer_load(v, v->source.frame, v->source.now.view);
+        source_settle(&v->source, &undo, loaded);
+        text_free(loaded ? &before : &v->warnings);
+        if (!loaded)
+            v->warnings = before;
     }
     if (err.code)
         viewer_say_error(v, &err);
@@ -206,6 +260,11 @@ static void take_drop(struct viewer *v, const struct input *in)
 void viewer_handle_input(struct viewer *viewer)
 {
     const struct input *in = &viewer->window.input;
+    /* A drag is one step. */
+    if (!in->left)
+        history_note(&viewer->history, viewer->settings);
+    if (in->key_count > 0)
+        viewer->status.is_new = false;
     for (size_t i = 0; i < in->key_count && !widgets_want_keyboard(); i++)
         press_key(viewer, in->keys[i]);
     use_mouse(viewer, in);

@@ -12,6 +12,7 @@ namespace
 VkDevice device;
 VkDescriptorPool pool;
 bool glfw_runs, vulkan_runs;
+bool choice_closes;
 
 struct vulkan_failure {
     VkResult result;
@@ -134,6 +135,7 @@ void widgets_begin_frame(void)
 
 bool widgets_end_frame(VkCommandBuffer cmd, struct tool_error *err)
 {
+    choice_closes = false;
     ImGui::Render();
     return !cmd || draw_or_fail(err, render, cmd);
 }
@@ -149,6 +151,13 @@ bool widgets_want_keyboard(void)
     return ImGui::GetIO().WantTextInput;
 }
 
+bool widgets_close_choice(void)
+{
+    choice_closes =
+        ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    return choice_closes;
+}
+
 void ui_begin_panel(float width, float height)
 {
     ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
@@ -156,10 +165,13 @@ void ui_begin_panel(float width, float height)
     ImGui::Begin("vkao", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
     ImGui::PushItemWidth(width * 0.5f);
+    /* Tab is a key of the viewer: it opens no text field. */
+    ImGui::PushAllowKeyboardFocus(false);
 }
 
 void ui_end_panel(void)
 {
+    ImGui::PopAllowKeyboardFocus();
     ImGui::PopItemWidth();
     ImGui::End();
 }
@@ -168,10 +180,12 @@ void ui_begin_scroll(float below)
 {
     ImGui::BeginChild("scroll", ImVec2(0.0f, -below));
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * 0.54f);
+    ImGui::PushAllowKeyboardFocus(false);
 }
 
 void ui_end_scroll(void)
 {
+    ImGui::PopAllowKeyboardFocus();
     ImGui::PopItemWidth();
     ImGui::EndChild();
 }
@@ -194,6 +208,7 @@ void ui_paragraph(enum ui_tone tone, const char *text)
     const ImVec4 colors[] = {{1.0f, 1.0f, 1.0f, 1.0f},
                              {0.6f, 0.6f, 0.6f, 1.0f},
                              {0.5f, 0.9f, 0.5f, 1.0f},
+                             {1.0f, 0.8f, 0.3f, 1.0f},
                              {1.0f, 0.5f, 0.4f, 1.0f}};
     ImGui::PushStyleColor(ImGuiCol_Text, colors[tone]);
     ImGui::PushTextWrapPos(0.0f);
@@ -251,7 +266,10 @@ bool ui_color(const char *label, float rgb[3])
 
 bool ui_begin_choice(const char *label, const char *now)
 {
-    return ImGui::BeginCombo(label, now);
+    const bool open = ImGui::BeginCombo(label, now);
+    if (open && choice_closes)
+        ImGui::CloseCurrentPopup();
+    return open;
 }
 
 bool ui_choice(const char *word, bool chosen, bool enabled)
@@ -298,4 +316,15 @@ void ui_label(float x, float y, float align, const char *text)
     list->AddRectFilled(ImVec2(left - 4.0f, y - 2.0f),
                         ImVec2(left + size.x + 4.0f, y + size.y + 2.0f), IM_COL32(0, 0, 0, 180));
     list->AddText(ImVec2(left, y), IM_COL32(255, 255, 255, 255), text);
+}
+
+void ui_overlay(float width, float height, const char *text)
+{
+    ImDrawList *list = ImGui::GetForegroundDrawList();
+    const ImVec2 size = ImGui::CalcTextSize(text);
+    const float left = (width - size.x) / 2, top = (height - size.y) / 2;
+    list->AddRectFilled(ImVec2(left - 12.0f, top - 12.0f),
+                        ImVec2(left + size.x + 12.0f, top + size.y + 12.0f),
+                        IM_COL32(0, 0, 0, 230));
+    list->AddText(ImVec2(left, top), IM_COL32(255, 255, 255, 255), text);
 }

@@ -25,6 +25,8 @@ bool widgets_end_frame(VkCommandBuffer cmd, struct tool_error *err);
 /* Whether input belongs to the panel, as of the last frame. */
 bool widgets_want_mouse(void);
 bool widgets_want_keyboard(void);
+/* Closes the list that is open; false if none is. */
+bool widgets_close_choice(void);
 
 /* Sizes are in texels of the framebuffer. */
 void ui_begin_panel(float width, float height);
@@ -34,7 +36,7 @@ void ui_begin_scroll(float below);
 void ui_end_scroll(void);
 bool ui_section(const char *label, bool open);
 void ui_text(const char *format, ...) TOOL_PRINTF(1, 2);
-enum ui_tone { UI_PLAIN, UI_DIM, UI_GOOD, UI_BAD };
+enum ui_tone { UI_PLAIN, UI_DIM, UI_GOOD, UI_WARNING, UI_BAD };
 void ui_paragraph(enum ui_tone tone, const char *text);
 void ui_same_line(void);
 void ui_separator(void);
@@ -57,6 +59,8 @@ void ui_begin_disabled(bool disabled);
 void ui_end_disabled(void);
 /* A word on the picture, on a dark ground. align: 0 left of x, 1 right of it. */
 void ui_label(float x, float y, float align, const char *text);
+/* Text over everything, in the middle of width x height. */
+void ui_overlay(float width, float height, const char *text);
 
 #ifdef __cplusplus
 }

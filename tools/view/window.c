@@ -22,7 +22,8 @@ static const struct {
     {GLFW_KEY_LEFT, KEY_PREVIOUS},  {GLFW_KEY_RIGHT, KEY_NEXT},
     {GLFW_KEY_S, KEY_SAVE},         {GLFW_KEY_P, KEY_PANEL},
     {GLFW_KEY_O, KEY_PROJECTION},   {GLFW_KEY_SPACE, KEY_PAUSE},
-    {GLFW_KEY_Q, KEY_QUIT},         {GLFW_KEY_ESCAPE, KEY_QUIT},
+    {GLFW_KEY_Q, KEY_QUIT},         {GLFW_KEY_ESCAPE, KEY_ESCAPE},
+    {GLFW_KEY_F1, KEY_HELP},
 };
 
 /* --- The window system --- */
@@ -84,17 +85,37 @@ static void add_key(struct input *input, enum key_action action)
         input->keys[input->key_count++] = action;
 }
 
+/* A key that is held goes on zooming and stepping; whatever it switches or ends, it does once. */
+static bool repeats(enum key_action action)
+{
+    return action == KEY_ZOOM_IN || action == KEY_ZOOM_OUT || action == KEY_PREVIOUS ||
+           action == KEY_NEXT || action == KEY_UNDO || action == KEY_REDO;
+}
+
+/* With Ctrl, by the letter: Z and Y change places from keyboard to keyboard. */
+static enum key_action chord(int key, int scancode, int mods)
+{
+    const char *name = glfwGetKeyName(key, scancode);
+    if (!name || !(mods & GLFW_MOD_CONTROL) || (mods & (GLFW_MOD_ALT | GLFW_MOD_SUPER)))
+        return KEY_NONE;
+    if (strcmp(name, "z") == 0)
+        return mods & GLFW_MOD_SHIFT ? KEY_REDO : KEY_UNDO;
+    return strcmp(name, "y") == 0 ? KEY_REDO : strcmp(name, "c") == 0 ? KEY_COPY : KEY_NONE;
+}
+
 static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mods)
 {
     struct input *input = &window_of(handle)->input;
-    (void)scancode;
+    const enum key_action chorded = chord(key, scancode, mods);
     input->changed = true;
+    if (action != GLFW_RELEASE && chorded && (action == GLFW_PRESS || repeats(chorded)))
+        add_key(input, chorded);
     if (action == GLFW_RELEASE || (mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER)))
         return;
-    if (key >= GLFW_KEY_1 && key <= GLFW_KEY_7)
+    if (action == GLFW_PRESS && key >= GLFW_KEY_1 && key <= GLFW_KEY_7)
         add_key(input, (enum key_action)((int)KEY_VIEW_1 + key - GLFW_KEY_1));
     for (size_t i = 0; i < sizeof key_table / sizeof *key_table; i++)
-        if (key_table[i].key == key)
+        if (key_table[i].key == key && (action == GLFW_PRESS || repeats(key_table[i].action)))
             add_key(input, key_table[i].action);
 }
 
@@ -107,6 +128,8 @@ static void on_character(GLFWwindow *handle, unsigned character)
         add_key(input, KEY_ZOOM_IN);
     else if (character == '-')
         add_key(input, KEY_ZOOM_OUT);
+    else if (character == '?')
+        add_key(input, KEY_HELP);
 }
 
 static void on_move(GLFWwindow *handle, double x, double y)

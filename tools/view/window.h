@@ -25,6 +25,11 @@ enum key_action {
     KEY_PANEL,
     KEY_PROJECTION,
     KEY_PAUSE,
+    KEY_UNDO,
+    KEY_REDO,
+    KEY_COPY,
+    KEY_HELP,
+    KEY_ESCAPE,
     KEY_QUIT
 };
 
