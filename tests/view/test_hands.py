@@ -283,12 +283,12 @@ def slider_changes_the_picture(scratch):
 
 
 @case
-def tab_after_a_click_in_the_panel_opens_no_text_field(scratch):
+def tab_after_a_drag_in_the_panel_opens_no_text_field(scratch):
     with opened(scratch, '--versus', '--method hbao', size=(WIDTH + PANEL_WIDTH, 700)) as viewer:
-        viewer.click(80, 198)  # radius
+        viewer.drag((85, 198), (110, 198), hold=1)  # radius
         viewer.key('Tab')
         viewer.wait_title(HBAO)
-        time.sleep(0.5)
+        time.sleep(1)
         viewer.key('3')
         viewer.wait_title('- Composite -')
         viewer.finish()
