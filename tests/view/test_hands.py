@@ -288,7 +288,9 @@ def tab_after_a_drag_in_the_panel_opens_no_text_field(scratch):
         viewer.drag((85, 198), (110, 198), hold=1)  # radius
         viewer.key('Tab')
         viewer.wait_title(HBAO)
-        time.sleep(1)
+        time.sleep(1.5)
+        viewer.key('Tab')
+        viewer.wait_title(VBAO)
         viewer.key('3')
         viewer.wait_title('- Composite -')
         viewer.finish()
