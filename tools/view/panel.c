@@ -133,10 +133,10 @@ static void file_rows(struct viewer *v)
             frame != s->frame + 1)
             viewer_load(v, frame - 1, l->view);
     }
-    if (l->files.view_count > 1 && ui_begin_choice("eye", l->files.views[l->view].name)) {
+    if (l->files->view_count > 1 && ui_begin_choice("eye", l->files->views[l->view].name)) {
         size_t chosen = l->view;
-        for (size_t i = 0; i < l->files.view_count; i++)
-            if (ui_choice(l->files.views[i].name, i == l->view, true))
+        for (size_t i = 0; i < l->files->view_count; i++)
+            if (ui_choice(l->files->views[i].name, i == l->view, true))
                 chosen = i;
         ui_end_choice();
         if (chosen != l->view)

@@ -84,9 +84,9 @@ static void add_file_options(const struct viewer *v, struct text *out)
     } else if (v->source.options.camera_file) {
         text_add(out, " --camera none");
     }
-    if (!has_view && *l->files.views[l->view].name) {
+    if (!has_view && *l->files->views[l->view].name) {
         text_add(out, " --view ");
-        text_add_quoted(out, l->files.views[l->view].name);
+        text_add_quoted(out, l->files->views[l->view].name);
     }
 }
 
@@ -279,7 +279,7 @@ static bool save_file_values(struct viewer *viewer, const struct save_names *nam
     struct viewer *v = viewer;
     struct loaded_frame *l = &v->source.now;
     struct options options = output_options(v, names);
-    struct frame_source files = l->files;
+    struct frame_source files = *l->files;
     struct rendered_view r;
     char device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE], input[ATOMIC_FILE_PATH_MAX];
     char exr[ATOMIC_FILE_PATH_MAX], png[ATOMIC_FILE_PATH_MAX];
@@ -289,7 +289,7 @@ static bool save_file_values(struct viewer *viewer, const struct save_names *nam
     snprintf(png, sizeof png, "%s", names->png);
     snprintf(device, sizeof device, "%s", v->gpu.properties.deviceName);
     device[strcspn(device, "(") > 1 ? strcspn(device, "(") - 1 : 0] = '\0';
-    files.views[0] = l->files.views[l->view];
+    files.views[0] = l->files->views[l->view];
     files.view_count = 1;
     r.name = files.views[0].name;
     r.setting = options.setting;

@@ -50,7 +50,9 @@ static void loaded_free(struct gpu *gpu, struct loaded_frame *l)
     gpu_image_destroy(gpu, &l->color);
     gpu_image_destroy(gpu, &l->reference);
     gbuffer_free(&l->gbuffer);
-    frame_source_close(&l->files);
+    if (l->files)
+        frame_source_close(l->files);
+    free(l->files);
     free(l->reference_values);
     free(l->path);
     free(l->camera_path);
@@ -135,17 +137,20 @@ static bool load_gbuffer(struct source *s, struct loaded_frame *l, size_t view,
                          struct report *report, struct tool_error *err)
 {
     struct options options = s->options;
-    if (!frame_source_open(&options, l->path, l->camera_path, &l->files, err))
+    l->files = calloc(1, sizeof *l->files);
+    if (!l->files)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", l->path);
+    if (!frame_source_open(&options, l->path, l->camera_path, l->files, err))
         return false;
-    if (view >= l->files.view_count)
+    if (view >= l->files->view_count)
         view = 0;
-    struct gbuffer_options wanted = view_options(&options, &l->files.views[view]);
+    struct gbuffer_options wanted = view_options(&options, &l->files->views[view]);
     struct roles roles;
     struct tool_error unseen = {0};
     memset(&roles, 0, sizeof roles);
-    wanted.want_color = roles_resolve(&l->files.info, &wanted.roles, &roles, &unseen) &&
+    wanted.want_color = roles_resolve(&l->files->info, &wanted.roles, &roles, &unseen) &&
                         roles.kind[ROLE_COLOR].found;
-    if (!gbuffer_load(&l->files.info, &wanted, l->files.views[view].camera, report, &l->gbuffer,
+    if (!gbuffer_load(&l->files->info, &wanted, l->files->views[view].camera, report, &l->gbuffer,
                       err) ||
         !placement_expand(&l->gbuffer, &l->placement, err))
         return false;

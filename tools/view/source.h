@@ -17,8 +17,8 @@
 struct loaded_frame {
     char *path, *camera_path, *reference_path; /* path is NULL if nothing is loaded */
     size_t view;                               /* index in files.views: the eye of a stereo file */
-    struct frame_source files;
-    struct gbuffer gbuffer; /* its images stay in host memory too */
+    struct frame_source *files;                /* stays where it is: the roles point into it */
+    struct gbuffer gbuffer;                    /* its images stay in host memory too */
     struct placement placement;
     struct gpu_image depth, normals, color, reference;
     float *reference_values; /* width * height of the G-buffer; NULL = no reference */
