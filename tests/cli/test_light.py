@@ -1,6 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """What --mode comp does with light that is known apart, and what mattes leave out."""
+import json
+
 import numpy as np
 
 from cli import (CHANNELS, USAGE, case, cases, check, check_close, equal, main, matches, read_ao,
@@ -102,6 +104,109 @@ def what_does_not_cast_is_background(scratch):
     scratch.render('hole.exr', '-o', 'hole.ao.exr', *VIEW)
     check_close(without, read_ao(scratch.path('hole.ao.exr')), 0, 0, 'AO')
     check(np.abs(without - ao)[matte == 0].max() > 0.05, 'the ball still casts')
+
+
+# --- Cryptomatte ---
+
+def murmur3(name):
+    """MurmurHash3_x86_32 of the UTF-8 name."""
+    def mix(word):
+        word = word * 0xcc9e2d51 & 0xffffffff
+        return (word << 15 | word >> 17) * 0x1b873593 & 0xffffffff
+    data, h = name.encode(), 0
+    whole = len(data) // 4 * 4
+    for i in range(0, whole, 4):
+        h ^= mix(int.from_bytes(data[i:i + 4], 'little'))
+        h = ((h << 13 | h >> 19) & 0xffffffff) * 5 + 0xe6546b64 & 0xffffffff
+    h ^= mix(int.from_bytes(data[whole:], 'little')) ^ len(data)
+    for shift, factor in ((16, 0x85ebca6b), (13, 0xc2b2ae35), (16, 1)):
+        h = (h ^ h >> shift) * factor & 0xffffffff
+    return h
+
+
+def identifier(name):
+    bits = murmur3(name)
+    if bits >> 23 & 255 in (0, 255):
+        bits ^= 1 << 23
+    return np.uint32(bits).view(np.float32)
+
+
+BALL = (SCENE.z < 5) & (np.abs(SCENE.normal[..., 1]) < 0.99)
+OBJECTS = {'ball': BALL * np.float32(0.75), 'küche/floor': (~BALL & ~SCENE.sky) * np.float32(1),
+           'dust': BALL * np.float32(0.25)}
+
+
+def crypto(layer='CryptoObject', letters='RGBA'):
+    """Two ranks in one layer: ball or floor first, what is left behind it."""
+    ball, floor, dust = (np.where(OBJECTS[n] > 0, identifier(n), 0) for n in OBJECTS)
+    planes = (ball + floor, OBJECTS['ball'] + OBJECTS['küche/floor'], dust, OBJECTS['dust'])
+    return {f'{layer}00.{c}': p.astype(np.float32) for c, p in zip(letters, planes)}
+
+
+def crypto_attributes(layer='CryptoObject', manifest=True):
+    rows = [('name', layer), ('hash', 'MurmurHash3_32'), ('conversion', 'uint32_to_float32')]
+    if manifest:
+        rows.append(('manifest', json.dumps({n: f'{murmur3(n):08x}' for n in OBJECTS})))
+    return [(f'cryptomatte/6b4a1c2/{key}', value) for key, value in rows]
+
+
+@case
+def hash_is_murmur3(_):
+    equal(f'{murmur3("hello"):08x}', '248bfa47', 'hash of hello')
+
+
+@cases([('RGBA', 'RGBA', 'CryptoObject', True), ('words', ('red', 'green', 'blue', 'alpha'),
+                                                 'ViewLayer.CryptoAsset', True),
+        ('small, no manifest', 'rgba', 'crypto_material', False)])
+def objects_are_named_by_cryptomatte(scratch, _, letters, layer, manifest):
+    planes = {**COLOR, 'Z': SCENE.depth(), **SCENE.normals(), **crypto(layer, letters)}
+    write_exr(scratch.path('in.exr'), planes, attributes=crypto_attributes(layer, manifest))
+    scratch.render('in.exr', '-o', 'ao.exr', *VIEW)
+    ao = read_ao(scratch.path('ao.exr'))
+    check((ao[BALL] < 0.9).any(), 'nothing to hold out')
+    for names in (('ball',), ('küche/floor',), ('ball', 'dust'), ('küche/floor', 'ball')):
+        scratch.render('in.exr', '-o', 'held.exr', *VIEW, '--holdout', f'crypto:{",".join(names)}')
+        matte = sum(OBJECTS[n] for n in names)
+        check_close(read_ao(scratch.path('held.exr')), 1 - (1 - ao) * (1 - matte), 1e-6, 1e-7,
+                    f'{names}')
+
+
+@case
+def cryptomatte_may_be_a_part_and_objects_need_not_cast(scratch):
+    parts = ({**COLOR, 'Z': SCENE.depth(), **SCENE.normals()}, {'name': 'beauty'}), \
+        ({k[-1]: v for k, v in crypto().items()}, {'name': 'CryptoObject00'})
+    write_exr(scratch.path('in.exr'), *parts, attributes=crypto_attributes())
+    scratch.render('in.exr', '-o', 'crypto.exr', *VIEW, '--no-cast', 'crypto:ball')
+    write_exr(scratch.path('in.exr'), {**COLOR, 'Z': SCENE.depth(), **SCENE.normals(),
+                                       'matte': OBJECTS['ball']})
+    scratch.render('in.exr', '-o', 'matte.exr', *VIEW, '--no-cast', 'matte')
+    check_close(read_ao(scratch.path('crypto.exr')), read_ao(scratch.path('matte.exr')), 0, 0, 'AO')
+
+
+@case
+def objects_that_are_not_there_are_said(scratch):
+    planes = {**COLOR, 'Z': SCENE.depth()}
+    line = ('in.exr', '-o', 'x.exr', '--fov', FOV, '--holdout')
+    write_exr(scratch.path('in.exr'), planes)
+    scratch.fails(CHANNELS, r"in\.exr: no Cryptomatte, which 'crypto:ball' needs", *line,
+                  'crypto:ball')
+    write_exr(scratch.path('in.exr'), {**planes, **crypto()}, attributes=crypto_attributes())
+    scratch.fails(CHANNELS, r"in\.exr: no object 'bell' in its Cryptomatte", *line, 'crypto:bell',
+                  hint='there are ball, ')
+    scratch.fails(CHANNELS, r"names no object", *line, 'crypto:,')
+    with np.errstate(over='ignore'):
+        halves = {k: v.astype(np.float16) for k, v in crypto().items()}
+    write_exr(scratch.path('in.exr'), {**planes, **halves}, attributes=crypto_attributes())
+    scratch.fails(CHANNELS, r"'CryptoObject00\.[RB]' is not stored as 32-bit floats", *line,
+                  'crypto:ball')
+
+
+@case
+def objects_without_a_manifest_may_cover_nothing(scratch):
+    write_exr(scratch.path('in.exr'), {'Z': SCENE.depth(), **SCENE.normals(), **crypto()},
+              attributes=crypto_attributes(manifest=False))
+    run = scratch.render('in.exr', '-o', 'ao.exr', *VIEW, '--holdout', 'crypto:bell')
+    matches(r"warning: in\.exr: 'crypto:bell' covers nothing", run.stderr, 'stderr')
 
 
 @case

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "gbuffer.h"
 
+#include "cryptomatte.h"
 #include "gbuffer_internal.h"
 #include "placement.h"
 #include "text.h"
@@ -212,12 +213,63 @@ static void complete_alpha(const struct gbuffer *g, float *color, size_t texels)
         color[i * 4 + 3] = 1.0f;
 }
 
-/* Objects that do not cast are not there. */
-static bool take_out(struct gbuffer *g, struct tool_error *err)
+/* How much of each texel named objects cover. */
+static float *read_objects(const struct exr_info *info, const struct gbuffer *g,
+                           const struct gbuffer_options *options, const char *names,
+                           struct report *report, struct tool_error *err)
 {
-    const struct role *role = &g->roles.kind[ROLE_NO_CAST];
-    float *mask = role->found ? read_role(g, role, 1, 0.0f, err) : NULL;
-    if (role->found && !mask)
+    struct cryptomatte matte;
+    const size_t texels = gbuffer_texels(g);
+    const char *view = options->roles.view ? options->roles.view : "";
+    if (!cryptomatte_find(info, view, names, &matte, err))
+        return NULL;
+    float *covered = allocate(texels, 1, info->path, err), sum = 0.0f;
+    if (covered)
+        fill(covered, texels, 0.0f);
+    for (size_t r = 0; covered && r < matte.rank_count; r++) {
+        const struct cryptomatte_rank *rank = &matte.ranks[r];
+        const struct role role = {
+            .info = info, .part = rank->part, .channels = {rank->id, rank->coverage}};
+        float *pairs = read_role(g, &role, 2, 0.0f, err);
+        for (size_t i = 0; pairs && i < texels; i++)
+            if (cryptomatte_has(&matte, pairs[i * 2]))
+                covered[i] += pairs[i * 2 + 1];
+        if (!pairs) {
+            free(covered);
+            covered = NULL;
+        }
+        free(pairs);
+    }
+    for (size_t i = 0; covered && i < texels; i++)
+        sum += covered[i];
+    if (covered && !(sum > 0))
+        report_warn(report, "objects", "%s: '%s%s' covers nothing", info->path, CRYPTOMATTE_PREFIX,
+                    names);
+    return covered;
+}
+
+/* A matte by its channel, or by names of objects; *mask is NULL if none was named. */
+static bool read_matte(const struct exr_info *info, const struct gbuffer *g,
+                       const struct gbuffer_options *options, enum role_kind kind, float **mask,
+                       struct report *report, struct tool_error *err)
+{
+    const struct role *role = &g->roles.kind[kind];
+    const size_t prefix = strlen(CRYPTOMATTE_PREFIX);
+    if (!role->label[0])
+        return true;
+    *mask = role->found
+                ? read_role(g, role, 1, 0.0f, err)
+                : read_objects(info, g, options, options->roles.name[kind] + prefix, report, err);
+    return *mask != NULL;
+}
+
+/* Objects that do not cast are not there. */
+static bool take_out(const struct exr_info *info, struct gbuffer *g,
+                     const struct gbuffer_options *options, struct report *report,
+                     struct tool_error *err)
+{
+    float *mask = NULL;
+    if (!read_matte(info, g, options, ROLE_NO_CAST, &mask, report, err))
         return false;
     for (size_t i = 0; mask && i < gbuffer_texels(g); i++)
         if (mask[i] >= 0.5f)
@@ -227,9 +279,11 @@ static bool take_out(struct gbuffer *g, struct tool_error *err)
 }
 
 /* Only numbers in [0,1] are let through. */
-static bool read_holdout(struct gbuffer *g, struct tool_error *err)
+static bool read_holdout(const struct exr_info *info, struct gbuffer *g,
+                         const struct gbuffer_options *options, struct report *report,
+                         struct tool_error *err)
 {
-    if (!read_behind(g, ROLE_HOLDOUT, &g->holdout, err))
+    if (!read_matte(info, g, options, ROLE_HOLDOUT, &g->holdout, report, err))
         return false;
     for (size_t i = 0; g->holdout && i < gbuffer_texels(g); i++)
         g->holdout[i] = g->holdout[i] > 0.0f ? fminf(g->holdout[i], 1.0f) : 0.0f;
@@ -335,6 +389,9 @@ static bool check_budget(const struct exr_info *info, const struct gbuffer_optio
         if (g->roles.kind[kind].found)
             add_role(g, &g->roles.kind[kind], role_is_scalar((enum role_kind)kind) ? 1 : 4,
                      &texel_bytes, &for_a_while);
+    for (int kind = ROLE_HOLDOUT; kind <= ROLE_NO_CAST; kind++)
+        if (g->roles.kind[kind].label[0] && !g->roles.kind[kind].found)
+            texel_bytes += 3 * sizeof(float); /* objects: covered, and a pair at a time */
     if (g->roles.kind[ROLE_INDIRECT].found || g->roles.kind[ROLE_SPECULAR].found)
         texel_bytes += 4 * sizeof(float); /* what is kept of the colour */
     const uint64_t work = work_texels * (options->work_texel_bytes +
@@ -495,13 +552,15 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         !read_behind(g, ROLE_THICKNESS, &g->thickness, err) ||
         (!g->thickness && !read_behind(g, ROLE_BACK_DEPTH, &g->thickness, err)) ||
         !read_behind(g, ROLE_LAYER2, &g->second_depth, err) ||
-        !gbuffer_prepare_depth(g, depth->info, options, report, err) || !take_out(g, err) ||
+        !gbuffer_prepare_depth(g, depth->info, options, report, err) ||
+        !take_out(info, g, options, report, err) ||
         !gbuffer_prepare_normals(g, options, normals->path, report, err))
         goto failed;
     warn_about_assumption(g, report);
     free(g->alpha);
     g->alpha = NULL;
-    if ((options->want_color && !read_light(g, err)) || !read_holdout(g, err))
+    if ((options->want_color && !read_light(g, err)) ||
+        !read_holdout(info, g, options, report, err))
         goto failed;
     return true;
 failed:

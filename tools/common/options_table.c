@@ -595,14 +595,15 @@ const struct option_row option_table[] = {
      .commands = RENDER | INSPECT, .apply = apply_layer,
      .offset = AT(gbuffer.roles.name[ROLE_ROUGHNESS])},
     {.name = "holdout", .argument = "NAME",
-     .help = "channel of a matte, 0 to 1: what it covers gets no AO, and still casts it",
+     .help = "channel of a matte, 0 to 1, or crypto:OBJECT[,...], by Cryptomatte: what it covers "
+             "gets no AO, and still casts it",
      .commands = RENDER | INSPECT, .apply = apply_layer,
      .offset = AT(gbuffer.roles.name[ROLE_HOLDOUT]),
      .more = "AO becomes 1 - (1 - AO) (1 - matte), and with --mode comp the colour is mixed with "
              "what it was."},
     {.name = "no-cast", .argument = "NAME",
-     .help = "channel of a matte: what is 0.5 or more is taken for background, casts nothing and "
-             "gets AO 1",
+     .help = "channel of a matte, or crypto:OBJECT[,...]: what is 0.5 or more is taken for "
+             "background, casts nothing and gets AO 1",
      .commands = RENDER | INSPECT, .apply = apply_layer,
      .offset = AT(gbuffer.roles.name[ROLE_NO_CAST]),
      .more = "What is behind it is not known, so it leaves a hole: render without the object "

@@ -160,7 +160,7 @@ char *record_write(const struct options *o, const struct setting *setting, const
     if (effect->second_layer)
         cJSON_AddStringToObject(root, "layer2", g->roles.kind[ROLE_LAYER2].label);
     for (size_t i = 0; i < MORE_CHANNELS; i++)
-        if (g->roles.kind[more_channels[i].kind].found)
+        if (g->roles.kind[more_channels[i].kind].label[0])
             cJSON_AddStringToObject(root, more_channels[i].key,
                                     g->roles.kind[more_channels[i].kind].label);
     add_camera(root, &g->camera);

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "roles.h"
 
+#include "cryptomatte.h"
 #include "text.h"
 
 #include <ctype.h>
@@ -735,6 +736,11 @@ bool roles_resolve(const struct exr_info *info, const struct role_request *reque
         const char *name = request->name[kind];
         if (kind == ROLE_NORMAL && request->no_normals)
             continue;
+        if (name && (kind == ROLE_HOLDOUT || kind == ROLE_NO_CAST) &&
+            text_starts_with(name, CRYPTOMATTE_PREFIX)) {
+            snprintf(role->label, sizeof role->label, "%s", name);
+            continue; /* names of objects, not of channels */
+        }
         const bool is_alone = kind < ROLE_FILES && request->file[kind];
         s.info = is_alone ? request->file[kind] : info;
         ok &= name       ? resolve_named(&s, (enum role_kind)kind, name, role, err)
