@@ -52,6 +52,7 @@ def a_pack_runs_by_itself(scratch):
     check(found['copy'][0]['gb_per_s'] > 0, f'{found["copy"]}')
     differ = [row['picture'] for row in found['pictures'] if not row['equal']]
     equal(differ, ['hbao'], 'pictures that differ')
+    check(os.path.exists(scratch.path('report.hbao.exr')), 'the picture that differs is not kept')
     equal([(row['program'], row['passed'], row['failed']) for row in found['tests']],
           [('test_none', 2, 1)], 'tests')
     for what in ('hbao differs', 'No such file', 'test_none: exit code 1'):
