@@ -349,6 +349,22 @@ def warnings_show_in_the_panel(scratch):
     check(yellow(shown[:, :PANEL_WIDTH]) > 100, 'no warning that depth is HALF')
 
 
+@case
+def radius_of_the_reference_is_shown_and_taken(scratch):
+    ao = {'AO': SCENE.depth() * 0 + 0.5}
+    write_exr(scratch.path('in.gt.exr'), ao, attributes=[('aoRadius', 'float', 0.8)])
+    with opened(scratch, '--show', 'difference', size=(WIDTH + PANEL_WIDTH, 700)) as viewer:
+        viewer.wait_title('- Difference -')
+        time.sleep(1)
+        viewer.click(60, 165)  # 'take 0.8 for A'
+        time.sleep(1)
+        viewer.key('s')
+        shown = viewer.finish()
+    equal(yellow(shown[:, :PANEL_WIDTH]), 0, 'texels of a warning after that')
+    command = script(scratch, 'in.view.sh')
+    equal(float(command[command.index('--radius') + 1]), 0.8, 'the radius')
+
+
 # --- Save ---
 
 def script(scratch, name):

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "corpus.h"
 
+#include "ao_radius.h"
 #include "text.h"
 
 #include <dirent.h>
@@ -271,26 +272,6 @@ static bool read_truth(const struct exr_info *info, vkao_falloff falloff, struct
     return exr_read_channels(info, (size_t)(part - info->parts), &read, 1, err);
 }
 
-/* As a number or as text: renderers and scripts write either. */
-static float radius_of(const struct exr_info *info)
-{
-    for (size_t p = 0; p < info->part_count; p++) {
-        for (size_t i = 0; i < info->parts[p].attribute_count; i++) {
-            const struct exr_attribute *a = &info->parts[p].attributes[i];
-            double radius = 0;
-            if (strcmp(a->name, "aoRadius") != 0)
-                continue;
-            if (a->number_count == 1)
-                radius = a->numbers[0];
-            else if (a->text && !text_to_number(a->text, &radius))
-                radius = 0;
-            if (radius > 0 && isfinite((float)radius))
-                return (float)radius;
-        }
-    }
-    return 0;
-}
-
 static bool load_truth(const char *path, const bool wanted[2], struct scene *scene,
                        struct tool_error *err)
 {
@@ -299,7 +280,7 @@ static bool load_truth(const char *path, const bool wanted[2], struct scene *sce
     for (int f = 0; ok && f < 2; f++)
         ok = !wanted[f] || read_truth(&info, (vkao_falloff)f, scene, err);
     if (ok)
-        scene->radius = radius_of(&info);
+        scene->radius = reference_radius(&info);
     exr_info_free(&info);
     return ok;
 }

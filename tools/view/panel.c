@@ -252,7 +252,25 @@ static void probe_rows(const struct viewer *v)
             r->normal[1], r->normal[2]);
 }
 
-static void error_rows(const struct viewer *v)
+/* AO of two radii is not compared unawares. */
+static void radius_row(struct viewer *v, enum side side)
+{
+    struct vkao_params *p = &v->settings[side].params;
+    const float wanted = v->source.now.reference_radius;
+    char text[128], button[32];
+    if (!(wanted > 0) || fabsf(p->radius - wanted) <= 1e-4f * wanted)
+        return;
+    snprintf(text, sizeof text, "%c: radius %.5g, the reference's is %.5g", side ? 'B' : 'A',
+             (double)p->radius, (double)wanted);
+    snprintf(button, sizeof button, "take %.5g for %c", (double)wanted, side ? 'B' : 'A');
+    ui_paragraph(UI_WARNING, text);
+    if (ui_button(button)) {
+        p->radius = wanted;
+        viewer_mark_stale(v);
+    }
+}
+
+static void error_rows(struct viewer *v)
 {
     if (v->view != VIEW_DIFFERENCE || v->live)
         return;
@@ -260,6 +278,9 @@ static void error_rows(const struct viewer *v)
         if (v->error[s] >= 0 && viewer_needs(v, (enum side)s))
             ui_text("%c: RMSE %.4f to %s", s ? 'B' : 'A', v->error[s],
                     v->source.now.reference_channel);
+    for (int s = 0; s < SIDES; s++)
+        if (v->source.now.reference.image && viewer_needs(v, (enum side)s))
+            radius_row(v, (enum side)s);
 }
 
 static void save_rows(struct viewer *v)

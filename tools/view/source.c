@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "source.h"
 
+#include "ao_radius.h"
 #include "automatic.h"
 
 #include <math.h>
@@ -123,6 +124,7 @@ static bool read_reference(struct gpu *gpu, struct loaded_frame *l, struct tool_
         memcpy(values + (row + l->placement.top) * extent.width + l->placement.left,
                l->reference_values + row * g->width, g->width * sizeof *values);
     ok = ok && upload(gpu, &l->reference, VK_FORMAT_R32_SFLOAT, extent, values, err);
+    l->reference_radius = reference_radius(&info);
     if (ok)
         snprintf(l->reference_channel, sizeof l->reference_channel, "%s", channel);
     free(values);

@@ -23,6 +23,7 @@ struct loaded_frame {
     struct gpu_image depth, normals, color, reference;
     float *reference_values; /* width * height of the G-buffer; NULL = no reference */
     char reference_channel[64];
+    float reference_radius; /* scene units, as its header says; 0 = it does not */
 };
 
 struct source {
