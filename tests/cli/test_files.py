@@ -80,6 +80,15 @@ def color_may_be_in_a_file_of_its_own(scratch):
 
 
 @case
+def colours_are_no_depth(scratch):
+    write_elements(scratch, depth={c: p for c, p in SCENE.color().items() if c != 'A'})
+    line = ('beauty.exr', '--depth-file', 'z.exr', '-o', 'ao.exr', *BASE)
+    scratch.fails(CHANNELS, r"z\.exr: 'R' and 'G' differ: a picture in colours", *line,
+                  hint='--depth R')
+    scratch.render(*line, '--depth', 'R')
+
+
+@case
 def names_are_those_of_the_file(scratch):
     wanted = whole(scratch)['R']
     planes = {'a.Z': SCENE.depth(), 'b.Z': SCENE.depth() * 2}

@@ -139,8 +139,8 @@ def mode_ao_writes_one_half_channel_with_zip(scratch):
     scratch.render('in.exr', '-o', 'ao.exr', *VIEW)
     parts = read_parts(scratch.path('ao.exr'))
     equal(len(parts), 1, 'number of parts')
-    equal([(k, str(v.dtype)) for k, v in parts[0].channels.items()], [(c, 'float16') for c in 'RGB'],
-          'channels')
+    equal([(k, str(v.dtype)) for k, v in parts[0].channels.items()],
+          [(c, 'float16') for c in 'RGB'], 'channels')
     raw = read_raw(scratch.bytes('ao.exr'))[0]
     equal(COMPRESSIONS[raw.attributes['compression'][1][0]], 'zip', 'compression')
     equal(raw.text('vkao/source'), 'in.exr', 'vkao/source')

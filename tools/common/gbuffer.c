@@ -180,6 +180,28 @@ static bool read_depth(struct gbuffer *g, struct tool_error *err)
            exr_read_channels(role->info, role->part, reads, has_alpha ? 2 : 1, err);
 }
 
+/* A picture in colours is no depth, whatever its red is. Lossy compression leaves grey nearly so. */
+static bool check_grey(const struct gbuffer *g, struct tool_error *err)
+{
+    const struct role *depth = &g->roles.kind[ROLE_DEPTH];
+    const size_t texels = gbuffer_texels(g);
+    size_t colored = 0;
+    if (!depth->twin)
+        return true;
+    const struct role role = {.info = depth->info, .part = depth->part, .channels = {depth->twin}};
+    float *twin = read_role(g, &role, 1, 0.0f, err);
+    for (size_t i = 0; twin && i < texels; i++) {
+        const float a = g->depth[i], b = twin[i];
+        colored += fabsf(a - b) > 0.01f * fmaxf(fabsf(a), fabsf(b));
+    }
+    free(twin);
+    if (!twin || colored * 100 <= texels)
+        return twin != NULL;
+    fail_hint(err, "give the file of the depth; or if one channel is depth, say which: --depth R");
+    return fail(err, EXIT_CHANNELS, "%s: '%s' and '%s' differ: a picture in colours, no depth",
+                depth->info->path, depth->channels[0]->name, depth->twin->name);
+}
+
 /* Alpha of another part is only read if depth does not say by itself where there is nothing. */
 static bool read_alpha(struct gbuffer *g, struct tool_error *err)
 {
@@ -537,7 +559,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     const struct exr_info *normals = normal->found ? normal->info : info;
     if (g->camera.remark[0])
         report_warn(report, "camera remark", "%s: %s", info->path, g->camera.remark);
-    if (!read_depth(g, err))
+    if (!read_depth(g, err) || !check_grey(g, err))
         goto failed;
     if (normal->found) {
         g->normals = read_role(g, normal, 4, 0.0f, err);

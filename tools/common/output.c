@@ -67,8 +67,8 @@ static bool blender_names(const struct exr_info *info, const struct role *depth,
     return true;
 }
 
-/* 'ao', 'ao.left'; a lone AO part needs no name. R, G and B are what every program shows as it is; of
- * Y alone ffmpeg stretches the contrast. Zip makes hardly more of three than of one. */
+/* 'ao', 'ao.left'; a lone AO part needs no name. R, G and B are what every program shows as it is;
+ * of Y alone ffmpeg stretches the contrast. Zip makes hardly more of three than of one. */
 static struct ao_names name_ao(const struct options *o, const struct exr_info *info,
                                const struct role *depth, const char *view)
 {

@@ -712,6 +712,13 @@ static bool resolve_alone(struct search *s, enum role_kind kind, struct role *ro
     if (s->count > 1)
         return fail_ambiguous(s, kind, err);
     take_hit(s, &s->hits[0], NULL, role);
+    struct channel_name name;
+    const char *channel = role->channels[0]->name;
+    if (role_is_scalar(kind) &&
+        channel_name_read(&s->info->parts[role->part], channel, s->view, s->info->part_count > 1,
+                          &name) &&
+        text_equal_nocase(name.component, "R"))
+        role->twin = sibling(s, role->part, &name, "G");
     return true;
 }
 

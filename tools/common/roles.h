@@ -101,6 +101,7 @@ struct role {
     const struct exr_channel
         *channels[ROLE_MAX_COMPONENTS + 1]; /* the last: alpha of colour, or NULL */
     size_t channel_count;                   /* without alpha */
+    const struct exr_channel *twin;         /* G of R where a grey image was guessed, or NULL */
     enum depth_type depth_type;             /* as the name implies, or AUTO */
     enum normal_space normal_space;         /* likewise */
     bool follows_positions;     /* normals that are in the space of the positions beside them */
