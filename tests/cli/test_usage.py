@@ -47,9 +47,9 @@ WRONG_VALUES = [
     ('--falloff', ('linear',), 'want smooth or threshold'),
 ]
 TEXTS = ('--output', '--preview', '--part-name', '--depth', '--normal', '--color', '--view',
-         '--camera', '--frames', '--device', '--thickness-channel', '--back-depth', '--layer2', '--channel',
-         '--depth-file', '--normal-file', '--color-file', '--indirect', '--albedo', '--specular',
-         '--roughness', '--holdout', '--no-cast')
+         '--camera', '--frames', '--device', '--thickness-channel', '--back-depth', '--layer2',
+         '--channel', '--depth-file', '--normal-file', '--color-file', '--indirect', '--albedo',
+         '--specular', '--roughness', '--holdout', '--no-cast')
 FLAGS = ('--continue-on-error', '--validation', '--verbose', '--quiet')
 
 

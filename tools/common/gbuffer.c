@@ -180,7 +180,8 @@ static bool read_depth(struct gbuffer *g, struct tool_error *err)
            exr_read_channels(role->info, role->part, reads, has_alpha ? 2 : 1, err);
 }
 
-/* A picture in colours is no depth, whatever its red is. Lossy compression leaves grey nearly so. */
+/* A picture in colours is no depth, whatever its red is. Lossy compression leaves grey nearly
+ * so. */
 static bool check_grey(const struct gbuffer *g, struct tool_error *err)
 {
     const struct role *depth = &g->roles.kind[ROLE_DEPTH];
