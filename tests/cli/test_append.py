@@ -76,7 +76,7 @@ def header_lines(text):
     return [[line for line in part.splitlines() if not skipped.match(line)] for part in parts]
 
 
-def check_append(scratch, added=('ao',)):
+def check_append(scratch, added=('ao',), channel='AO'):
     before, after = (read_parts(scratch.path(f)) for f in ('in.exr', 'out.exr'))
     raw_before, raw_after = (read_raw(scratch.bytes(f)) for f in ('in.exr', 'out.exr'))
     equal(len(after), len(before) + len(added), 'number of parts')
@@ -86,7 +86,7 @@ def check_append(scratch, added=('ao',)):
         check_pixels(part, after[i], f'part {i}')
         equal(after[i].name, part.name, 'name of a part')
     for part in after[len(before):]:
-        equal(list(part.channels), ['AO'], 'channels of the new part')
+        equal(list(part.channels), [channel], 'channels of the new part')
     printed = [header_lines(run_tool('exrheader', f, cwd=scratch.directory))
                for f in ('in.exr', 'out.exr')]
     for i, lines in enumerate(printed[0]):
@@ -214,7 +214,12 @@ def renderers_files_are_copied(scratch, name):
         scratch.write('in.exr', file.read())
     scratch.render('in.exr', '-o', 'out.exr', '--mode', 'append', '--camera',
                    corpus(f'{name}.camera.json'))
-    check_append(scratch, ('ao.left', 'ao.right') if 'stereo' in name else ('ao',))
+    if not name.startswith('b5'):
+        check_append(scratch)
+    elif 'stereo' in name:
+        check_append(scratch, ('ViewLayer.AO-left', 'ViewLayer.AO-right'), 'ViewLayer.AO.V')
+    else:
+        check_append(scratch, ('ViewLayer.AO',), 'ViewLayer.AO.V')
 
 
 if __name__ == '__main__':
