@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """What other programs show of what vkao writes: ImageMagick, ffmpeg and Blender, where they are
-installed. Of Blender either the program is taken, or a Python with its module bpy, which BPY_PYTHON
-may name."""
+installed. Of Blender either the program is taken, or a Python with its module bpy, which
+VKAO_BPY_PYTHON may name."""
 import json
 import os
 import shutil
@@ -49,7 +49,7 @@ def blender_command():
     """What runs a Python script in Blender; the script follows."""
     if shutil.which('blender'):
         return ['blender', '--background', '--factory-startup', '--python']
-    for python in (os.environ.get('BPY_PYTHON'), sys.executable, shutil.which('python3')):
+    for python in (os.environ.get('VKAO_BPY_PYTHON'), sys.executable, shutil.which('python3')):
         if python and subprocess.run([python, '-c', 'import bpy'], capture_output=True,
                                      timeout=TIMEOUT, check=False).returncode == 0:
             return [python]
@@ -59,7 +59,7 @@ def blender_command():
 def blender_finds(scratch, name):
     command = blender_command()
     if not command:
-        skip('Blender is not installed, nor its module bpy (BPY_PYTHON names a Python that has it)')
+        skip('Blender is not installed, nor its module bpy (VKAO_BPY_PYTHON names a Python with it)')
     scratch.write('list.py', LIST_PASSES)
     end = [] if 'blender' not in command[0] else ['--']
     done = subprocess.run([*command, scratch.path('list.py'), *end, scratch.path(name)],
