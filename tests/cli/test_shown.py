@@ -59,7 +59,7 @@ def blender_command():
 def blender_finds(scratch, name):
     command = blender_command()
     if not command:
-        skip('Blender is not installed, nor its module bpy (VKAO_BPY_PYTHON names a Python with it)')
+        skip('no Blender, nor a Python with its module bpy (VKAO_BPY_PYTHON may name one)')
     scratch.write('list.py', LIST_PASSES)
     end = [] if 'blender' not in command[0] else ['--']
     done = subprocess.run([*command, scratch.path('list.py'), *end, scratch.path(name)],
