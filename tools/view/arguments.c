@@ -7,7 +7,7 @@
 
 #define KEYS                                                                                       \
     "Keys: 1 raw AO 2 AO 3 composite 4 depth 5 normals 6 bent normals 7 difference\n"              \
-    "  Tab A or B   W wipe: drag the line   P panel   S save   F1 ? help   Q, Esc quit\n"          \
+    "  Tab A or B   W wipe: drag the line   P panel   S save   F1 ? help  Q, Esc quit\n"           \
     "  + - wheel zoom   drag pan   0, F fit   Z 1:1   Left Right frames of a sequence\n"           \
     "  Ctrl+Z, Ctrl+Y undo, redo   Ctrl+C copies what the mouse is on   Drop: opens\n"             \
     "  Live: drag turns, right drag moves, wheel nears, O projection, Space the clock\n"
