@@ -208,6 +208,19 @@ def positions_of_a_parallel_camera(scratch):
     check(abs(camera['ortho_width'] - 6) < 1e-3, f'width {camera["ortho_width"]}, want 6')
 
 
+@cases([('OpenGL', -1), ('pbrt and RenderMan', 1)])
+def positions_of_a_parallel_camera_lie_ahead(scratch, _, z):
+    # Nearer things are nearer, whichever way camera space looks.
+    scene = Scene(160, 90, 2 * np.degrees(np.arctan(2.0)))
+    write_exr(scratch.path('in.exr'), positions(scene, 'camera', z, parallel=1.5))
+    scratch.render('in.exr', '-o', 'ao.exr', '-r', '.5', '--pixel-type', 'float')
+    ao = read_ao(scratch.path('ao.exr'))
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth()})
+    scratch.render('in.exr', '-o', 'z.exr', '-r', '.5', '--pixel-type', 'float', '--ortho', '6')
+    error = np.sqrt(np.mean((ao - read_ao(scratch.path('z.exr'))) ** 2))
+    check(error < 0.012, f'RMSE {error:.4f} to the AO of depth')
+
+
 @case
 def positions_contradict_the_header(scratch):
     write_exr(scratch.path('in.exr'), positions(Scene(160, 90, 60)),

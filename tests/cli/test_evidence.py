@@ -276,6 +276,32 @@ def small_scenes_are_scenes(scratch):
     check_same(ao, wanted, 'a scene of 8 cm in metres')
 
 
+@cases([('white sky', 1, True), ('black sky', 0, False)])
+def normals_do_not_tell_the_unit_of_depth(scratch, _, background, is_clamped):
+    # Parts of a far plane have the shape of distances: no field of view makes scene units of them.
+    scene = Scene()
+    channels = {'Z': depth_of(scene, background, 1 / 20), **scene.normals(space='world')}
+    write_exr(scratch.path('in.exr'), channels)
+    if is_clamped:
+        scratch.fails(CHANNELS, "in.exr: depth 'Z' is from .* normalised", 'in.exr', '-o', 'x.exr',
+                      hint='--depth-type normalized --depth-range')
+    else:
+        matches('taken for scene units .*--depth-type normalized',
+                str(inspect(scratch)['warnings']), 'the warnings')
+    wanted, _ = clean(scratch, scene)
+    ao, _ = run(scratch, channels, '--depth-type', 'normalized', '--depth-range', '0,20', '--fov',
+                FOV)
+    check_same(ao, wanted, 'with its range')
+
+
+@case
+def normals_do_not_tell_reversed_depth_from_inverse(scratch):
+    scene = Scene()
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth('reversed', far=1e9), **scene.normals()})
+    matches('a reversed depth buffer differs in scale alone .*--depth-type device',
+            str(inspect(scratch)['warnings']), 'the warnings')
+
+
 @cases([('0', 0), ('1', 1), ('inf', np.inf), ('nan', np.nan), ('5', 5.0), ('1e10', 1e10)])
 def depth_without_shape_is_an_error(scratch, _, value):
     write_exr(scratch.path('in.exr'), {'Z': np.full((20, 30), value, np.float32)})
@@ -357,6 +383,30 @@ def normals_that_agree_with_nothing_are_left_out(scratch):
                    attributes=rotation_header())
     check_same(ao, wanted, 'normals of another scene')
     matches('do not agree with the depth in any space: deriving', said, 'stderr')
+
+
+@cases([('its own', 0, False), ('of another camera', 40, True)])
+def rotation_that_depth_contradicts_is_said(scratch, _, degrees, is_said):
+    # Turned round the upright of the floor, whose normals stay; the ball and the wall disagree.
+    scene = Scene()
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    n = scene.normal @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ TURN
+    normals = {f'N.{k}': n[..., i].astype(np.float32) for i, k in enumerate('XYZ')}
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **normals},
+              attributes=[('cameraFov', 'float', FOV), *rotation_header()])
+    said = str(inspect(scratch)['warnings'])
+    equal('hardly agree with the depth' in said, is_said, f'whether it is doubted in {said}')
+
+
+@case
+def background_with_normals_is_doubted(scratch):
+    # Colours of normals are (.5, .5, 1) where there is nothing, which faces the camera.
+    scene = hidden(0.6)
+    normals = scene.normals()
+    normals['N.Z'] = np.where(scene.sky, 1, normals['N.Z']).astype(np.float32)
+    write_exr(scratch.path('in.exr'), {'Z': depth_of(scene, 40), **normals})
+    matches('taken for a wall .*--background 40', str(inspect(scratch, '--fov', FOV)['warnings']),
+            'the warnings')
 
 
 NORMAL_NAMES = [

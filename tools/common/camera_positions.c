@@ -324,6 +324,18 @@ static void take_perspective(const struct cloud *c, const struct solution *s,
     }
 }
 
+/* Axes across are the same whether space looks along -z or, as OpenEXR's and pbrt's camera space,
+ * along +z, which has all there is at positive z. */
+static bool looks_along_plus_z(const struct cloud *c, struct vec3 x, struct vec3 y,
+                               const double d[2])
+{
+    const double away = 1e-3 * c->size;
+    bool ahead = x.x > 0.9999 && y.y > 0.9999 && fabs(d[0]) < away && fabs(d[1]) < away;
+    for (size_t i = 0; ahead && i < c->count; i++)
+        ahead = c->points[i].q[2] * c->size + c->centre[2] > 0;
+    return ahead;
+}
+
 /* Where depth begins is free: in front of all there is. */
 static void take_parallel(const struct cloud *c, const struct solution *s,
                           struct position_camera *out)
@@ -331,11 +343,13 @@ static void take_parallel(const struct cloud *c, const struct solution *s,
     double d[2], nearest = -HUGE_VAL;
     const struct vec3 a = uncentred(c, s->parallel[0], &d[0]);
     const struct vec3 b = uncentred(c, s->parallel[1], &d[1]);
-    const struct vec3 x = normalize(a), y = orthogonal(b, x), z = cross(x, y);
-    set_rotation(out, x, y, z);
+    const struct vec3 x = normalize(a), y = orthogonal(b, x);
     out->half_width = 1.0 / length(a);
     out->translation[0] = d[0] * out->half_width;
     out->translation[1] = d[1] / length(b);
+    const bool is_turned = looks_along_plus_z(c, x, y, out->translation);
+    const struct vec3 z = scale(cross(x, y), is_turned ? -1.0 : 1.0);
+    set_rotation(out, x, y, z);
     const struct vec3 centre = vec3(c->centre[0], c->centre[1], c->centre[2]);
     for (size_t i = 0; i < c->count; i++) {
         const double *q = c->points[i].q;

@@ -145,7 +145,10 @@ static enum background_reason judge(const struct gbuffer *g, const struct cluste
         return c->gap > 1.0 ? BACKGROUND_NO_NORMALS : BACKGROUND_NONE;
     if (c->gap >= clear_gap)
         return BACKGROUND_FAR;
-    if (has_normals || (double)s.touching > 0.05 * (double)s.borders)
+    /* Colours of normals have some where there is nothing. */
+    if (has_normals)
+        return c->gap >= least_gap ? BACKGROUND_DOUBT : BACKGROUND_NONE;
+    if ((double)s.touching > 0.05 * (double)s.borders)
         return BACKGROUND_NONE;
     return c->gap >= least_gap ? BACKGROUND_FAR
            : c->share > 0.02   ? BACKGROUND_DOUBT

@@ -121,6 +121,46 @@ static bool fail_unknown(const struct gbuffer *g, const struct value_facts *f, e
                 label, f->low, f->high, say == SAY_OFFSET ? " by its looks" : "");
 }
 
+static bool is_within_one(const struct value_facts *f)
+{
+    return f->low >= 0 && f->high <= 1.0 && !f->is_endless;
+}
+
+/* White is where normalised depth is clamped; a far background is far behind all else. */
+static bool is_clamped(const struct value_facts *f)
+{
+    return (double)f->one > 0.002 * (double)f->count && f->below_one > 0.05;
+}
+
+static void warn_small(const struct gbuffer *g, const struct value_facts *f, const char *path,
+                       struct report *report)
+{
+    report_warn(report, "small depth",
+                "%s: depth '%s' is from %.4g to %.4g, taken for scene units since flat things are "
+                "flat (--depth-type normalized --depth-range NEAR,FAR if it is not)",
+                path, g->roles.kind[ROLE_DEPTH].label, f->low, f->high);
+}
+
+/* Normals tell what depth measures but not in which unit: parts of a far plane and buffers of
+ * reversed depth have the same shape as distances and 1/z. */
+static bool check_scale(const struct gbuffer *g, const struct exr_info *info,
+                        const struct value_facts *f, struct report *report, struct tool_error *err)
+{
+    const struct role *role = &g->roles.kind[ROLE_DEPTH];
+    if (!is_within_one(f) || (g->depth_type == DEPTH_INVERSE && is_of_nuke(info, role)))
+        return true;
+    if (g->depth_type == DEPTH_INVERSE)
+        report_warn(report, "inverse depth",
+                    "%s: depth '%s' is from %.4g to %.4g, taken as 1/z; a reversed depth buffer "
+                    "differs in scale alone (--depth-type device with --near and --far)",
+                    info->path, role->label, f->low, f->high);
+    else if (is_clamped(f))
+        return fail_unknown(g, f, SAY_NOTHING, info->path, err);
+    else
+        warn_small(g, f, info->path, report);
+    return true;
+}
+
 /* Depth in scene units that no name explains. */
 static void take_seen(struct gbuffer *g, const struct value_facts *f, enum planes_say say,
                       const char *path, struct report *report)
@@ -197,7 +237,8 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
 {
     const struct role *role = &g->roles.kind[ROLE_DEPTH];
     g->background.limit = INFINITY;
-    if (g->depth_source == DEPTH_BY_NORMALS || g->depth_source == DEPTH_BY_POSITIONS)
+    const bool is_auto = options->depth_type == DEPTH_AUTO && role->depth_type == DEPTH_AUTO;
+    if (g->depth_source == DEPTH_BY_POSITIONS || (g->depth_source == DEPTH_BY_NORMALS && !is_auto))
         return true;
     if (role->depth_type == DEPTH_POSITION) {
         take(g, DEPTH_PLANAR, DEPTH_BY_POSITIONS);
@@ -212,6 +253,8 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
         take(g, role->depth_type, DEPTH_BY_NAME);
         return true;
     }
+    if (g->depth_source == DEPTH_BY_NORMALS)
+        return check_scale(g, info, &seen, report, err);
     if (!gbuffer_read_planes(g, &g->planes))
         return fail(err, EXIT_MEMORY, "%s: out of memory", info->path);
     const enum planes_say say = listen(g, &g->planes);
@@ -219,17 +262,11 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
         take_from_nuke(g, &seen, say, info->path, report);
         return true;
     }
-    const bool is_within_one = seen.low >= 0 && seen.high <= 1.0 && !seen.is_endless;
-    /* White is where normalised depth is clamped; a far background is far behind all else. */
-    const bool is_clamped = (double)seen.one > 0.002 * (double)seen.count && seen.below_one > 0.05;
-    const bool is_seen = (say == SAY_PLANAR || say == SAY_RADIAL) && !is_clamped;
-    if (is_within_one && !is_seen && !is_constant(&seen))
+    const bool is_seen = (say == SAY_PLANAR || say == SAY_RADIAL) && !is_clamped(&seen);
+    if (is_within_one(&seen) && !is_seen && !is_constant(&seen))
         return fail_unknown(g, &seen, say, info->path, err);
-    if (is_within_one && is_seen)
-        report_warn(report, "small depth",
-                    "%s: depth '%s' is from %.4g to %.4g, taken for scene units since flat things "
-                    "are flat (--depth-type normalized --depth-range NEAR,FAR if it is not)",
-                    info->path, role->label, seen.low, seen.high);
+    if (is_within_one(&seen) && is_seen)
+        warn_small(g, &seen, info->path, report);
     take_seen(g, &seen, say, info->path, report);
     return true;
 }

@@ -96,8 +96,10 @@ const struct role_row role_table[] = {
 
     {.kind = ROLE_POSITION,
      .layers = "P|Pworld|__Pworld|position|pos|worldPosition|posW|VRayWorldPosition|"
-               "CGeometry_WorldPosition",
+               "CGeometry_WorldPosition|PositionWS|hitP",
      .sets = VECTOR_COMPONENTS},
+    /* Unreal, by a material; worldPositions of V-Ray */
+    {.kind = ROLE_POSITION, .layers = "~worldpos", .sets = VECTOR_COMPONENTS},
 
     {.kind = ROLE_AO,
      .layers = "AO|ambient_occlusion|AmbientOcclusion|Ambient Occlusion|VRayExtraTex_AO",
