@@ -11,13 +11,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *depth_type_name(enum depth_type type)
-{
-    static const char *const names[] = {"auto",    "planar", "radial",     "radial-near",
-                                        "inverse", "device", "normalized", "position"};
-    return names[type];
-}
-
 const char *normal_space_name(enum normal_space space)
 {
     static const char *const names[] = {"auto", "world", "camera"};

@@ -8,52 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double least_z = 1e-18, largest_z = 1e18;
-
-/* No scene measures exactly this, nor what lossy compression makes of it. Arnold's is beyond the
- * largest. */
-static bool is_sentinel(double z)
-{
-    static const double values[] = {1e8, 1e10, 1e12};
-    for (size_t i = 0; i < sizeof values / sizeof *values; i++)
-        if (fabs(z - values[i]) < 1e-5 * values[i])
-            return true;
-    return false;
-}
-
-bool gbuffer_is_measurable(double z)
-{
-    return z >= least_z && z <= largest_z && !is_sentinel(z);
-}
-
-double gbuffer_ray_length(const struct gbuffer *g, size_t texel)
-{
-    double x, y;
-    if (g->camera.type == CAMERA_ORTHOGRAPHIC)
-        return 1.0;
-    camera_ray(&g->camera, &g->display_window, &g->data_window, (double)(texel % g->width),
-               (double)(texel / g->width), &x, &y);
-    return sqrt(1.0 + x * x + y * y);
-}
-
 /* --- From what is stored --- */
-
-double gbuffer_distance(const struct gbuffer *g, float depth)
-{
-    const double d = (double)depth;
-    switch (g->depth_type) {
-    case DEPTH_INVERSE:
-        return 1.0 / d;
-    case DEPTH_DEVICE:
-        return d >= 0 && d <= 1 ? gbuffer_view_z(g, depth, 0) : NAN;
-    case DEPTH_NORMALIZED:
-        /* The ends hold what was clamped: mostly nothing. */
-        return d > 0 && d < 1 ? g->depth_range.zero + d * (g->depth_range.one - g->depth_range.zero)
-                              : NAN;
-    default:
-        return d;
-    }
-}
 
 static bool is_invalid(const struct gbuffer *g, float depth)
 {
@@ -94,29 +49,12 @@ static void clean_lengths(float *values, size_t count)
             values[i] = 0;
 }
 
-double gbuffer_view_z(const struct gbuffer *g, float depth, size_t texel)
-{
-    double d = (double)depth;
-    const float *m = g->view.projection;
-    switch (g->view.depth_encoding) {
-    case VKAO_DEPTH_DISTANCE:
-        return d / gbuffer_ray_length(g, texel);
-    case VKAO_DEPTH_INVERSE_Z:
-        return 1.0 / d;
-    case VKAO_DEPTH_PROJECTED:
-        return g->camera.type == CAMERA_ORTHOGRAPHIC ? ((double)m[14] - d) / (double)m[10]
-                                                     : (double)m[14] / (d + (double)m[10]);
-    default:
-        return d;
-    }
-}
-
 /* What no scene measures, after all: the library would compute with it. */
 static void drop_immeasurable(const struct gbuffer *g, float *values)
 {
     for (size_t i = 0; i < gbuffer_texels(g); i++) {
         double z = gbuffer_view_z(g, values[i], i);
-        if (!(z >= least_z && z <= largest_z))
+        if (!gbuffer_is_in_range(z))
             values[i] = g->background_depth;
     }
 }
@@ -152,7 +90,7 @@ static bool measure(struct gbuffer *g)
         if (!gbuffer_is_foreground(g, i))
             continue;
         double z = gbuffer_view_z(g, g->depth[i], i);
-        if (!(z >= least_z && z <= largest_z)) {
+        if (!gbuffer_is_in_range(z)) {
             g->depth[i] = g->background_depth;
             continue;
         }
@@ -214,7 +152,8 @@ static bool check_planes(const struct gbuffer *g, const char *path, struct tool_
         return fail(err, EXIT_CHANNELS, "%s: device depth needs both planes", path);
     }
     bool infinite = isinf(n) || isinf(f);
-    if (!(n < f || n > f) || fmin(n, f) < least_z || (!infinite && fmax(n, f) > largest_z) ||
+    if (!(n < f || n > f) || !gbuffer_is_in_range(fmin(n, f)) ||
+        (!infinite && !gbuffer_is_in_range(fmax(n, f))) ||
         (infinite && (g->camera.type == CAMERA_ORTHOGRAPHIC)))
         return fail(err, EXIT_CHANNELS, "%s: planes at %g and %g give no projection", path, n, f);
     return true;

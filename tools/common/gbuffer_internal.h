@@ -36,8 +36,10 @@ bool gbuffer_use_positions(struct gbuffer *g, const struct gbuffer_options *opti
 bool gbuffer_find_camera(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
                          struct report *report, struct tool_error *err);
 /* No scene measures more or less than this, in whatever unit. Within, squares are finite and not
- * 0. Nor does any measure what renderers write where there is nothing: Falcor, Cycles, clip ranges,
- * and what compression makes of it. */
+ * 0. */
+bool gbuffer_is_in_range(double distance);
+/* In range, and not what renderers write where there is nothing: Falcor, Cycles, clip ranges, and
+ * what compression makes of it. */
 bool gbuffer_is_measurable(double distance);
 /* Of a depth as stored; not finite or not positive where it is none. */
 double gbuffer_distance(const struct gbuffer *g, float depth);
