@@ -1,14 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 #include "arguments.h"
 
+#include "text.h"
+
 #include <getopt.h>
 #include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { MAX_ARGUMENTS = 32, COLUMNS = 80, HELP_COLUMN = 26 };
 
-void arguments_help(const struct argument_list *list, struct text *text)
+static void add_options(const struct argument_list *list, struct text *text)
 {
     for (size_t i = 0; i < list->count; i++) {
         const struct argument *row = &list->rows[i];
@@ -21,6 +24,16 @@ void arguments_help(const struct argument_list *list, struct text *text)
         text_free(&left);
         text_add_wrapped(text, row->help, HELP_COLUMN, COLUMNS);
     }
+}
+
+void arguments_print_help(const struct argument_list *list, const char *usage)
+{
+    struct text text = {0};
+    text_add(&text, "%s", usage);
+    add_options(list, &text);
+    if (text.data && !text.out_of_memory)
+        fputs(text.data, stdout);
+    text_free(&text);
 }
 
 static bool apply_word(const struct argument *row, const char *value, void *member,

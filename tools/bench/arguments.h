@@ -5,7 +5,6 @@
 #define VKAO_BENCH_ARGUMENTS_H_
 
 #include "error.h"
-#include "text.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -42,6 +41,7 @@ struct argument_list {
  * Errors: EXIT_USAGE. */
 bool arguments_parse(const struct argument_list *list, int argc, char **argv, void *target,
                      const char **positional, struct tool_error *err);
-void arguments_help(const struct argument_list *list, struct text *text);
+/* The usage, and a line for each option, to standard output. */
+void arguments_print_help(const struct argument_list *list, const char *usage);
 
 #endif

@@ -235,16 +235,9 @@ static bool put_out(const struct copy_bench *b, struct tool_error *err)
     return !o->json || json_write(o->json, to_json(b), begun, err);
 }
 
-static void print_help(void)
-{
-    struct text text = {0};
-    text_add(&text, "Usage: vkao-bench copy [OPTION]...\n\n"
-                    "Device time of copying an R32_SFLOAT image, as 'speed' measures a stage.\n\n");
-    arguments_help(&arguments, &text);
-    if (text.data && !text.out_of_memory)
-        fputs(text.data, stdout);
-    text_free(&text);
-}
+static const char usage[] =
+    "Usage: vkao-bench copy [OPTION]...\n\n"
+    "Device time of copying a buffer, 4 bytes a texel, as 'speed' measures a stage.\n\n";
 
 int command_copy(int argc, char **argv)
 {
@@ -254,7 +247,7 @@ int command_copy(int argc, char **argv)
     const char *positional;
     bool ok = arguments_parse(&arguments, argc, argv, &options, &positional, &err);
     if (ok && options.help) {
-        print_help();
+        arguments_print_help(&arguments, usage);
         return EXIT_OK;
     }
     if (ok && positional)

@@ -338,19 +338,11 @@ static bool check(const struct cost_bench *b, struct tool_error *err)
     return true;
 }
 
-static void print_help(void)
-{
-    struct text text = {0};
-    text_add(&text,
-             "Usage: vkao-bench cost [OPTION]...\n\n"
-             "Compiles the passes of GPUs with Mesa's RADV, which needs no GPU for that, and\n"
-             "counts their instructions. Cycles are a model: waves of 64, no cache misses, both\n"
-             "sides of every branch. Counts are exact and the same wherever Mesa is.\n\n");
-    arguments_help(&arguments, &text);
-    if (text.data && !text.out_of_memory)
-        fputs(text.data, stdout);
-    text_free(&text);
-}
+static const char usage[] =
+    "Usage: vkao-bench cost [OPTION]...\n\n"
+    "Compiles the passes of GPUs with Mesa's RADV, which needs no GPU for that, and\n"
+    "counts their instructions. Cycles are a model: waves of 64, no cache misses, both\n"
+    "sides of every branch. Counts are exact and the same wherever Mesa is.\n\n";
 
 int command_cost(int argc, char **argv)
 {
@@ -360,7 +352,7 @@ int command_cost(int argc, char **argv)
     const char *positional;
     bool ok = arguments_parse(&arguments, argc, argv, &options, &positional, &err);
     if (ok && options.help) {
-        print_help();
+        arguments_print_help(&arguments, usage);
         return EXIT_OK;
     }
     if (ok && positional)

@@ -429,26 +429,19 @@ static bool prepare(struct bench *b, struct tool_error *err)
     return b->session != NULL;
 }
 
-static void print_help(void)
-{
-    struct text text = {0};
-    text_add(&text, "Usage: vkao-bench quality FOLDER [OPTION]...\n\n"
-                    "Methods and presets against ray-traced ambient occlusion. FOLDER holds\n"
-                    "G-buffers X.exr, their cameras X.camera.json and their truth X.gt.exr\n"
-                    "(X.VIEW.gt.exr for stereo) with the channels AO_falloff and AO_threshold.\n"
-                    "RMSE, mean absolute error, bias, p99 and SSIM are those of visibility over\n"
-                    "the foreground; intensity and power are 1. Of half resolution, the RMSE\n"
-                    "against the same setting at full resolution is stated too. The truth of a\n"
-                    "falloff that is not measured may be missing.\n\n"
-                    "Flicker, of a --sequence: each texel of the first frame is a point of the\n"
-                    "world, which the nearest texel of a frame stands for if its depth agrees\n"
-                    "within 1 %% and its normal within 10 degrees. It is the RMS, over the points\n"
-                    "that half of the frames show, of the standard deviation of their error.\n\n");
-    arguments_help(&arguments, &text);
-    if (text.data && !text.out_of_memory)
-        fputs(text.data, stdout);
-    text_free(&text);
-}
+static const char usage[] =
+    "Usage: vkao-bench quality FOLDER [OPTION]...\n\n"
+    "Methods and presets against ray-traced ambient occlusion. FOLDER holds\n"
+    "G-buffers X.exr, their cameras X.camera.json and their truth X.gt.exr\n"
+    "(X.VIEW.gt.exr for stereo) with the channels AO_falloff and AO_threshold.\n"
+    "RMSE, mean absolute error, bias, p99 and SSIM are those of visibility over\n"
+    "the foreground; intensity and power are 1. Of half resolution, the RMSE\n"
+    "against the same setting at full resolution is stated too. The truth of a\n"
+    "falloff that is not measured may be missing.\n\n"
+    "Flicker, of a --sequence: each texel of the first frame is a point of the\n"
+    "world, which the nearest texel of a frame stands for if its depth agrees\n"
+    "within 1 % and its normal within 10 degrees. It is the RMS, over the points\n"
+    "that half of the frames show, of the standard deviation of their error.\n\n";
 
 int command_quality(int argc, char **argv)
 {
@@ -457,7 +450,7 @@ int command_quality(int argc, char **argv)
     struct tool_error err = {0};
     bool ok = arguments_parse(&arguments, argc, argv, &options, &options.folder, &err);
     if (ok && options.help) {
-        print_help();
+        arguments_print_help(&arguments, usage);
         return EXIT_OK;
     }
     if (ok && !options.folder)

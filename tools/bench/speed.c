@@ -331,20 +331,12 @@ static bool put_out(const struct bench *b, struct tool_error *err)
     return ok;
 }
 
-static void print_help(void)
-{
-    struct text text = {0};
-    text_add(&text,
-             "Usage: vkao-bench speed [OPTION]...\n\n"
-             "Device time of every stage, by timestamps. The scene is a furnished room,\n"
-             "computed at any size: view z 2 to 9, horizontal field of view 60 degrees.\n"
-             "Depth is R32_SFLOAT view z, normals R8G8B8A8_SNORM, AO R8_UNORM; all stay on\n"
-             "the device. Settings take turns, so that a busy machine slows all of them.\n\n");
-    arguments_help(&arguments, &text);
-    if (text.data && !text.out_of_memory)
-        fputs(text.data, stdout);
-    text_free(&text);
-}
+static const char usage[] =
+    "Usage: vkao-bench speed [OPTION]...\n\n"
+    "Device time of every stage, by timestamps. The scene is a furnished room,\n"
+    "computed at any size: view z 2 to 9, horizontal field of view 60 degrees.\n"
+    "Depth is R32_SFLOAT view z, normals R8G8B8A8_SNORM, AO R8_UNORM; all stay on\n"
+    "the device. Settings take turns, so that a busy machine slows all of them.\n\n";
 
 int command_speed(int argc, char **argv)
 {
@@ -354,7 +346,7 @@ int command_speed(int argc, char **argv)
     const char *positional;
     bool ok = arguments_parse(&arguments, argc, argv, &options, &positional, &err);
     if (ok && options.help) {
-        print_help();
+        arguments_print_help(&arguments, usage);
         return EXIT_OK;
     }
     if (ok && positional)
