@@ -75,7 +75,8 @@ Steps make_steps(Slice s, float jitter, float reach, float linear)
     float most = min(s.texels * reach, 1.0e9);
     float n = 1.0 / float(step_count());
     float line = most * (linear * n), square = most * ((1.0 - linear) * n * n);
-    return Steps(jitter * (line + square * jitter), line + 2.0 * square * jitter, square);
+    vec2 moved = product(vec2(jitter), vec2(line + square * jitter, 2.0 * square));
+    return Steps(moved.x, line + moved.y, square);
 }
 
 /* Whole texels off the shaded point, on the first side; at least 1 + least t. */
@@ -101,9 +102,13 @@ vec2 slice_x(Slice s, vec2 offset, vec2 z)
 /* Their coordinates in the slice, in radii. */
 void slice_points(Slice s, vec2 offset, vec2 z, out vec2 x, out vec2 y)
 {
-    vec2 dy = SIDES * dot(s.to_y, offset);
     x = slice_x(s, offset, z);
-    y = (ORTHOGRAPHIC ? dy + z * s.eye : z * (dy + s.eye)) - s.origin;
+    if (ORTHOGRAPHIC) {
+        y = SIDES * dot(s.to_y, offset) + z * s.eye - s.origin;
+    } else {
+        float rise = s.eye + s.to_y.x * offset.x + s.to_y.y * offset.y;
+        y = z * vec2(rise, 2.0 * s.eye - rise) - s.origin;
+    }
 }
 
 /* Is anything seen there, and outwards from the shaded point? Far off the axis a slice leans so

@@ -7,12 +7,16 @@
 
 #include "second_z.glsl"
 
-/* In radii, from the last bits of view z. */
-vec2 thickness_of(vec2 z)
+/* Thickness in radii, from the last bits of view z, without the caller's scale. */
+vec2 width_of(vec2 z)
 {
     ivec2 code = floatBitsToInt(z) & THICKNESS_MASK;
-    code = (code << THICKNESS_SHIFT) + VKAO_THICKNESS_LEAST_BITS;
-    return params.thickness * intBitsToFloat(code);
+    return intBitsToFloat((code << THICKNESS_SHIFT) + VKAO_THICKNESS_LEAST_BITS);
+}
+
+vec2 thickness_of(vec2 z)
+{
+    return params.thickness * width_of(z);
 }
 
 #endif

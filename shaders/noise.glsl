@@ -32,13 +32,18 @@ float unit_float(uint bits)
 vec2 tile_noise(uvec2 texel, uint slices, uint index)
 {
     uvec2 at = texel & (slices < 4u ? 3u : 1u);
-    uint first = (at.x << 1 & 2u) ^ (at.x >> 1) * 3u ^ at.y, second = first ^ at.x;
-    uint turn = first << 30 | 1u << 27, jitter = 0xe0000000u - (second << 30);
+    /* w x, of x = 0 to 3, is 0, 2, 3, 1. */
+    uint first = (0x78u >> 2u * at.x & 3u) ^ at.y, second = first ^ at.x;
+    uint turn = index * 3242174889u, jitter = index * 2447445414u;
     if (slices < 4u) {
-        turn = (first << 30) + (texel.y * 3242174889u >> 2);
-        jitter = 0xf8000000u - (second << 30 | first << 28);
+        turn += (first << 30) + (texel.y * 3242174889u >> 2);
+        jitter += 0xf8000000u;
+        jitter -= second << 30 | first << 28;
+    } else {
+        turn += first << 30 | 1u << 27;
+        jitter += 0xe0000000u - (second << 30);
     }
-    return vec2(unit_float(turn + index * 3242174889u), unit_float(jitter + index * 2447445414u));
+    return vec2(unit_float(turn), unit_float(jitter));
 }
 
 /* cos and sin of pi u, u in [0,1). The exact ones cost a driver in software ten times that. The

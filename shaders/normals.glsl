@@ -9,15 +9,21 @@
 
 /* The neighbour along one screen axis that lies on the texel's surface. */
 struct Neighbour {
-    float z, side; /* side is -1 or 1: before or after; 0: there is none, and z is the texel's */
+    float z, rise; /* rise: of view z, a texel on along the axis */
+    bool is_there; /* if not, z is the texel's */
 };
+
+/* From the neighbour before to the texel, and from there to the one after it. */
+vec2 rises_of(vec2 near_z, float z)
+{
+    return vec2(z - near_z.x, near_z.y - z);
+}
 
 /* Does depth go on in a straight line from one neighbour to the other? In perspective it bends by
  * its rise per texel. */
-bool is_straight(vec2 near_z, float z)
+bool is_straight(vec2 rise, float z)
 {
-    float bend = abs(near_z.x + near_z.y - 2.0 * z);
-    return bend <= VKAO_PLANE_BEND * abs(near_z.y - near_z.x) + 4.0e-6 * z;
+    return abs(rise.y - rise.x) <= VKAO_PLANE_BEND * abs(rise.x + rise.y) + 4.0e-6 * z;
 }
 
 /* Of the two pairs of neighbours, the one whose straight continuation meets the centre better. 1/z
@@ -39,18 +45,20 @@ Neighbour straight_neighbour(vec2 near_z, vec2 far_z, float z)
     vec2 miss = mix(vec2(1.0e30), abs(mix(line, curve, curved)), there);
     vec2 scale = mix(vec2(1.0), mix(line_scale, curve_scale, curved), there);
     bool before = miss.x * scale.y < miss.y * scale.x;
-    return any(there) ? Neighbour(before ? near_z.x : near_z.y, before ? -1.0 : 1.0)
-                      : Neighbour(z, 0.0);
+    vec2 rise = rises_of(near_z, z);
+    return any(there) ? Neighbour(before ? near_z.x : near_z.y, before ? rise.x : rise.y, true)
+                      : Neighbour(z, 0.0, false);
 }
 
 /* Of the nearest pair, the one whose view z differs less: quickly found, and seldom wrong beside an
  * edge. */
 Neighbour nearest_neighbour(vec2 near_z, float center_z)
 {
-    vec2 miss = abs(near_z - center_z);
-    bool before = miss.x < miss.y;
+    vec2 rise = rises_of(near_z, center_z);
+    bool before = abs(rise.x) < abs(rise.y);
     float z = before ? near_z.x : near_z.y;
-    return z > 0.0 ? Neighbour(z, before ? -1.0 : 1.0) : Neighbour(center_z, 0.0);
+    return z > 0.0 ? Neighbour(z, before ? rise.x : rise.y, true)
+                   : Neighbour(center_z, 0.0, false);
 }
 
 /* careful is what a depth image without normals takes; where a stored normal fails now and then,
@@ -58,7 +66,7 @@ Neighbour nearest_neighbour(vec2 near_z, float center_z)
 Neighbour neighbour_in(ivec2 texel, ivec2 axis, float center_z, bool careful, out bool straight)
 {
     vec2 near_z = vec2(view_z_beside(texel, -axis), view_z_beside(texel, axis));
-    straight = is_straight(near_z, center_z);
+    straight = is_straight(rises_of(near_z, center_z), center_z);
     if (!careful)
         return nearest_neighbour(near_z, center_z);
     vec2 far_z = vec2(view_z_beside(texel, -2 * axis), view_z_beside(texel, 2 * axis));
@@ -82,14 +90,14 @@ Facet facet_of(ivec2 texel, float center_z)
     /* Slopes of depth over what a texel is wide there: the cross product without its length, whose
      * square leaves the range of floats in scenes that are small or large or seen through a
      * keyhole. */
-    vec2 slope = vec2(beside.side * (beside.z - center_z), below.side * (below.z - center_z));
-    slope *= params.inverse_unproject;
+    vec2 slope = vec2(beside.rise, below.rise) * params.inverse_unproject;
     if (!ORTHOGRAPHIC)
         slope /= vec2(beside.z, below.z);
     vec3 n = vec3(clamp(slope, -VKAO_STEEPEST_FACET, VKAO_STEEPEST_FACET), -1.0);
     if (!ORTHOGRAPHIC)
         n.z -= dot(view_position(vec2(texel), 1.0).xy, n.xy);
-    return Facet(normalize(n), straight_x && straight_y, beside.side * below.side == 0.0);
+    return Facet(normalize(n), straight_x && straight_y,
+                 !(beside.is_there && below.is_there));
 }
 
 /* The plane of the depth image at a texel. */
@@ -109,14 +117,14 @@ Plane plane_of(Facet own, vec3 normal)
                  holds ? VKAO_STEEPEST : VKAO_PLANE_STEEPEST);
 }
 
-/* The stored normal, or the surface's own. One that points away is turned if the back of its
- * surface is what is seen. Near outlines it is more often one that interpolation over a mesh has
- * carried past the edge: turned, that would stand across the surface, which would then hide itself.
- * There depth decides. */
+/* The stored normal, or the surface's own; center is any point of the ray from the eye. A normal
+ * that points away is turned if the back of its surface is what is seen. Near outlines it is more
+ * often one that interpolation over a mesh has carried past the edge: turned, that would stand
+ * across the surface, which would then hide itself. There depth decides. */
 vec3 trusted_normal(vec3 stored, vec3 own, vec3 center)
 {
     bool away = (ORTHOGRAPHIC ? stored.z : dot(stored, center)) > 0.0;
-    float trust = away ? -dot(stored, own) : dot(stored, stored);
+    float trust = away ? -dot(stored, own) : abs(stored.x) + abs(stored.y) + abs(stored.z);
     return trust > 0.0 ? (away ? -stored : stored) : own;
 }
 

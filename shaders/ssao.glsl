@@ -70,7 +70,8 @@ Visibility shade(ivec2 texel)
     vec3 position = view_position(vec2(texel), z);
 #ifdef VKAO_PLANE
     Facet own = facet_of(texel, z);
-    vec3 normal = trusted_normal(stored_view_normal(texel), own.normal, position);
+    vec3 normal = trusted_normal(stored_view_normal(texel), own.normal,
+                                 view_position(vec2(texel), 1.0));
     v = visibility(texel, position, normal, plane_of(own, normal));
 #else
     v = visibility(texel, position, view_normal(texel, position));

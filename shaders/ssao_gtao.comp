@@ -41,7 +41,7 @@ vec2 horizon_cosines(Slice s, ivec2 texel, float jitter)
 
 Visibility visibility(ivec2 texel, vec3 position, vec3 normal, Plane plane)
 {
-    vec3 to_eye = direction_to_eye(position), bent = vec3(0.0);
+    vec3 to_eye = direction_to_eye(view_position(vec2(texel), 1.0)), bent = vec3(0.0);
     Noise noise = texel_noise(texel, slice_count());
     float lost = 0.0, share = 1.0 / float(slice_count());
     uint k = 0u;

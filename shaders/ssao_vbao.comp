@@ -36,17 +36,42 @@
 
 /* What a march of both sides has found hidden. */
 struct March {
-    uvec2 mask;  /* sectors */
-    vec2 hidden; /* their count, weighted */
+    uvec2 open;  /* sectors that nothing hides so far: bits from 1 on */
+    vec2 count;  /* of these, as counted() has it */
+    vec2 hidden; /* the others, weighted */
     vec2 out_moment, eye_moment;
 };
 
 /* The sample before, of one layer. */
 struct Trail {
     vec2 x, height, front;
-    /* k0 of upper bounds: less is added to them while all samples join the point's own surface */
+    /* of upper bounds: less is added to them while all samples join the point's own surface */
     vec2 rounding;
 };
+
+/* The polynomial of Masks in half the cosine over the tangent plane, which is 0 to 1: GPUs clamp to
+ * that at no cost. */
+struct Bounds {
+    vec2 low; /* half the cosine of the tangent plane */
+    vec2 k1, k2, k3;
+};
+
+Bounds make_bounds(Slice s, vec2 mass)
+{
+    float bend = 3.0 * G3 * s.sin_n * s.sin_n;
+    vec2 scale = SECTORS / mass;
+    return Bounds(-0.5 * s.sin_n * SIDES,
+                  product(2.0 * s.sin_n * (G1 - s.cos_n + bend) * SIDES, scale),
+                  product(vec2(2.0 * s.cos_n - 4.0 * bend), scale),
+                  product(8.0 * G3 * s.sin_n * SIDES, scale));
+}
+
+/* Half the cosine of a point of the slice, over the tangent plane. */
+vec2 bound_of(Bounds b, vec2 x, vec2 y, float bias)
+{
+    vec2 half_inverse = 0.5 * inversesqrt(x * x + y * y);
+    return clamp(y * half_inverse - (b.low + 0.5 * bias), vec2(0.0), vec2(1.0));
+}
 
 /* y of what is not seen: far behind all. */
 const float NOWHERE = -1.0e15;
@@ -55,17 +80,24 @@ const float NOWHERE = -1.0e15;
  * alone. */
 vec2 back_of(vec2 z, vec2 x, vec2 y, vec2 gap, bool is_given)
 {
-    vec2 thickness = thickness_of(z);
+    vec2 width = width_of(z);
     if (is_given)
-        return y - max(thickness, VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
-    return max(min(y - thickness, y - params.thickness_gap * gap),
-               y - params.thickness_base - params.thickness_slope * x);
+        return y - max(params.thickness * width, VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
+    width = max(width, VKAO_VBAO_THICKNESS_GAP * gap);
+    return y - params.thickness *
+                   min(width, VKAO_VBAO_THICKNESS_BASE + VKAO_VBAO_THICKNESS_SLOPE * x);
 }
 
-/* Sectors from the one of cosine c on, of which all below the tangent plane is the first. */
-uvec2 sectors_from(Masks m, vec2 k0, vec2 c)
+/* Sectors under a bound. */
+vec2 sectors_under(Bounds b, vec2 bound)
 {
-    return uvec2(~0u) << uvec2(k0 + c * (m.k1 + c * (m.k2 + c * m.k3)));
+    return bound * (b.k1 + bound * (b.k2 + bound * b.k3));
+}
+
+/* Bits that are set, plus 2^23: a float that takes no conversion. */
+vec2 counted(uvec2 mask)
+{
+    return uintBitsToFloat(uvec2(bitCount(mask)) + floatBitsToUint(8388608.0));
 }
 
 /* falloff_weight of a point, by fewer operations. */
@@ -76,8 +108,8 @@ vec2 weight_at(vec2 x, vec2 y)
 }
 
 /* Takes what a sample of both sides hides first. */
-void hide(inout March march, inout Trail last, Slice s, Masks m, float center_z, vec2 offset,
-          vec2 z, bool is_given)
+void hide(inout March march, inout Trail last, Slice s, Masks m, Bounds b, float center_z,
+          vec2 offset, vec2 z, bool is_given)
 {
     vec2 x, y;
     slice_points(s, offset, z, x, y);
@@ -86,23 +118,26 @@ void hide(inout March march, inout Trail last, Slice s, Masks m, float center_z,
     vec2 gap = x - last.x, height = mix(vec2(0.0), y + x * (SIDES * s.fall), seen);
     y = mix(vec2(NOWHERE), y, seen);
     bvec2 joined = lessThan(abs(height - last.height), VKAO_VBAO_JOIN * abs(gap));
-    last.rounding = mix(m.k0, last.rounding, joined);
+    last.rounding = mix(vec2(VKAO_VBAO_ROUND), last.rounding, joined);
     vec2 inner_x = x - VKAO_VBAO_GAP_FRONT * gap;
     bvec2 moves = bvec2(!joined.x && height.x > 0.0, !joined.y && height.y > 0.0);
     vec2 front_x = mix(x, inner_x, moves);
     vec2 back_y = back_of(z, x, y, gap, is_given), back_x = x + VKAO_VBAO_GAP_BACK * gap;
-    vec2 front = y * inversesqrt(front_x * front_x + y * y) - params.bias_cosine;
-    vec2 back = max(back_y * inversesqrt(back_x * back_x + back_y * back_y), m.low);
+    vec2 front = bound_of(b, front_x, y, params.bias_cosine);
+    vec2 back = bound_of(b, back_x, back_y, 0.0);
     joined = bvec2(joined.x && seen.x, joined.y && seen.y);
-    front = max(max(front, mix(m.low, last.front, joined)), m.low);
-    uvec2 out_of_sight = sectors_from(m, last.rounding, front) | march.mask;
-    uvec2 fresh = (sectors_from(m, m.k0, back) | out_of_sight) ^ out_of_sight;
-    march.mask |= fresh;
-    vec2 near_y = min(max(back_y, vec2(0.0)), y);
-    vec2 w = weight_at(inner_x, near_y) * vec2(bitCount(fresh));
+    front = max(front, mix(vec2(0.0), last.front, joined));
+    /* Open as before are those from front on, and those up to back. */
+    uvec2 upper = uvec2(last.rounding + sectors_under(b, front));
+    uvec2 above = uvec2((32.0 - VKAO_VBAO_ROUND) - sectors_under(b, back));
+    march.open &= uvec2(~1u) << upper | uvec2(~0u) >> above;
+    vec2 near_y = min(max(back_y, vec2(0.0)), y), count = counted(march.open);
+    vec2 w = weight_at(inner_x, near_y) * (march.count - count);
+    march.count = count;
     march.hidden += w;
     if (BENT_NORMALS) {
-        vec2 middle = clamp(0.5 * (front + params.bias_cosine + back), vec2(-1.0), vec2(1.0));
+        vec2 middle = front + back + m.low + 0.5 * params.bias_cosine;
+        middle = clamp(middle, vec2(-1.0), vec2(1.0));
         w *= m.mass;
         march.out_moment += w * SIDES * sqrt(max(vec2(0.0), 1.0 - middle * middle));
         march.eye_moment += w * middle;
@@ -121,16 +156,17 @@ vec3 hidden(Slice s, ivec2 texel, float center_z, float jitter)
                                  (THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH),
                              VKAO_VBAO_STEP_LINEAR);
     const vec2 none = vec2(0.0);
-    March march = March(uvec2(0u), none, none, none);
-    Trail first = Trail(none, none, m.low, m.k0 - VKAO_VBAO_ROUND_LESS);
-    Trail second = Trail(none, none, m.low, m.k0);
+    Bounds b = make_bounds(s, m.mass);
+    March march = March(uvec2(~0u), counted(uvec2(~0u)), none, none, none);
+    Trail first = Trail(none, none, none, vec2(VKAO_VBAO_ROUND - VKAO_VBAO_ROUND_LESS));
+    Trail second = Trail(none, none, none, vec2(VKAO_VBAO_ROUND));
     uint t = 0u;
     [[unroll]] for (;;) {
         vec2 offset = step_offset(s, steps, t, VKAO_VBAO_STEP_LEAST), at = vec2(texel);
-        hide(march, first, s, m, center_z, offset, load_sides(at, offset), IS_GIVEN);
+        hide(march, first, s, m, b, center_z, offset, load_sides(at, offset), IS_GIVEN);
         if (SECOND_LAYER) {
             vec2 z = vec2(load_second_z_at(at + offset), load_second_z_at(at - offset));
-            hide(march, second, s, m, center_z, offset, z, IS_GIVEN);
+            hide(march, second, s, m, b, center_z, offset, z, IS_GIVEN);
         }
         if (++t >= step_count())
             break;
@@ -142,7 +178,7 @@ vec3 hidden(Slice s, ivec2 texel, float center_z, float jitter)
 
 Visibility visibility(ivec2 texel, vec3 position, vec3 normal, Plane plane)
 {
-    vec3 to_eye = direction_to_eye(position);
+    vec3 to_eye = direction_to_eye(view_position(vec2(texel), 1.0));
     Noise noise = texel_noise(texel, slice_count());
     float share = 1.0 / float(slice_count());
     /* The mean direction of an open hemisphere is 2/3 of its normal. */

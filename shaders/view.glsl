@@ -52,7 +52,8 @@ vec2 project_to_texel(vec3 position)
     return (xy - params.unproject.zw) / params.unproject.xy;
 }
 
-/* Unit vector from the position to the eye. */
+/* Unit vector from the position to the eye. It does not depend on view z: of 1 it is found
+ * sooner. */
 vec3 direction_to_eye(vec3 position)
 {
     return ORTHOGRAPHIC ? vec3(0.0, 0.0, -1.0) : -normalize(position);
