@@ -39,16 +39,23 @@ static_assert(VKAO_GLSL_THICKNESS_AS_SEEN == (int)VKAO_THICKNESS_AS_SEEN &&
         VKAO_CODE(vkao_breaks),                                                                    \
         .uses = {VKAO_READS(VIEW_Z, view_z), VKAO_READS(NEAREST, SAMPLER),                         \
                  VKAO_WRITES(BREAKS_X_WRITE, BREAKS_X), VKAO_WRITES(BREAKS_Y_WRITE, BREAKS_Y)},    \
-        .area = VKAO_AREA_VALID, .texels = {4, 2},                                                 \
+        .area = VKAO_AREA_VALID, .texels = {4, 4},                                                 \
         .group = {VKAO_BREAKS_WIDTH, VKAO_BREAKS_HEIGHT}, .forms = 1,                              \
+    }
+#define WIDTH(view_z)                                                                              \
+    {                                                                                              \
+        .name = "vkao width", .label = "prepare", .stage = VKAO_STAGE_PREPARE,                     \
+        VKAO_CODE(vkao_width),                                                                     \
+        .uses = {VKAO_READS(BREAKS_X, BREAKS_X), VKAO_READS(BREAKS_Y, BREAKS_Y),                   \
+                 VKAO_READS(NEAREST, SAMPLER), VKAO_WRITES(VIEW_Z_WRITE, view_z)},                 \
+        .area = VKAO_AREA_VALID, .texels = {2, 2}, .group = {VKAO_GROUP_WIDTH, VKAO_GROUP_HEIGHT}, \
+        .forms = 1,                                                                                \
     }
 /* A layer of depth, and how thick it is as seen. */
 #define LAYER(depth, view_z)                                                                       \
     {                                                                                              \
         PREPARES(prepare, WHOLE, VKAO_READS(DEPTH, depth), VKAO_WRITES(VIEW_Z_WRITE, view_z)),     \
-            BREAKS(view_z),                                                                        \
-            PREPARES(width, VALID, VKAO_READS(BREAKS_X, BREAKS_X), VKAO_READS(BREAKS_Y, BREAKS_Y), \
-                     VKAO_WRITES(VIEW_Z_WRITE, view_z)),                                           \
+            BREAKS(view_z), WIDTH(view_z),                                                         \
     }
 enum { LAYER_PASSES = 3 };
 static const struct vkao_pass first[LAYER_PASSES] = LAYER(DEPTH, VIEW_Z),

@@ -3,10 +3,11 @@
  * Where depth breaks between a texel and the next one of its row, and of its column, in words of
  * 32 bits: what width.comp counts. A bit stands for 1 << shift texels, so that the words of a row
  * are those of one, two, four ... groups side by side, which share out the rows; likewise
- * columns. */
+ * columns. An invocation takes parts of two lines side by side, as gathers have them. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
 
@@ -20,59 +21,94 @@ layout(push_constant) uniform Block { vkao_dispatch here; };
 layout(binding = VKAO_BINDING_BREAKS_X_WRITE) uniform writeonly uimage2D breaks_x_image;
 layout(binding = VKAO_BINDING_BREAKS_Y_WRITE) uniform writeonly uimage2D breaks_y_image;
 
-/* Of the rows, or columns, that the group has. */
-shared uint words[WORD];
+/* Texels of a line that an invocation takes at once, and what it reads of it, in pairs: one before
+ * them, and two behind. */
+const int RUN = 8, FOLDS = 3, READ = RUN + 4;
 
-float depth_at(ivec2 texel)
+/* Of the rows and of the columns that the group has. */
+shared uint words[2][WORD];
+
+/* What a group has to find: of rows, or of columns, a word along and lines across. */
+struct Lines {
+    bool vertical;
+    int shift; /* a bit is 1 << shift texels */
+    int word;
+    int first, log, count; /* of lines; count is 1 << log, or 0 if others have them all */
+};
+
+Lines lines_of(bool vertical, int shift, ivec2 size)
 {
-    float z = load_view_z(texel);
-    return z > 0.0 ? z : NOTHING;
+    ivec2 block = ivec2(gl_WorkGroupID.xy), blocks = ((size - 1) >> 5) + 1;
+    int at = vertical ? block.y : block.x, count = vertical ? blocks.y : blocks.x;
+    int word = at >> shift, sharing = min(1 << shift, count - (word << shift));
+    int log = max(5 - findMSB(sharing), 0), skipped = at - (word << shift) << log;
+    return Lines(vertical, shift, word, WORD * (vertical ? block.x : block.y) + skipped, log,
+                 skipped < WORD ? 1 << log : 0);
 }
 
-/* along: the direction of the words, x or y; across: the other one. */
-void find_breaks(bool vertical, int shift, ivec2 low, ivec2 high, ivec2 first)
+ivec2 texel_of(Lines l, int along, int across)
 {
-    const ivec2 along = vertical ? ivec2(0, 1) : ivec2(1, 0), across = ivec2(1) - along;
-    ivec2 block = ivec2(gl_WorkGroupID.xy), blocks = ((high - first - 1) >> 5) + 1;
-    int at = vertical ? block.y : block.x, count = vertical ? blocks.y : blocks.x;
-    int line = WORD * (vertical ? block.x : block.y);
-    int word = at >> shift, sharing = min(1 << shift, count - (word << shift));
-    int lines = (WORD + sharing - 1) / sharing, begin = (at - (word << shift)) * lines;
-    int length = WORD << shift, thread = int(gl_LocalInvocationIndex);
+    return l.vertical ? ivec2(across, along) : ivec2(along, across);
+}
 
-    if (thread < WORD)
-        words[thread] = 0u;
-    barrier();
-    for (int i = thread; i < lines * length; i += THREADS) {
-        /* Threads side by side have texels side by side. */
-        int k = vertical ? i % lines : i >> (5 + shift),
-            step = vertical ? i / lines : i & (length - 1);
-        ivec2 texel = first + (line + begin + k) * across + ((word << 5 << shift) + step) * along;
-        if (begin + k >= WORD || any(lessThan(texel, low)) ||
-            any(greaterThanEqual(texel + along, high)))
-            continue;
-        float before = depth_at(texel - along), z = depth_at(texel), next = depth_at(texel + along),
-              behind = depth_at(texel + 2 * along);
-        if (break_between(before, z, next, behind) > 0.0)
-            atomicOr(words[k], 1u << (step >> shift));
-    }
-    barrier();
-    ivec2 to = (line + begin + thread) * across + word * along;
-    if (thread < lines && begin + thread < WORD &&
-        all(lessThan((first + to) * across, high * across + along))) {
-        if (vertical)
-            imageStore(breaks_y_image, to, uvec4(words[thread]));
-        else
-            imageStore(breaks_x_image, to, uvec4(words[thread]));
+/* Does depth break in the middle of four texels in a row? */
+bool breaks(float before, float z, float next, float behind)
+{
+    return abs(next - z) > break_limit(before, z, next, behind) || next > 0.5 * NOTHING;
+}
+
+void find_breaks(Lines l, int thread, ivec2 low, ivec2 high)
+{
+    const int which = l.vertical ? 1 : 0;
+    int pairs = max(l.log - 1, 0), length = l.vertical ? high.y - low.y : high.x - low.x;
+    for (int i = thread; i < WORD / RUN << l.shift << pairs; i += THREADS) {
+        /* Threads side by side have lines side by side. */
+        int line = 2 * (i & (1 << pairs) - 1), step = RUN * (i >> pairs);
+        int along = (l.word * WORD << l.shift) + step;
+        vec2 z[READ]; /* of both lines */
+        [[unroll]] for (int k = 0; k < READ; k += 2) {
+            vec2 middle = vec2(low + texel_of(l, along + k, l.first + line + 1));
+            vec4 four = textureGather(sampler2D(view_z_image, nearest),
+                                      middle + float(VKAO_VIEW_Z_BORDER));
+            four = mix(vec4(NOTHING), four, greaterThan(four, vec4(0.0)));
+            z[k] = l.vertical ? four.wz : four.wx;
+            z[k + 1] = l.vertical ? four.xy : four.zy;
+        }
+        uvec2 bits = uvec2(0u);
+        [[unroll]] for (int k = 0; k < RUN; ++k)
+            bits |= uvec2(breaks(z[k].x, z[k + 1].x, z[k + 2].x, z[k + 3].x) ? 1u << k : 0u,
+                          breaks(z[k].y, z[k + 1].y, z[k + 2].y, z[k + 3].y) ? 1u << k : 0u);
+        /* Beyond the last texel nothing breaks. */
+        bits &= (1u << clamp(length - 1 - along, 0, RUN)) - 1u;
+        for (int fold = 0; fold < min(l.shift, FOLDS); ++fold) {
+            bits |= bits >> 1;
+            bits = bits & 1u | bits >> 1 & 2u | bits >> 2 & 4u | bits >> 3 & 8u;
+        }
+        bits <<= step >> l.shift;
+        if (bits.x != 0u)
+            atomicOr(words[which][line], bits.x);
+        if (bits.y != 0u)
+            atomicOr(words[which][line + 1], bits.y);
     }
 }
 
 void main()
 {
-    ivec2 low = unpack_texel(params.valid.x), first = low & ivec2(~3, ~0);
-    ivec2 high = unpack_texel(params.valid.y);
+    ivec2 low = unpack_texel(params.valid.x), high = unpack_texel(params.valid.y);
+    ivec2 size = high - low;
     Reach reach = width_reach();
-    find_breaks(false, reach.shift.x, low, high, first);
+    Lines rows = lines_of(false, reach.shift.x, size),
+          columns = lines_of(true, reach.shift.y, size);
+    int thread = int(gl_LocalInvocationIndex);
+    for (int i = thread; i < 2 * WORD; i += THREADS)
+        words[i >> 5][i & 31] = 0u;
     barrier();
-    find_breaks(true, reach.shift.y, low, high, first);
+    find_breaks(rows, thread, low, high);
+    find_breaks(columns, thread, low, high);
+    barrier();
+    if (thread < rows.count && rows.first + thread < size.y)
+        imageStore(breaks_x_image, ivec2(rows.word, rows.first + thread), uvec4(words[0][thread]));
+    if (thread < columns.count && columns.first + thread < size.x)
+        imageStore(breaks_y_image, ivec2(columns.first + thread, columns.word),
+                   uvec4(words[1][thread]));
 }

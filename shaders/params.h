@@ -95,9 +95,9 @@
 #define VKAO_BLUR_TILE_ROWS 24
 #define VKAO_BLUR_TILE_ROWS_BENT 16
 
-/* Threads of a group of breaks.comp, each for 4 x 2 texels. */
+/* Threads of a group of breaks.comp, each for 4 x 4 texels. */
 #define VKAO_BREAKS_WIDTH 8
-#define VKAO_BREAKS_HEIGHT 16
+#define VKAO_BREAKS_HEIGHT 8
 
 /* Samples or steps in a row: loops longer than that take long to compile, and their overhead is
  * small. */

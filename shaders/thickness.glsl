@@ -10,13 +10,19 @@
 /* Of background, and of what lies outside: no smaller change is beside that. */
 const float NOTHING = 1.0e30;
 
-/* Above 0 where depth breaks between z and the next of four texels in a row: where it changes by
- * far more than by the smaller change beside, which a plane at any tilt does not. */
-real break_between(real before, real z, real next, real behind)
+/* Depth breaks between z and the next of four texels in a row if it changes by more: by far more
+ * than by the smaller change beside, which a plane at any tilt does not. */
+real break_limit(real before, real z, real next, real behind)
 {
     real beside = min(abs(z - before), abs(behind - next));
     real least = params.break_least * (ORTHOGRAPHIC ? real(1.0) : min(z, next));
-    return max(abs(next - z) - (VKAO_VBAO_BREAK_RISE * beside + least), next - 0.5 * NOTHING);
+    return VKAO_VBAO_BREAK_RISE * beside + least;
+}
+
+/* Above 0 where it does, and before what is nothing. */
+real break_between(real before, real z, real next, real behind)
+{
+    return max(abs(next - z) - break_limit(before, z, next, behind), next - 0.5 * NOTHING);
 }
 
 /* How far a surface is followed to each side, in a row and in a column: in steps of texels, of
@@ -48,11 +54,12 @@ real with_code(real z, real thickness)
 real with_thickness(real z, whole along_x, whole along_y, Reach reach)
 {
     vec2 texel = params.inverse_radius * abs(params.unproject.xy);
-    real width = min(texel.x * (real(along_x << reach.shift.x) + 1.0),
-                     texel.y * (real(along_y << reach.shift.y) + 1.0));
+    vec2 step = texel * vec2(ivec2(1) << reach.shift);
+    real width = min(texel.x + step.x * real(along_x), texel.y + step.y * real(along_y));
     width *= VKAO_VBAO_THICKNESS_WIDTH * (ORTHOGRAPHIC ? real(1.0) : z);
-    real left = real(2 * (reach.steps.x + reach.steps.y) - along_x - along_y);
-    width += (VKAO_VBAO_THICKNESS_WIDER - 1.0) * width * max(real(0.0), 1.0 - left);
+    /* 0 where none is left. */
+    real left = real(min(2 * (reach.steps.x + reach.steps.y) - along_x - along_y, whole(1)));
+    width *= VKAO_VBAO_THICKNESS_WIDER - (VKAO_VBAO_THICKNESS_WIDER - 1.0) * left;
     return with_code(z, min(width, real(VKAO_VBAO_THICKNESS_WIDE)));
 }
 

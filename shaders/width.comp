@@ -2,10 +2,11 @@
  *
  * How wide the surface is that a texel is seen of: texels without a break of depth, in its row or
  * in its column, the fewer. As thick it is taken to be, and view z gets that in its last bits:
- * what samples it has it without another load. */
+ * what samples it has it without another load. An invocation takes two by two texels, whose words
+ * are the same. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
+#extension GL_EXT_control_flow_attributes : require
 #define VKAO_GLSL
 #include "params.h"
 
@@ -16,53 +17,69 @@ layout(push_constant) uniform Block { vkao_dispatch here; };
 
 layout(binding = VKAO_BINDING_BREAKS_X) uniform utexture2D breaks_x_image;
 layout(binding = VKAO_BINDING_BREAKS_Y) uniform utexture2D breaks_y_image;
+layout(binding = VKAO_BINDING_NEAREST) uniform sampler nearest;
 layout(binding = VKAO_BINDING_VIEW_Z_WRITE, r32f) uniform image2D view_z_image;
 
-float load_prepared_z(ivec2 texel)
+/* Of two lines side by side, the word of a texel, the one before and the one after it. */
+struct Words {
+    uvec2 before, here, after;
+};
+
+Words words_of_rows(ivec2 at)
 {
-    return imageLoad(view_z_image, texel + VKAO_VIEW_Z_BORDER).x;
+    uvec4 first = textureGather(usampler2D(breaks_x_image, nearest), vec2(at) + vec2(0.0, 1.0)),
+          second = textureGather(usampler2D(breaks_x_image, nearest), vec2(at) + vec2(2.0, 1.0));
+    return Words(first.wx, first.zy, second.wx);
 }
 
-void store_prepared_z(ivec2 texel, float z)
+Words words_of_columns(ivec2 at)
 {
-    imageStore(view_z_image, texel + VKAO_VIEW_Z_BORDER, vec4(z));
+    uvec4 first = textureGather(usampler2D(breaks_y_image, nearest), vec2(at) + vec2(1.0, 0.0)),
+          second = textureGather(usampler2D(breaks_y_image, nearest), vec2(at) + vec2(1.0, 2.0));
+    return Words(first.wz, first.xy, second.wz);
 }
 
-/* Words of a row, or column; beyond the image nothing breaks. texel is counted from the first
- * column of words. */
-uint breaks_at(bool vertical, ivec2 texel, int word, int words)
+/* Beyond the image nothing breaks. */
+void clear_outside(inout Words w, int at, int words)
 {
-    if (word < 0 || word >= words)
-        return 0u;
-    return vertical ? texelFetch(breaks_y_image, ivec2(texel.x, word), 0).x
-                    : texelFetch(breaks_x_image, ivec2(word, texel.y), 0).x;
+    w.before = at > 0 ? w.before : uvec2(0u);
+    w.after = at + 1 < words ? w.after : uvec2(0u);
 }
 
-/* Steps of the surface to both sides, at most so many to each. */
-int run_of(bool vertical, ivec2 texel, ivec2 size, int shift, int most)
+/* Steps of the surface to both sides of bit k of a line's words, at most so many to each. */
+int run_of(uint before, uint here, uint after, int k, uint most)
 {
-    int at = (vertical ? texel.y : texel.x) >> shift, k = at & 31, word = at >> 5;
-    int words = (((vertical ? size.y : size.x) - 1) >> (5 + shift)) + 1;
-    uint here = breaks_at(vertical, texel, word, words);
-    uint ahead = here >> k | breaks_at(vertical, texel, word + 1, words) << 1 << (31 - k);
-    uint behind = here << (31 - k) << 1 | breaks_at(vertical, texel, word - 1, words) >> k;
-    return min(ahead != 0u ? findLSB(ahead) : 32, most) +
-           min(behind != 0u ? 31 - findMSB(behind) : 32, most);
+    uint ahead = here >> k | after << 1 << (31 - k);
+    uint behind = here << 1 << (31 - k) | before >> k;
+    /* What is not found is -1: the largest of numbers without sign. */
+    return int(min(uint(findLSB(ahead)), most) + min(uint(findLSB(bitfieldReverse(behind))), most));
 }
 
 void main()
 {
-    ivec2 low = unpack_texel(params.valid.x), first = low & ivec2(~3, ~0);
-    ivec2 size = unpack_texel(params.valid.y) - first;
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(texel, size)) || first.x + texel.x < low.x)
+    ivec2 low = unpack_texel(params.valid.x), size = unpack_texel(params.valid.y) - low;
+    ivec2 texel = 2 * ivec2(gl_GlobalInvocationID.xy);
+    if (any(greaterThanEqual(texel, size)))
         return;
-    float z = load_prepared_z(first + texel);
     Reach reach = width_reach();
-    if (z > 0.0)
-        store_prepared_z(first + texel,
-                         with_thickness(z,
-                                        run_of(false, texel, size, reach.shift.x, reach.steps.x),
-                                        run_of(true, texel, size, reach.shift.y, reach.steps.y),
-                                        reach));
+    ivec2 word = texel >> (5 + reach.shift), words = ((size - 1) >> (5 + reach.shift)) + 1;
+    Words rows = words_of_rows(ivec2(word.x, texel.y)),
+          columns = words_of_columns(ivec2(texel.x, word.y));
+    clear_outside(rows, word.x, words.x);
+    clear_outside(columns, word.y, words.y);
+    /* One beyond the last texel is of the border, and no surface either. */
+    ivec2 to = low + texel + VKAO_VIEW_Z_BORDER;
+    float z[2][2];
+    [[unroll]] for (int i = 0; i < 4; ++i)
+        z[i >> 1][i & 1] = imageLoad(view_z_image, to + ivec2(i & 1, i >> 1)).x;
+    [[unroll]] for (int i = 0; i < 4; ++i) {
+        int x = i & 1, y = i >> 1;
+        ivec2 bit = ((texel + ivec2(x, y)) >> reach.shift) & 31;
+        int along_x =
+            run_of(rows.before[y], rows.here[y], rows.after[y], bit.x, uint(reach.steps.x));
+        int along_y = run_of(columns.before[x], columns.here[x], columns.after[x], bit.y,
+                             uint(reach.steps.y));
+        imageStore(view_z_image, to + ivec2(x, y),
+                   vec4(with_thickness(z[y][x], along_x, along_y, reach)));
+    }
 }
