@@ -12,7 +12,7 @@ from cli import (case, cases, check, check_close, equal, np, read_ao, read_parts
                  write_exr)
 from drop import drop_files
 from scene import FOV, HEIGHT, RADIUS, WIDTH, Scene
-from view import LINE, PANEL_WIDTH, Viewer, preview, read_png, same_picture
+from view import LINE, PANEL_WIDTH, Viewer, more_channels, preview, read_png, same_picture
 
 SCENE = Scene()
 READ = ('--fov', FOV, '--radius', RADIUS)
@@ -20,14 +20,14 @@ WHOLE = ('--no-panel',)
 VBAO, HBAO = r'- A vbao -', r'- B hbao -'
 
 
-def gbuffer(color=True):
-    channels = {'Z': SCENE.depth(), **SCENE.normals()}
+def gbuffer(color=True, more=False):
+    channels = {'Z': SCENE.depth(), **SCENE.normals(), **(more_channels(SCENE) if more else {})}
     return {**channels, **SCENE.color()} if color else channels
 
 
-def opened(scratch, *arguments, **more):
-    write_exr(scratch.path('in.exr'), gbuffer())
-    viewer = Viewer(scratch, 'in.exr', *READ, *arguments, **more)
+def opened(scratch, *arguments, more=False, **settings):
+    write_exr(scratch.path('in.exr'), gbuffer(more=more))
+    viewer = Viewer(scratch, 'in.exr', *READ, *arguments, **settings)
     viewer.wait_title('^in.exr - ')
     return viewer
 
@@ -391,6 +391,10 @@ SAVES = {
                     '0', '--samples', '33')),
     'no normals': ('2', ('--normal', 'none', '--depth', 'Z')),
     'bent': ('6', ()),
+    'light': ('3', ('--indirect', 'gi', '--specular', 'spec', '--holdout', 'matte', '--back-depth',
+                    'back')),
+    'light unseen': ('2', ('--indirect', 'gi', '--albedo', 'albedo', '--holdout', 'matte',
+                           '--layer2', 'behind')),
 }
 
 
@@ -403,7 +407,7 @@ LARGEST, MEAN = 5e-3, 1e-6
 @cases(SAVES.items())
 def saved_command_makes_the_saved_files(scratch, _, row):
     key, options = row
-    with opened(scratch, *WHOLE, *options) as viewer:
+    with opened(scratch, *WHOLE, *options, more='--holdout' in options) as viewer:
         viewer.key(key, 's')
         shown = viewer.finish()
     equal(scratch.files(), ['in.exr', 'in.view.exr', 'in.view.png', 'in.view.sh', 'last.png'],

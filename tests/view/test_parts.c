@@ -49,8 +49,8 @@ static void sliders_stay_in_the_range_of_the_table(void **unused)
 /* What the panel cannot change would be something that nobody sees. */
 static void every_parameter_has_a_row_but_what_images_or_views_decide(void **unused)
 {
-    static const char *const hidden[] = {"depth_bits", "bent_normals", "noisy_ao",
-                                         "thickness_input", "second_layer"};
+    static const char *const hidden[] = {"depth_bits",      "bent_normals", "noisy_ao",
+                                         "thickness_input", "second_layer", "debug_distance"};
     size_t count;
     uint32_t all_count;
     const struct param *rows = panel_params(&count);

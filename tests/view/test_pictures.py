@@ -1,12 +1,13 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """vkao-view without a person: pictures that equal those of vkao, errors that say what is wrong."""
+import re
 import subprocess
 
 import view  # first: it knows where cli.py lies
 from cli import case, cases, check, check_message, equal, matches, np, write_exr
 from scene import FOV, HEIGHT, RADIUS, WIDTH, Scene
-from view import BACKGROUND, LINE, preview, same_picture, shoot
+from view import BACKGROUND, LINE, Viewer, more_channels, preview, same_picture, shoot
 
 SCENE = Scene()
 READ = ('--fov', FOV, '--radius', RADIUS)
@@ -58,6 +59,74 @@ def raw_ao_is_that_of_vkao_without_blur(scratch):
     same_picture(shown, preview(scratch, 'in.exr', *READ, '--blur', 'off'), 'raw AO')
 
 
+MORE = more_channels(SCENE)
+READERS = {
+    'light': ('composite', ('--indirect', 'gi', '--albedo', 'albedo', '--specular', 'spec',
+                            '--roughness', 'rough', '--holdout', 'matte', '--strength', '0.7')),
+    'bent specular': ('composite', ('--specular', 'spec', '--bent-normals')),
+    'thickness': ('ao', ('--holdout', 'matte', '--thickness-channel', 'thick')),
+    'back': ('raw', ('--back-depth', 'back', '--layer2', 'behind')),
+    'no cast': ('ao', ('--no-cast', 'matte', '--background', '5', '--depth-type', 'radial')),
+}
+
+
+@cases(READERS.items())
+def options_that_read_a_file_are_those_of_vkao(scratch, name, row):
+    shows, options = row
+    write_exr(scratch.path('in.exr'), {**gbuffer(), **MORE})
+    mode = 'comp' if shows == 'composite' else 'ao'
+    raw = ('--blur', 'off') if shows == 'raw' else ()
+    wanted = preview(scratch, 'in.exr', *READ, *options, *raw, mode=mode)
+    same_picture(shoot(scratch, 'in.exr', *READ, *options, '--show', shows), wanted, name)
+
+
+@case
+def elements_in_files_of_their_own_are_read(scratch):
+    for kind, planes in (('z', {'R': (SCENE.depth() - 1) / 20}), ('n', SCENE.normals()),
+                         ('c', SCENE.color())):
+        write_exr(scratch.path(f'{kind}.0001.exr'), planes)
+    write_exr(scratch.path('in.0001.exr'), {'matte': MORE['matte']})
+    options = (*READ, '--depth-file', 'z.####.exr', '--normal-file', 'n.####.exr', '--color-file',
+               'c.####.exr', '--depth-type', 'normalized', '--depth-range', '1,21')
+    scratch.render('in.####.exr', '-o', 'ao.####.exr', '--preview', 'ao.####.png', '--mode', 'comp',
+                   '--device', 'cpu', *options)
+    same_picture(shoot(scratch, 'in.####.exr', *options, '--show', 'composite'),
+                 view.read_png(scratch.path('ao.0001.png')), 'composite')
+
+
+@case
+def what_is_wrong_with_a_file_is_said_in_the_words_of_vkao(scratch):
+    write_exr(scratch.path('in.exr'), gbuffer())
+    for options in (('--indirect', 'gi'), ('--depth', 'deep'), ('--holdout', 'crypto:ball'),
+                    ('--depth-file', 'none.exr'), ('--max-memory', '1M')):
+        done = scratch.run('in.exr', '-o', 'x.exr', '--mode', 'comp', '--device', 'cpu', *READ,
+                           *options)
+        said = shoot(scratch, 'in.exr', *READ, *options, code=done.code)
+        check(done.code and done.stderr, f'{options}: vkao took it')
+        equal(said.splitlines()[:1], done.stderr.splitlines()[:1], f'what is said of {options}')
+
+
+@case
+def files_are_read_as_vkao_says_it(scratch):
+    write_exr(scratch.path('in.exr'), gbuffer())
+    said = scratch.render('in.exr', '-o', 'x.exr', '--device', 'cpu', *READ).stderr
+    with Viewer(scratch, 'in.exr', *READ, size=(WIDTH, HEIGHT)) as viewer:
+        viewer.finish()
+    using = re.search(r'using: (.*?) radius=', said).group(1)
+    check(f'vkao: using: {using}\n' in viewer.err, f'{viewer.err}, want {using}')
+
+
+@case
+def colour_that_cannot_be_read_leaves_the_ao(scratch):
+    write_exr(scratch.path('in.exr'), (gbuffer(False), {'name': 'a'}),
+              (SCENE.color(), {'name': 'b'}))
+    data = scratch.bytes('in.exr')
+    scratch.write('in.exr', data[:-200] + bytes(200))
+    said = scratch.run('in.exr', '-o', 'x.exr', '--mode', 'comp', '--device', 'cpu', *READ)
+    equal(said.code, 3, 'exit code of a composite')
+    same_picture(shoot(scratch, 'in.exr', *READ), preview(scratch, 'in.exr', *READ), 'AO')
+
+
 @case
 def composite_is_that_of_vkao(scratch):
     write_exr(scratch.path('in.exr'), gbuffer())
@@ -85,11 +154,22 @@ def normals_and_depth_show_what_is_in_the_file(scratch):
     # Both signs of z are right for the sign of the axis; x and y are what the file says.
     difference = np.abs(normals[there][:, :2].astype(int) - wanted[there][:, :2])
     check(np.percentile(difference, 99) <= 1, f'normals differ by {difference.max()}')
-    depth = shoot(scratch, 'in.exr', *READ, '--show', 'depth')[..., 0].astype(float)
     z = SCENE.z[there]
-    shown = depth[there] / 255 * z.max()
-    check(np.abs(shown - z).max() <= z.max() / 255, f'depth is off by {np.abs(shown - z).max()}')
-    check((depth[SCENE.sky] == 0).all(), 'background has a depth')
+    ends = np.percentile(z, (1, 99))
+    for options, (near, far) in (((), ends), (('--show-range', '2,5.5'), (2, 5.5))):
+        depth = shoot(scratch, 'in.exr', *READ, '--show', 'depth', *options)[..., 0].astype(float)
+        difference = np.abs(depth[there] - np.clip((z - near) / (far - near), 0, 1) * 255)
+        check(difference.max() <= 1.5, f'{options}: depth is off by {difference.max()} of 255')
+        check((depth[SCENE.sky] == 0).all(), 'background has a depth')
+
+
+@case
+def exposure_is_in_stops(scratch):
+    write_exr(scratch.path('in.exr'), gbuffer())
+    planes = {k: c / 4 if k in 'RGB' else c for k, c in SCENE.color().items()}
+    write_exr(scratch.path('darker.exr'), {**gbuffer(False), **planes})
+    shown = shoot(scratch, 'in.exr', *READ, '--show', 'composite', '--exposure', '-2')
+    same_picture(shown, preview(scratch, 'darker.exr', *READ, mode='comp'), 'two stops less')
 
 
 @case
@@ -234,6 +314,8 @@ USAGE = {
     'versus': (('in.exr', '--versus', '--method crease'), '--method is'),
     'no argument': (('in.exr', '--scene'), 'needs an argument'),
     'output': (('in.exr', '-o', 'x.exr'), 'no meaning for vkao-view'),
+    'exposure': (('in.exr', '--exposure', '11'), '--exposure is'),
+    'depth shown': (('in.exr', '--show-range', '5,5'), '--show-range is'),
 }
 
 

@@ -229,3 +229,18 @@ def same_picture(a, b, what, most=1):
     difference = np.abs(a.astype(int) - b.astype(int))
     check(difference.max() <= most,
           f'{what}: differs by up to {difference.max()}, in {(difference > most).sum()} values')
+
+
+def more_channels(scene):
+    """What options name beside depth, normals and colour: light, mattes, what lies behind."""
+    def plane(value):
+        return np.broadcast_to(np.float32(value), scene.z.shape) * np.float32(1)
+
+    def layer(name, value):
+        return {f'{name}.{c}': plane(value * k) for c, k in zip('RGB', (1, 0.5, 0.25))}
+
+    ball = (scene.z < 5) & (np.abs(scene.normal[..., 1]) < 0.99)
+    behind = np.where(ball, scene.depth() + 2, 1e10).astype(np.float32)
+    return {**layer('gi', 0.15), **layer('albedo', 0.8), **layer('spec', 0.1), 'rough': plane(0.2),
+            'matte': ball.astype(np.float32), 'thick': plane(0.3),
+            'back': scene.depth() + plane(0.4), 'behind': behind}

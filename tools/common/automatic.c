@@ -35,3 +35,12 @@ float automatic_bias(const struct gbuffer *gbuffer, float radius, float bias)
         return bias;
     return step < 1.0f ? step : 1.0f;
 }
+
+float settled_bias(const struct gbuffer *gbuffer, float radius, float bias, struct report *report)
+{
+    const float raised = automatic_bias(gbuffer, radius, bias);
+    if (raised > bias)
+        report_warn(report, "bias", "bias raised to %.2g for the steps of half depth",
+                    (double)raised);
+    return raised;
+}

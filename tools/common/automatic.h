@@ -5,6 +5,7 @@
 #define VKAO_TOOLS_AUTOMATIC_H_
 
 #include "gbuffer.h"
+#include "report.h"
 
 /* A radius that depends on what is seen. Zero-initialised it is the automatic one, 5 %. */
 struct relative_radius {
@@ -19,5 +20,7 @@ struct relative_radius {
 float relative_radius_of(const struct relative_radius *relative, const struct gbuffer *gbuffer);
 /* bias, or what keeps steps of half depth from occluding one another if that is more. */
 float automatic_bias(const struct gbuffer *gbuffer, float radius, float bias);
+/* The same, with a warning if it is more. */
+float settled_bias(const struct gbuffer *gbuffer, float radius, float bias, struct report *report);
 
 #endif

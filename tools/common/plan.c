@@ -326,6 +326,14 @@ bool plan_check_outputs(const struct options *options, const struct plan_frame *
     return true;
 }
 
+bool plan_fail_of_frame(const struct plan_frame *frame, struct tool_error *err)
+{
+    for (int kind = 0; kind < ROLE_FILES; kind++)
+        if (frame->file[kind] && text_starts_with(err->message, frame->file[kind]))
+            return false;
+    return fail_of(err, frame->input);
+}
+
 /* A camera that the hundredth frame lacks is found before the first is computed. The input may be
  * missing: what there is of a sequence is told when its frame comes. */
 static bool check_there(const struct plan *plan, struct tool_error *err)

@@ -43,5 +43,7 @@ void plan_say_cameras(const struct plan *plan, const struct report *report);
 /* Whether an output of the frame is in the way. */
 bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,
                         struct tool_error *err);
+/* A message names the file it is about, which is the input if nothing else is. Returns false. */
+bool plan_fail_of_frame(const struct plan_frame *frame, struct tool_error *err);
 
 #endif

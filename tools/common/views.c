@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "views.h"
 
+#include "ao.h"
+
 #include <string.h>
 
 static void list_views(const struct exr_info *info, struct text *list)
@@ -31,6 +33,14 @@ struct gbuffer_options view_options(const struct options *options, const struct 
     g.roles.view = view->name;
     memcpy(g.roles.file, view->file, sizeof g.roles.file);
     return g;
+}
+
+void view_reserve_work(struct gbuffer_options *options, const vkao_effect_info *effect)
+{
+    struct gbuffer_options *o = options;
+    o->work_texel_bytes = ao_job_texel_bytes(false, o->want_color, effect);
+    o->work_normals_texel_bytes =
+        ao_job_texel_bytes(true, o->want_color, effect) - o->work_texel_bytes;
 }
 
 static struct view view_of(const struct frame_source *source, const char *name)

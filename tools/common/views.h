@@ -49,5 +49,7 @@ void frame_source_close(struct frame_source *source);
 
 /* What gbuffer_load needs for one view. */
 struct gbuffer_options view_options(const struct options *options, const struct view *view);
+/* Counts in what ao_run takes for the effect. */
+void view_reserve_work(struct gbuffer_options *options, const vkao_effect_info *effect);
 
 #endif

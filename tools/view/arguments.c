@@ -26,6 +26,7 @@ const char arguments_help[] =
     "  --size WxH          of the window; else it fits the image\n"
     "  --screenshot FILE   PNG of the last frame; --frames N: end after N of them\n"
     "  --save STEM         S writes STEM.sh, .exr and .png; else FILE.view.sh ...\n"
+    "  --exposure STOPS    of the composite; --show-range NEAR,FAR: of the depth view\n"
     "  --time X            a live scene's clock stands still at X seconds\n"
     "  --no-panel, --help, --version; --validation, --device NAME; and what says how\n"
     "  to read a file and what AO of it is wanted, as vkao has it: see 'vkao --help'.\n"
@@ -134,6 +135,23 @@ static bool take_wipe(struct arguments *a, const char *argument)
     return text_to_number(argument, &a->wipe) && a->wipe >= 0 && a->wipe <= 1;
 }
 
+static bool take_exposure(struct arguments *a, const char *argument)
+{
+    return text_to_number(argument, &a->exposure) && a->exposure >= -MAX_STOPS &&
+           a->exposure <= MAX_STOPS;
+}
+
+static bool take_show_range(struct arguments *a, const char *argument)
+{
+    char near_number[64];
+    const char *comma = strchr(argument, ',');
+    if (!comma)
+        return false;
+    snprintf(near_number, sizeof near_number, "%.*s", (int)(comma - argument), argument);
+    return text_to_number(near_number, &a->near) && text_to_number(comma + 1, &a->far) &&
+           a->near >= 0 && a->far > a->near && isfinite(a->far);
+}
+
 static bool take_time(struct arguments *a, const char *argument)
 {
     return text_to_number(argument, &a->time) && a->time >= 0 && a->time <= 1e6;
@@ -153,35 +171,16 @@ static const struct own_option own_options[] = {
     {"show", true, take_show, "raw, ao, composite, depth, normals, bent or difference"},
     {"zoom", true, take_zoom, "a number >= 1/64 and <= 64"},
     {"wipe", true, take_wipe, "a number >= 0 and <= 1"},
+    {"exposure", true, take_exposure, "stops >= -10 and <= 10"},
+    {"show-range", true, take_show_range, "NEAR,FAR, 0 <= NEAR < FAR"},
     {"time", true, take_time, "a number >= 0 and <= 1000000"},
 };
 
 /* Of vkao, but not for a viewer. */
-static const char *const foreign[] = {"output",
-                                      "mode",
-                                      "part-name",
-                                      "channel",
-                                      "pixel-type",
-                                      "compression",
-                                      "preview",
-                                      "overwrite",
-                                      "json",
-                                      "frames-syntax",
-                                      "bent-normals",
-                                      "continue-on-error",
-                                      "like",
-                                      "depth-file",
-                                      "normal-file",
-                                      "color-file",
-                                      "thickness-channel",
-                                      "back-depth",
-                                      "layer2",
-                                      "indirect",
-                                      "albedo",
-                                      "specular",
-                                      "roughness",
-                                      "holdout",
-                                      "no-cast"};
+static const char *const foreign[] = {
+    "output",  "mode",      "part-name", "channel",       "pixel-type",   "compression",
+    "preview", "overwrite", "json",      "frames-syntax", "write-camera", "continue-on-error",
+    "like"};
 
 static const struct own_option *find_own(const char *name, size_t length)
 {
@@ -264,7 +263,7 @@ static bool pass_on(struct arguments *a, int argc, char **argv, int *i, struct w
         if (!add_word(words, argv[*i + n], err))
             return false;
         if (keep)
-            a->file_words[a->file_word_count++] = argv[*i + n];
+            a->file_words[a->file_word_count++] = (struct file_word){argv[*i + n], row};
     }
     *i += two ? 1 : 0;
     return true;
@@ -313,16 +312,19 @@ static bool split(struct arguments *a, int argc, char **argv, struct words *word
     return true;
 }
 
-/* vkao's parser wants an input and an output. */
+/* vkao's parser wants an input and an output; and the light of the composite, which is one of the
+ * views, the mode that has it. */
 static bool parse_words(struct words words, char *input, struct options *options,
                         struct tool_error *err)
 {
-    static char name[] = "vkao", output[] = "--output=none.exr", none[] = "none", end[] = "--";
+    static char name[] = "vkao", output[] = "--output=none.exr", none[] = "none", end[] = "--",
+                mode[] = "--mode=comp";
     char *list[MAX_WORDS + 8] = {name};
     size_t count = 1;
     for (size_t i = 0; i < words.count; i++)
         list[count++] = words.list[i];
     list[count++] = output;
+    list[count++] = mode;
     list[count++] = end;
     list[count++] = input ? input : none;
     list[count] = NULL;
@@ -338,6 +340,7 @@ static bool parse_words(struct words words, char *input, struct options *options
 static struct setting setting_of(const struct options *o)
 {
     struct setting s = o->setting;
+    s.effect.bent_normals = VK_FALSE; /* a view has them */
     if (o->radius_is_auto)
         s.params.radius = 0.0f;
     return s;

@@ -13,7 +13,13 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { MAX_WORDS = 128 };
+enum { MAX_WORDS = 128, MAX_STOPS = 10 };
+
+/* In the form in which it was given. */
+struct file_word {
+    const char *word;
+    const struct option_row *row; /* the option that it is, or is an argument of */
+};
 
 /* Strings point into argv, but for those of `versus_words`. */
 struct arguments {
@@ -26,15 +32,16 @@ struct arguments {
     uint32_t frames;        /* 0: until somebody quits */
     uint32_t width, height; /* of the window; 0: after the image */
     enum view_kind view;
-    double zoom; /* 0: fit */
-    double wipe; /* share of the window's width; < 0: no wipe */
-    double time; /* seconds; where the clock of a live scene stands still; < 0: it runs */
+    double zoom;      /* 0: fit */
+    double wipe;      /* share of the window's width; < 0: no wipe */
+    double exposure;  /* of the composite, stops */
+    double near, far; /* of the depth view, scene units; far 0: automatic */
+    double time;      /* seconds; where the clock of a live scene stands still; < 0: it runs */
     bool no_panel;
 
     struct options options; /* of vkao */
-    /* Options of vkao about files and the device, in the form in which they were given: what the
-     * settings of the panel do not say. */
-    const char *file_words[MAX_WORDS];
+    /* Options of vkao about files and the device: what the settings of the panel do not say. */
+    struct file_word file_words[MAX_WORDS];
     size_t file_word_count;
     struct setting settings[2]; /* A and B; radius 0: automatic */
     bool bias_is_given[2];

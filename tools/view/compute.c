@@ -31,6 +31,8 @@ static void fit_composite(vkao_effect_info *e, const struct inputs *inputs, enum
         e->multi_bounce = VK_FALSE;
     if (view != VIEW_COMPOSITE || !inputs->images.specular.format || !inputs->view.normal_encoding)
         e->specular = VKAO_SPECULAR_NONE;
+    else if (e->specular == VKAO_SPECULAR_NONE || !method_has_bent(e->method))
+        e->specular = VKAO_SPECULAR_FROM_AO;
 }
 
 static struct shape shape_of(const struct inputs *inputs, const struct setting *setting,
@@ -40,8 +42,9 @@ static struct shape shape_of(const struct inputs *inputs, const struct setting *
     struct shape s;
     memset(&s, 0, sizeof s);
     s.extent = inputs->extent;
-    s.bent = view == VIEW_BENT && method_has_bent(setting->effect.method);
-    s.composite = view == VIEW_COMPOSITE || view == VIEW_DEPTH || view == VIEW_NORMALS || s.bent;
+    const bool shows_bent = view == VIEW_BENT && method_has_bent(setting->effect.method);
+    s.composite =
+        view == VIEW_COMPOSITE || view == VIEW_DEPTH || view == VIEW_NORMALS || shows_bent;
     s.inputs = inputs->images;
     if (view != VIEW_COMPOSITE) {
         const vkao_image none = {0};
@@ -57,6 +60,8 @@ static struct shape shape_of(const struct inputs *inputs, const struct setting *
         s.effect.multi_bounce = standard.multi_bounce;
         s.effect.specular = standard.specular;
     }
+    /* vkao writes those that its specular light is by. */
+    s.bent = shows_bent || s.effect.specular == VKAO_SPECULAR_FROM_BENT;
     s.effect.bent_normals = s.bent;
     s.effect.ao_format = VK_FORMAT_R32_SFLOAT;
     return s;

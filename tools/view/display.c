@@ -7,7 +7,7 @@
 #include <string.h>
 #include <vulkan/vulkan.h>
 
-_Static_assert(sizeof(struct display_block) == 48, "as GLSL lays it out");
+_Static_assert(sizeof(struct display_block) == 64, "as GLSL lays it out");
 
 static bool create_layouts(struct display *d, struct tool_error *err)
 {

@@ -3,6 +3,7 @@
  * What the panel shows, and what it lets people change. */
 #include "viewer.h"
 
+#include "summary.h"
 #include "widgets.h"
 
 #include <math.h>
@@ -31,7 +32,7 @@ static bool choice_row(const struct param *row, struct setting *s, unsigned ther
     if (!ui_begin_choice(row->label, (double)now <= p->most ? p->choices[now] : ""))
         return false;
     for (uint32_t c = 0; c <= last_choice(row); c++)
-        if (ui_choice(p->choices[c], c == before, (choice_needs(row, c) & ~there) == 0))
+        if (ui_choice(p->choices[c], c == before, choice_is_open(row, c, there)))
             now = c;
     ui_end_choice();
     memcpy(parameter_of(s, p), &now, sizeof now);
@@ -121,8 +122,13 @@ static void file_rows(struct viewer *v)
     }
     ui_paragraph(UI_PLAIN, l->path);
     ui_text("%u x %u", l->gbuffer.width, l->gbuffer.height);
+    struct text summary = {0};
+    text_add_summary(&summary, &l->gbuffer);
     if (l->camera_path)
-        ui_help(l->camera_path);
+        text_add(&summary, "\ncamera: %s", l->camera_path);
+    if (summary.data)
+        ui_help(summary.data);
+    text_free(&summary);
     if (s->plan.cameras_lie_beside && l->camera_path)
         ui_paragraph(UI_DIM, l->camera_path);
     if (v->warnings.length && !v->warnings.out_of_memory)
@@ -160,6 +166,60 @@ static void live_rows(struct viewer *v)
     ui_checkbox("clock runs", &l->running);
 }
 
+static void gain_row(struct viewer *v)
+{
+    float gain = (float)v->gain;
+    if (ui_slider_float("gain", &gain, 1.0f, 16.0f, true)) {
+        v->gain = (double)gain;
+        viewer_mark_seen(v);
+    }
+    ui_help("red: darker than the reference; blue: brighter");
+}
+
+static void exposure_row(struct viewer *v)
+{
+    float stops = (float)v->exposure;
+    bool changed = ui_slider_float("exposure", &stops, -MAX_STOPS, MAX_STOPS, false);
+    ui_help("stops: light times 2 to the power of it, before sRGB. Right click: 0");
+    if (ui_clicked_right()) {
+        stops = 0;
+        changed = true;
+    }
+    if (!changed)
+        return;
+    v->exposure = (double)stops;
+    viewer_mark_seen(v);
+}
+
+/* Neither end passes the other. */
+static void depth_rows(struct viewer *v)
+{
+    struct depth_shown *d = &v->depth_shown;
+    const double most = 2 * (double)v->settings[v->active].params.debug_distance;
+    const float longest = (float)fmax(most, d->far);
+    float near = (float)d->near, far = (float)d->far;
+    bool changed = ui_slider_float("near", &near, 0.0f, longest, false);
+    ui_help("view z that shows as black, scene units");
+    if (changed && far <= near)
+        far = near * 1.001f + longest * 1e-4f;
+    if (ui_slider_float("far", &far, 0.0f, longest, false)) {
+        changed = true;
+        if (far <= near)
+            far = near * 1.001f + longest * 1e-4f;
+    }
+    ui_help("view z that shows as white, scene units");
+    if (changed) {
+        *d = (struct depth_shown){.near = (double)near, .far = (double)far};
+        viewer_mark_seen(v);
+    }
+    bool automatic = d->is_automatic;
+    if (ui_checkbox("automatic", &automatic)) {
+        d->is_automatic = automatic;
+        viewer_fit_depth(v);
+    }
+    ui_help("1 % of the first file's foreground is nearer, and 1 % farther");
+}
+
 static void view_rows(struct viewer *v)
 {
     static const char *const labels[VIEW_KINDS] = {"1 raw",     "2 AO",   "3 composite", "4 depth",
@@ -172,12 +232,12 @@ static void view_rows(struct viewer *v)
             viewer_mark_stale(v);
         }
     }
-    if (v->view == VIEW_DIFFERENCE) {
-        float gain = (float)v->gain;
-        if (ui_slider_float("gain", &gain, 1.0f, 16.0f, true))
-            v->gain = (double)gain;
-        ui_help("red: darker than the reference; blue: brighter");
-    }
+    if (v->view == VIEW_DIFFERENCE)
+        gain_row(v);
+    else if (v->view == VIEW_COMPOSITE)
+        exposure_row(v);
+    else if (v->view == VIEW_DEPTH)
+        depth_rows(v);
 }
 
 static void side_rows(struct viewer *v)
@@ -283,6 +343,31 @@ static void error_rows(struct viewer *v)
             radius_row(v, (enum side)s);
 }
 
+/* Of the side that the panel changes. */
+static void histogram_rows(struct viewer *v)
+{
+    struct histogram *h = &v->histogram;
+    const bool was_wanted = h->is_wanted;
+    h->is_wanted = ui_section("Histogram", false);
+    if (!h->is_wanted)
+        return;
+    if (!was_wanted)
+        viewer_mark_seen(v);
+    ui_histogram(h->bins, h->curves, 70.0f);
+    ui_help("what is shown, from black on the left to white; both ends count, but do not scale it");
+    double black = 0, white = 0, mean = 0;
+    const double count = (double)h->count * h->curves;
+    for (uint32_t c = 0; c < h->curves; c++) {
+        black += h->bins[c][0];
+        white += h->bins[c][255];
+        for (int i = 0; i < 256; i++)
+            mean += (double)h->bins[c][i] * i / 255;
+    }
+    if (count > 0)
+        ui_text("mean %.3f, black %.1f %%, white %.1f %%", mean / count, black / count * 100,
+                white / count * 100);
+}
+
 static void save_rows(struct viewer *v)
 {
     struct tool_error err = {0};
@@ -352,6 +437,7 @@ void viewer_panel(struct viewer *viewer)
     presets(v);
     ui_begin_scroll(v->status.text[0] ? 260.0f : 170.0f);
     param_sections(v);
+    histogram_rows(v);
     ui_end_scroll();
     ui_separator();
     time_rows(v);

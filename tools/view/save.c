@@ -3,10 +3,9 @@
  * Save: the picture as PNG, the values as EXR, and the command line of vkao that makes them; of a
  * live scene its G-buffer and camera too. Files are written as vkao itself writes them. */
 #include "atomic_file.h"
-#include "output.h"
 #include "png_file.h"
 #include "shell.h"
-#include "viewer.h"
+#include "values.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -67,6 +66,56 @@ static bool choose_names(const struct viewer *v, struct save_names *n, struct to
 
 /* --- Command line --- */
 
+static bool shows_colour(const struct viewer *v)
+{
+    return v->view == VIEW_COMPOSITE && !v->live && v->source.now.color.image;
+}
+
+/* Options that change nothing are mistakes to vkao: those of light are for the composite, and for
+ * what of it is switched on; those of what lies behind, for methods that read it. */
+static bool is_role_read(const struct viewer *v, enum role_kind kind)
+{
+    const vkao_effect_info *e = &last_result(v, v->active)->shape.effect;
+    switch (kind) {
+    case ROLE_INDIRECT:
+        return shows_colour(v);
+    case ROLE_ALBEDO:
+        return shows_colour(v) && e->multi_bounce;
+    case ROLE_SPECULAR:
+    case ROLE_ROUGHNESS:
+        return shows_colour(v) && e->specular;
+    case ROLE_THICKNESS:
+        return e->thickness_input == VKAO_THICKNESS_GIVEN;
+    case ROLE_BACK_DEPTH:
+        return e->thickness_input == VKAO_THICKNESS_BACK_DEPTH;
+    case ROLE_LAYER2:
+        return e->second_layer;
+    default:
+        return true;
+    }
+}
+
+static bool is_option_read(const struct viewer *v, const struct option_row *row)
+{
+    const struct options *none = NULL;
+    for (int kind = 0; kind < ROLE_KINDS; kind++)
+        if (row->offset == offsetof(struct options, gbuffer.roles.name) +
+                               (size_t)kind * sizeof none->gbuffer.roles.name[0])
+            return is_role_read(v, (enum role_kind)kind);
+    return true;
+}
+
+/* Files of the frame that is shown stand for a pattern; those that were dropped have none. */
+static const char *file_of_frame(const struct viewer *v, const struct option_row *row)
+{
+    static const char *const names[ROLE_FILES] = {"depth-file", "normal-file", "color-file"};
+    const struct loaded_frame *l = &v->source.now;
+    for (int kind = 0; kind < ROLE_FILES; kind++)
+        if (strcmp(names[kind], row->name) == 0)
+            return l->files->files[kind].path ? l->files->files[kind].path : "";
+    return NULL;
+}
+
 /* Options of vkao that read the file as it was read here. */
 static void add_file_options(const struct viewer *v, struct text *out)
 {
@@ -74,9 +123,18 @@ static void add_file_options(const struct viewer *v, struct text *out)
     const struct loaded_frame *l = &v->source.now;
     bool has_view = false;
     for (size_t i = 0; i < a->file_word_count; i++) {
+        const struct option_row *row = a->file_words[i].row;
+        const char *file = file_of_frame(v, row), *word = a->file_words[i].word;
+        const bool is_option = strncmp(word, "--", 2) == 0;
+        if (file && *file && is_option) {
+            text_add(out, " --%s ", row->name);
+            text_add_quoted(out, file);
+        }
+        if (file || !is_option_read(v, row))
+            continue;
         text_add(out, " ");
-        text_add_quoted(out, a->file_words[i]);
-        has_view = has_view || strncmp(a->file_words[i], "--view", strlen("--view")) == 0;
+        text_add_quoted(out, word);
+        has_view = has_view || strcmp(row->name, "view") == 0;
     }
     if (l->camera_path) {
         text_add(out, " --camera ");
@@ -90,15 +148,13 @@ static void add_file_options(const struct viewer *v, struct text *out)
     }
 }
 
-/* Views of which vkao itself writes the picture. It knows no direct light, as live scenes have. */
+/* Views of which vkao itself writes the picture. It knows no direct light, as live scenes have, and
+ * no exposure. */
 static bool vkao_draws(const struct viewer *v)
 {
-    return v->view == VIEW_RAW || v->view == VIEW_AO || (v->view == VIEW_COMPOSITE && !v->live);
-}
-
-static bool shows_colour(const struct viewer *v)
-{
-    return v->view == VIEW_COMPOSITE && !v->live && v->source.now.color.image;
+    const bool is_exposed = v->exposure > 0 || v->exposure < 0;
+    return v->view == VIEW_RAW || v->view == VIEW_AO ||
+           (v->view == VIEW_COMPOSITE && !v->live && !is_exposed);
 }
 
 static bool build_command(const struct viewer *v, const struct save_names *n, struct text *command,
@@ -113,12 +169,17 @@ static bool build_command(const struct viewer *v, const struct save_names *n, st
         text_add_quoted(command, v->source.now.path);
         add_file_options(v, command);
     }
+    struct setting said = v->settings[v->active];
+    if (v->source.now.albedo.image)
+        said.effect.multi_bounce = VK_FALSE; /* options that name channels say so */
+    if (v->source.now.specular.image)
+        said.effect.specular = VKAO_SPECULAR_NONE;
     /* Of a composite that vkao does not draw the AO is said. */
-    setting_add_options(&v->settings[v->active],
-                        v->view == VIEW_COMPOSITE && v->live ? VIEW_AO : v->view, command, unsaid);
+    setting_add_options(&said, v->view == VIEW_COMPOSITE && v->live ? VIEW_AO : v->view, command,
+                        unsaid);
     if (shows_colour(v))
         text_add(command, " --mode comp");
-    if (v->view == VIEW_BENT && method_has_bent(v->settings[v->active].effect.method))
+    if (last_result(v, v->active)->shape.bent)
         text_add(command, " --bent-normals");
     text_add(command, " --pixel-type float --overwrite always -o ");
     text_add_quoted(command, n->exr);
@@ -136,7 +197,10 @@ static bool write_script(const struct viewer *v, const struct save_names *n, con
     struct atomic_file *file = calloc(1, sizeof *file);
     struct text text = {0};
     text_add(&text, "#!/bin/sh\n");
-    if (!vkao_draws(v))
+    if (!vkao_draws(v) && shows_colour(v))
+        text_add(&text, "# The picture is exposed by %+g stops, which vkao does not do.\n",
+                 v->exposure);
+    else if (!vkao_draws(v))
         text_add(&text, "# vkao writes no picture of this view (%s); this is the AO behind it.\n",
                  view_names[v->view].word);
     if (unsaid)
@@ -157,55 +221,7 @@ static bool write_script(const struct viewer *v, const struct save_names *n, con
     return ok;
 }
 
-/* --- Results --- */
-
-/* The computation that the last frame showed for the active side. */
-static const struct computation *result_of(const struct viewer *viewer)
-{
-    /* The frame in flight before the one that comes next. */
-    uint32_t last = (viewer->swapchain.frame + FRAMES_IN_FLIGHT - 1) % FRAMES_IN_FLIGHT;
-    return &viewer->results[viewer->active][viewer->live ? last : 0];
-}
-
-/* malloc'ed texels of an image in GENERAL, in its own format. */
-static void *download(struct viewer *viewer, const struct gpu_image *image, struct tool_error *err)
-{
-    struct gpu_image from = *image;
-    uint64_t bytes =
-        (uint64_t)from.extent.width * from.extent.height * gpu_format_bytes(from.format);
-    void *values = malloc((size_t)bytes);
-    if (!values) {
-        fail(err, EXIT_MEMORY, "out of memory for a picture");
-        return NULL;
-    }
-    if (gpu_image_download(&viewer->gpu, &from, values, bytes, err))
-        return values;
-    free(values);
-    return NULL;
-}
-
 /* --- Pictures --- */
-
-static void tone(const struct viewer *v, const struct rendered_view *r, size_t texel,
-                 double color[3])
-{
-    const double ao = (double)r->result.ao[texel];
-    const float *output = r->result.output ? r->result.output + texel * 4 : NULL;
-    const float *reference = v->source.now.reference_values;
-    for (int c = 0; c < 3; c++)
-        color[c] = 0;
-    if (v->view == VIEW_RAW || v->view == VIEW_AO) {
-        color[0] = color[1] = color[2] = ao;
-    } else if (v->view == VIEW_DIFFERENCE && reference) {
-        double d = (ao - (double)reference[texel]) * v->gain;
-        color[0] = d < 0 ? -d : d * 0.15;
-        color[1] = d < 0 ? -d * 0.35 : d * 0.6;
-        color[2] = d < 0 ? -d * 0.1 : d;
-    } else if (output) {
-        for (int c = 0; c < 3; c++)
-            color[c] = v->view == VIEW_COMPOSITE ? srgb_of((double)output[c]) : (double)output[c];
-    }
-}
 
 /* The picture as the display shows it, of values without padding: width and height are those of the
  * G-buffer. */
@@ -217,9 +233,10 @@ static bool write_picture(struct viewer *viewer, const struct rendered_view *vie
     uint8_t *rgb = malloc(texels * 3 + 1);
     if (!rgb)
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    const struct tone tone = viewer_tone(viewer, viewer->active);
     for (size_t i = 0; i < texels; i++) {
         double color[3];
-        tone(viewer, view, i, color);
+        values_color(viewer, &tone, view, i, color);
         for (size_t c = 0; c < 3; c++)
             rgb[i * 3 + c] = byte_of(color[c]);
     }
@@ -240,37 +257,11 @@ static struct options output_options(const struct viewer *v, const struct save_n
     o.part_name = NULL;
     o.overwrite = 0;
     o.setting = setting_as_said(&v->settings[v->active], v->view);
-    o.setting.effect.bent_normals = result_of(v)->shape.bent;
+    const vkao_effect_info *made = &last_result(v, v->active)->shape.effect;
+    o.setting.effect.bent_normals = made->bent_normals;
+    o.setting.effect.multi_bounce = shows_colour(v) && made->multi_bounce;
+    o.setting.effect.specular = shows_colour(v) ? made->specular : VKAO_SPECULAR_NONE;
     return o;
-}
-
-static bool take_values(struct viewer *v, struct rendered_view *r, struct tool_error *err)
-{
-    const struct computation *c = result_of(v);
-    const struct gbuffer *g = &v->source.now.gbuffer;
-    const size_t texels = (size_t)c->ao.extent.width * c->ao.extent.height;
-    r->gbuffer = *g;
-    r->gbuffer.color = NULL;
-    r->result.ao = download(v, &c->ao, err);
-    bool ok = r->result.ao != NULL;
-    if (ok && c->shape.composite) {
-        r->result.output = download(v, &c->output, err);
-        ok = r->result.output != NULL;
-    }
-    if (ok && c->shape.bent) {
-        r->result.bent = download(v, &c->bent, err);
-        ok = r->result.bent != NULL;
-    }
-    /* The copy's alpha goes into the file, and cropping changes it. */
-    if (ok && g->color) {
-        r->gbuffer.color = malloc(texels * 4 * sizeof *g->color);
-        ok = r->gbuffer.color || fail(err, EXIT_MEMORY, "out of memory for a picture");
-    }
-    if (ok && g->color)
-        memcpy(r->gbuffer.color, g->color, texels * 4 * sizeof *g->color);
-    if (ok)
-        placement_crop(&v->source.now.placement, &r->gbuffer, &r->result);
-    return ok;
 }
 
 static bool save_file_values(struct viewer *viewer, const struct save_names *names,
@@ -283,7 +274,10 @@ static bool save_file_values(struct viewer *viewer, const struct save_names *nam
     struct rendered_view r;
     char device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE], input[ATOMIC_FILE_PATH_MAX];
     char exr[ATOMIC_FILE_PATH_MAX], png[ATOMIC_FILE_PATH_MAX];
-    memset(&r, 0, sizeof r);
+    bool ok = values_take(v, v->active, &r, err);
+    for (int kind = 0; kind < ROLE_KINDS; kind++)
+        if (!is_role_read(v, (enum role_kind)kind))
+            r.gbuffer.roles.kind[kind] = (struct role){0}; /* as without their options */
     snprintf(input, sizeof input, "%s", l->path);
     snprintf(exr, sizeof exr, "%s", names->exr);
     snprintf(png, sizeof png, "%s", names->png);
@@ -296,10 +290,10 @@ static bool save_file_values(struct viewer *viewer, const struct save_names *nam
     ao_view_describe(&l->gbuffer.view, &r.setting.effect);
     const struct plan_frame frame = {
         .input = input, .output = exr, .preview = vkao_draws(v) ? png : NULL};
-    bool ok = take_values(v, &r, err) && output_write(&options, &frame, &files, &r, device, err) &&
-              (vkao_draws(v) || write_picture(v, &r, names->png, err));
-    free(r.gbuffer.color);
-    ao_result_free(&r.result);
+    ok = ok && (vkao_draws(v) || write_picture(v, &r, names->png, err)) &&
+         placement_widen(&r.gbuffer, &r.result, err) &&
+         output_write(&options, &frame, &files, &r, device, err);
+    values_free(&r);
     return ok;
 }
 
@@ -354,7 +348,7 @@ static void *fetch(struct viewer *v, const struct gpu_image *image, VkImageLayou
 {
     if (!move(v, image, layout, VK_IMAGE_LAYOUT_GENERAL, err))
         return NULL;
-    void *values = download(v, image, err);
+    void *values = download_image(&v->gpu, image, err);
     if (move(v, image, VK_IMAGE_LAYOUT_GENERAL, layout, err))
         return values;
     free(values);
@@ -485,35 +479,14 @@ static bool write_camera(const char *path, const struct orbit *camera, VkExtent2
     return ok;
 }
 
-/* The rendered part of rows of `components` floats, in place. */
-static void crop_rows(float *values, uint32_t from_width, uint32_t width, uint32_t height,
-                      size_t components)
+static bool write_results(struct viewer *v, const struct save_names *names, struct tool_error *err)
 {
-    for (size_t y = 0; values && y < height; y++)
-        memmove(values + y * width * components, values + y * from_width * components,
-                width * components * sizeof *values);
-}
-
-static bool write_results(struct viewer *v, const struct save_names *names, VkExtent2D used,
-                          struct tool_error *err)
-{
-    const struct computation *c = result_of(v);
     struct rendered_view r;
-    memset(&r, 0, sizeof r);
-    r.gbuffer.width = used.width;
-    r.gbuffer.height = used.height;
-    r.result.ao = download(v, &c->ao, err);
-    bool ok = r.result.ao != NULL;
-    if (ok && c->shape.composite) {
-        r.result.output = download(v, &c->output, err);
-        ok = r.result.output != NULL;
-    }
-    crop_rows(r.result.ao, c->ao.extent.width, used.width, used.height, 1);
-    crop_rows(r.result.output, c->ao.extent.width, used.width, used.height, 4);
+    bool ok = values_take(v, v->active, &r, err);
     const struct exr_write channel = {"AO", EXR_FLOAT, r.result.ao, 1};
-    ok = ok && write_live_exr(names->exr, used.width, used.height, &channel, 1, err) &&
+    ok = ok && write_live_exr(names->exr, r.gbuffer.width, r.gbuffer.height, &channel, 1, err) &&
          write_picture(v, &r, names->png, err);
-    ao_result_free(&r.result);
+    values_free(&r);
     return ok;
 }
 
@@ -529,7 +502,7 @@ static bool save_live_values(struct viewer *viewer, const struct save_names *nam
     bool ok = take_gbuffer(viewer, &inputs, &values, err) &&
               write_gbuffer(names->gbuffer, &values, err) &&
               write_camera(names->camera, &live->shown[frame], used, err) &&
-              write_results(viewer, names, used, err);
+              write_results(viewer, names, err);
     free(values.z);
     free(values.normals);
     free(values.color);
@@ -540,7 +513,7 @@ static bool save_live_values(struct viewer *viewer, const struct save_names *nam
 
 static bool check_saveable(const struct viewer *v, struct tool_error *err)
 {
-    if (viewer_has_image(v) && result_of(v)->frame)
+    if (viewer_has_image(v) && last_result(v, v->active)->frame)
         return true;
     return fail(err, EXIT_INPUT, "there is no picture that could be saved");
 }

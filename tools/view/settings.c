@@ -26,14 +26,15 @@ static bool is_at(const vkao_parameter *p, size_t offset)
     return parameter_offset(p) == offset;
 }
 
-/* The view decides whether there are bent normals; no file says how many bits its depth once had,
- * nobody asks for AO before the blur as an image of its own, and thickness and a second layer are
- * not loaded. */
+/* The view decides whether there are bent normals, and what of depth is seen; no file says how many
+ * bits its depth once had, nobody asks for AO before the blur as an image of its own, and options
+ * that name channels say whether there is thickness and a second layer. */
 static bool is_shown(const vkao_parameter *p)
 {
     return !parameter_is_of_images(p) && !is_at(p, EFFECT(depth_bits)) &&
            !is_at(p, EFFECT(bent_normals)) && !is_at(p, EFFECT(noisy_ao)) &&
-           !is_at(p, EFFECT(thickness_input)) && !is_at(p, EFFECT(second_layer));
+           !is_at(p, EFFECT(thickness_input)) && !is_at(p, EFFECT(second_layer)) &&
+           !is_at(p, PARAMS(debug_distance));
 }
 
 static enum param_group group_of(const vkao_parameter *p)
@@ -104,7 +105,8 @@ uint32_t last_choice(const struct param *param)
                                                            : (uint32_t)param->parameter->most;
 }
 
-unsigned choice_needs(const struct param *param, uint32_t choice)
+/* What a choice needs. */
+static unsigned choice_needs(const struct param *param, uint32_t choice)
 {
     static const unsigned of_mode[] = {[VKAO_COMPOSITE_MULTIPLY] = NEEDS_COLOR,
                                        [VKAO_COMPOSITE_INDIRECT] = NEEDS_COLOR | NEEDS_DIRECT,
@@ -115,6 +117,14 @@ unsigned choice_needs(const struct param *param, uint32_t choice)
                    choice < sizeof of_mode / sizeof *of_mode
                ? of_mode[choice]
                : 0u;
+}
+
+bool choice_is_open(const struct param *param, uint32_t choice, unsigned there)
+{
+    /* Specular light that was taken out of the colour comes back by a factor of its own only. */
+    if (is_at(param->parameter, EFFECT(specular)) && choice == VKAO_SPECULAR_NONE)
+        return !(there & NEEDS_SPECULAR);
+    return (choice_needs(param, choice) & ~there) == 0;
 }
 
 bool param_is_default(const struct param *param, const struct setting *setting)
@@ -131,9 +141,18 @@ void param_reset(const struct param *param, struct setting *setting)
 
 /* --- What a view computes --- */
 
+static bool method_reads(vkao_ssao_method method, size_t offset)
+{
+    return parameter_at(offset)->methods >> method & 1u;
+}
+
 struct setting setting_for_view(const struct setting *setting, enum view_kind view)
 {
     struct setting s = *setting;
+    if (!method_reads(s.effect.method, EFFECT(thickness_input)))
+        s.effect.thickness_input = VKAO_THICKNESS_AS_SEEN;
+    if (!method_reads(s.effect.method, EFFECT(second_layer)))
+        s.effect.second_layer = VK_FALSE;
     if (view == VIEW_RAW) {
         s.effect.blur_radius = 0;
         s.params.intensity = s.params.power = 1.0f;
@@ -161,7 +180,6 @@ static bool has_option(const vkao_parameter *p)
 static bool is_said(const struct param *p, enum view_kind view)
 {
     return (p->group != GROUP_COMPOSITE || view == VIEW_COMPOSITE) &&
-           !is_at(p->parameter, PARAMS(debug_distance)) &&
            !is_at(p->parameter, EFFECT(half_resolution));
 }
 
@@ -177,6 +195,7 @@ struct setting setting_as_said(const struct setting *setting, enum view_kind vie
         if (!is_at(p, EFFECT(half_resolution)) && (!is_said(&rows[i], view) || !has_option(p)))
             parameter_copy(p, &s, &standard);
     }
+    s.params.debug_distance = standard.params.debug_distance;
     return s;
 }
 

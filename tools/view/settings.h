@@ -48,16 +48,16 @@ struct param {
 enum { MAX_PARAMS = 64 };
 /* In the order of the panel: all but what images or the view decide. */
 const struct param *panel_params(size_t *count);
-/* What a choice needs; 0 for those that the panel does not offer is of no use. */
-unsigned choice_needs(const struct param *param, uint32_t choice);
+/* Whether the images that are there leave a choice open. */
+bool choice_is_open(const struct param *param, uint32_t choice, unsigned there);
 /* The last of the choices that the panel offers: what comes after it are views of their own. */
 uint32_t last_choice(const struct param *param);
 
 bool param_is_default(const struct param *param, const struct setting *setting);
 void param_reset(const struct param *param, struct setting *setting);
 
-/* What is computed for a view: the setting, but for the raw view without blur, intensity and
- * power. */
+/* What is computed for a view: the setting, but without thickness and second layer where the method
+ * does not read them, and for the raw view without blur, intensity and power. */
 struct setting setting_for_view(const struct setting *setting, enum view_kind view);
 /* As vkao would have it from the options that setting_add_options adds. */
 struct setting setting_as_said(const struct setting *setting, enum view_kind view);

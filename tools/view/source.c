@@ -46,10 +46,11 @@ bool source_open(struct source *source, struct gpu *gpu, const struct options *o
 
 static void loaded_free(struct gpu *gpu, struct loaded_frame *l)
 {
-    gpu_image_destroy(gpu, &l->depth);
-    gpu_image_destroy(gpu, &l->normals);
-    gpu_image_destroy(gpu, &l->color);
-    gpu_image_destroy(gpu, &l->reference);
+    struct gpu_image *const images[] = {&l->depth,  &l->normals,  &l->color,        &l->thickness,
+                                        &l->albedo, &l->specular, &l->second_depth, &l->kept,
+                                        &l->before, &l->reference};
+    for (size_t i = 0; i < sizeof images / sizeof *images; i++)
+        gpu_image_destroy(gpu, images[i]);
     gbuffer_free(&l->gbuffer);
     if (l->files)
         frame_source_close(l->files);
@@ -134,35 +135,134 @@ static bool read_reference(struct gpu *gpu, struct loaded_frame *l, struct tool_
 
 /* --- The G-buffer --- */
 
-/* Colour is wanted where there is some. */
-static bool load_gbuffer(struct source *s, struct loaded_frame *l, size_t view,
+/* What the composite does not darken, of colour that gbuffer_load has split. */
+static bool upload_light(struct source *s, struct loaded_frame *l, struct tool_error *err)
+{
+    const struct gbuffer *g = &l->gbuffer;
+    const VkExtent2D extent = {g->width, g->height};
+    const VkFormat vector = VK_FORMAT_R32G32B32A32_SFLOAT;
+    const size_t texels = (size_t)g->width * g->height;
+    if (!g->kept && !g->holdout)
+        return true;
+    float *kept = calloc(texels * 4 + 1, sizeof *kept);
+    float *before = g->color && g->holdout ? calloc(texels * 4 + 1, sizeof *before) : NULL;
+    bool ok = (kept && (before || !g->color || !g->holdout)) ||
+              fail(err, EXIT_MEMORY, "%s: out of memory", l->path);
+    for (size_t i = 0; ok && i < texels; i++) {
+        const size_t row = i / g->width + l->placement.top, column = i % g->width;
+        const size_t padded = row * (g->width + l->placement.left) + column + l->placement.left;
+        for (size_t c = 0; c < 3; c++) {
+            kept[i * 4 + c] = g->kept ? g->kept[i * 4 + c] : 0.0f;
+            if (before)
+                before[i * 4 + c] = g->color[padded * 4 + c] + kept[i * 4 + c] +
+                                    (g->specular ? g->specular[padded * 4 + c] : 0.0f);
+        }
+        kept[i * 4 + 3] = g->holdout ? g->holdout[i] : 0.0f;
+    }
+    ok = ok && upload(s->gpu, &l->kept, vector, extent, kept, err) &&
+         upload(s->gpu, &l->before, vector, extent, before, err);
+    free(kept);
+    free(before);
+    return ok;
+}
+
+static bool upload_gbuffer(struct source *s, struct loaded_frame *l, struct tool_error *err)
+{
+    const struct gbuffer *g = &l->gbuffer;
+    const VkExtent2D extent = padded_extent(g, &l->placement);
+    const VkFormat vector = VK_FORMAT_R32G32B32A32_SFLOAT, scalar = VK_FORMAT_R32_SFLOAT;
+    return upload(s->gpu, &l->depth, scalar, extent, g->depth, err) &&
+           upload(s->gpu, &l->normals, vector, extent, g->normals, err) &&
+           upload(s->gpu, &l->color, vector, extent, g->color, err) &&
+           upload(s->gpu, &l->thickness, scalar, extent, g->thickness, err) &&
+           upload(s->gpu, &l->second_depth, scalar, extent, g->second_depth, err) &&
+           upload(s->gpu, &l->albedo, vector, extent, g->albedo, err) &&
+           upload(s->gpu, &l->specular, vector, extent, g->specular, err) &&
+           upload_light(s, l, err);
+}
+
+/* Options that say something of the colour want it; else it is shown where there is some. */
+static bool asks_for_color(const struct role_request *request)
+{
+    return request->name[ROLE_COLOR] || request->file[ROLE_COLOR] || request->name[ROLE_INDIRECT] ||
+           request->name[ROLE_ALBEDO] || request->name[ROLE_SPECULAR];
+}
+
+static bool read_gbuffer(struct source *s, struct loaded_frame *l, bool want_color,
                          struct report *report, struct tool_error *err)
 {
-    struct options options = s->options;
+    const struct view *view = &l->files->views[l->view];
+    struct gbuffer_options wanted = view_options(&s->options, view);
+    wanted.memory = &s->cameras[l->view];
+    wanted.want_color = want_color;
+    view_reserve_work(&wanted, &s->options.setting.effect);
+    return gbuffer_load(&l->files->info, &wanted, view->camera, report, &l->gbuffer, err);
+}
+
+static bool load_pixels(struct source *s, struct loaded_frame *l, struct report *report,
+                        struct tool_error *err)
+{
+    const struct role_request request = view_options(&s->options, &l->files->views[l->view]).roles;
+    const bool asks = asks_for_color(&request);
+    struct roles roles;
+    struct tool_error without_color = {0}, unseen = {0};
+    memset(&roles, 0, sizeof roles);
+    const bool has =
+        roles_resolve(&l->files->info, &request, &roles, &unseen) && roles.kind[ROLE_COLOR].found;
+    if (read_gbuffer(s, l, asks || has, report, err))
+        return true;
+    /* AO is made of it all the same, unless that is what is wrong. */
+    if (asks || !has || !read_gbuffer(s, l, false, report, &without_color))
+        return false;
+    report_warn(report, "color", "shown without its colour: %s", err->message);
+    *err = (struct tool_error){0};
+    return true;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* A few texels far off or at the camera do not count. */
+static bool measure_depth(struct loaded_frame *l, struct tool_error *err)
+{
+    enum { MOST_SAMPLES = 1 << 16 };
+    const struct gbuffer *g = &l->gbuffer;
+    const size_t texels = (size_t)g->width * g->height, step = texels / MOST_SAMPLES + 1;
+    double *z = malloc((texels / step + 1) * sizeof *z);
+    size_t count = 0;
+    for (size_t i = 0; z && i < texels; i += step) {
+        const size_t row = i / g->width + l->placement.top;
+        const float depth =
+            g->depth[row * (g->width + l->placement.left) + i % g->width + l->placement.left];
+        if (depth < g->background_depth || depth > g->background_depth)
+            z[count++] = gbuffer_view_z(g, depth, i);
+    }
+    if (count > 0) {
+        qsort(z, count, sizeof *z, compare);
+        l->near_z = z[count / 100];
+        l->far_z = z[count - 1 - count / 100];
+    }
+    free(z);
+    return z || fail(err, EXIT_MEMORY, "%s: out of memory", l->path);
+}
+
+static bool load_gbuffer(struct source *s, const struct plan_frame *frame, struct loaded_frame *l,
+                         size_t view, struct report *report, struct tool_error *err)
+{
     l->files = calloc(1, sizeof *l->files);
     if (!l->files)
         return fail(err, EXIT_MEMORY, "%s: out of memory", l->path);
-    if (!frame_source_open(&options, l->path, l->camera_path, l->files, err))
+    if (!frame_source_read_header(l->path, l->files, err) ||
+        !frame_source_read_files((const char *const *)frame->file, l->files, err) ||
+        !frame_source_choose_views(&s->options, l->camera_path, l->files, err))
         return false;
-    if (view >= l->files->view_count)
-        view = 0;
-    struct gbuffer_options wanted = view_options(&options, &l->files->views[view]);
-    struct roles roles;
-    struct tool_error unseen = {0};
-    memset(&roles, 0, sizeof roles);
-    wanted.want_color = roles_resolve(&l->files->info, &wanted.roles, &roles, &unseen) &&
-                        roles.kind[ROLE_COLOR].found;
-    if (!gbuffer_load(&l->files->info, &wanted, l->files->views[view].camera, report, &l->gbuffer,
-                      err) ||
-        !placement_expand(&l->gbuffer, &l->placement, err))
-        return false;
-    const VkExtent2D extent = padded_extent(&l->gbuffer, &l->placement);
-    const struct gbuffer *g = &l->gbuffer;
-    const VkFormat vector = VK_FORMAT_R32G32B32A32_SFLOAT;
-    l->view = view;
-    return upload(s->gpu, &l->depth, VK_FORMAT_R32_SFLOAT, extent, g->depth, err) &&
-           upload(s->gpu, &l->normals, vector, extent, g->normals, err) &&
-           upload(s->gpu, &l->color, vector, extent, g->color, err);
+    l->view = view < l->files->view_count ? view : 0;
+    return (load_pixels(s, l, report, err) || plan_fail_of_frame(frame, err)) &&
+           placement_expand(&l->gbuffer, &l->placement, err) && measure_depth(l, err) &&
+           upload_gbuffer(s, l, err);
 }
 
 static bool load_frame(struct source *s, const struct plan_frame *frame, size_t view,
@@ -174,7 +274,7 @@ static bool load_frame(struct source *s, const struct plan_frame *frame, size_t 
         s->reference_given ? copy_or_null(s->reference_given) : beside(frame->input, ".gt.exr");
     if (!l->path || (frame->camera && !l->camera_path))
         return fail(err, EXIT_MEMORY, "%s: out of memory", frame->input);
-    if (!load_gbuffer(s, l, view, report, err))
+    if (!load_gbuffer(s, frame, l, view, report, err))
         return false;
     struct tool_error unusable = {0};
     if (!l->reference_path || read_reference(s->gpu, l, &unusable))
@@ -258,6 +358,24 @@ static bool make_plan(char *const *paths, size_t count, const char *camera, stru
     return fail(err, EXIT_MEMORY, "out of memory for %zu files", count);
 }
 
+/* The frame that is shown alone. */
+static bool make_same_plan(const struct source *s, const char *camera, struct plan *plan,
+                           struct tool_error *err)
+{
+    char *const path[] = {s->now.path};
+    if (!make_plan(path, 1, camera, plan, err))
+        return false;
+    for (int kind = 0; kind < ROLE_FILES; kind++) {
+        const char *file = s->plan.frames[s->frame].file[kind];
+        plan->frames[0].file[kind] = copy_or_null(file);
+        if (file && !plan->frames[0].file[kind]) {
+            plan_free(plan);
+            return fail(err, EXIT_MEMORY, "%s: out of memory", file);
+        }
+    }
+    return true;
+}
+
 bool source_drop(struct source *source, char *const *paths, size_t count, struct source_undo *undo,
                  struct tool_error *err)
 {
@@ -269,10 +387,9 @@ bool source_drop(struct source *source, char *const *paths, size_t count, struct
         options.camera_file = NULL;
     const bool camera = count == 1 && s->now.path && text_ends_with(paths[0], ".json");
     const bool reference = count == 1 && s->now.path && !camera && is_reference(paths[0]);
-    char *const same[] = {s->now.path};
     bool ok =
         camera || reference
-            ? make_plan(same, 1, camera ? paths[0] : s->now.camera_path, &plan, err)
+            ? make_same_plan(s, camera ? paths[0] : s->now.camera_path, &plan, err)
             : make_plan(paths, count, NULL, &plan, err) && plan_take_cameras(&options, &plan, err);
     if (!ok) {
         plan_free(&plan);
@@ -282,9 +399,11 @@ bool source_drop(struct source *source, char *const *paths, size_t count, struct
                                  .frame = s->frame,
                                  .radius = s->radius,
                                  .reference_given = s->reference_given};
+    memcpy(undo->cameras, s->cameras, sizeof undo->cameras);
     memcpy(undo->reference_dropped, s->reference_dropped, sizeof undo->reference_dropped);
     s->plan = plan;
     s->frame = 0;
+    memset(s->cameras, 0, sizeof s->cameras);
     if (reference) {
         snprintf(s->reference_dropped, sizeof s->reference_dropped, "%s", paths[0]);
         s->reference_given = s->reference_dropped;
@@ -305,6 +424,7 @@ void source_settle(struct source *source, struct source_undo *undo, bool loaded)
     source->plan = undo->plan;
     source->frame = undo->frame;
     source->radius = undo->radius;
+    memcpy(source->cameras, undo->cameras, sizeof undo->cameras);
     source->reference_given = undo->reference_given;
     memcpy(source->reference_dropped, undo->reference_dropped, sizeof undo->reference_dropped);
 }
@@ -322,5 +442,13 @@ struct inputs source_inputs(const struct source *source)
         inputs.images.normals = gpu_image_slot(&l->normals);
     if (l->color.image)
         inputs.images.color = gpu_image_slot(&l->color);
+    if (l->thickness.image)
+        inputs.images.thickness = gpu_image_slot(&l->thickness);
+    if (l->second_depth.image)
+        inputs.images.second_depth = gpu_image_slot(&l->second_depth);
+    if (l->albedo.image)
+        inputs.images.albedo = gpu_image_slot(&l->albedo);
+    if (l->specular.image)
+        inputs.images.specular = gpu_image_slot(&l->specular);
     return inputs;
 }

@@ -19,8 +19,13 @@ struct loaded_frame {
     size_t view;                               /* index in files.views: the eye of a stereo file */
     struct frame_source *files;                /* stays where it is: the roles point into it */
     struct gbuffer gbuffer;                    /* its images stay in host memory too */
+    double near_z,
+        far_z; /* view z that 1 % and 99 % of the foreground are nearer than; 0 without */
     struct placement placement;
-    struct gpu_image depth, normals, color, reference;
+    struct gpu_image depth, normals, color, thickness, second_depth, albedo, specular, reference;
+    /* What comes after the composite, width x height of the G-buffer: light that AO does not darken
+     * and, in alpha, the holdout; and the colour as it was. Without an image there is none. */
+    struct gpu_image kept, before;
     float *reference_values; /* width * height of the G-buffer; NULL = no reference */
     char reference_channel[64];
     float reference_radius; /* scene units, as its header says; 0 = it does not */
@@ -35,6 +40,7 @@ struct source {
     const char *reference_given; /* --reference or dropped, or NULL */
     char reference_dropped[4096];
     float radius; /* what vkao would take for all frames; 0 = not known yet */
+    struct camera_memory cameras[MAX_VIEWS]; /* by view, as estimated of the first frame */
 };
 
 /* options->input may be NULL: an empty window. Nothing is loaded yet. */
@@ -47,6 +53,7 @@ struct source_undo {
     struct plan plan;
     size_t frame;
     float radius;
+    struct camera_memory cameras[MAX_VIEWS];
     const char *reference_given;
     char reference_dropped[4096];
 };

@@ -2,6 +2,7 @@
 #include "viewer.h"
 
 #include "automatic.h"
+#include "summary.h"
 #include "widgets.h"
 
 #include <math.h>
@@ -91,6 +92,12 @@ void viewer_mark_stale(struct viewer *viewer)
         viewer->stale[s] = true;
         viewer->error[s] = -1;
     }
+    viewer_mark_seen(viewer);
+}
+
+void viewer_mark_seen(struct viewer *viewer)
+{
+    viewer->histogram.is_known = false;
     viewer->frames_wanted = FRAMES_IN_FLIGHT + 1;
 }
 
@@ -108,7 +115,9 @@ unsigned viewer_images_there(const struct viewer *viewer)
 {
     if (viewer->live)
         return NEEDS_COLOR | NEEDS_DIRECT | NEEDS_ALBEDO;
-    return viewer->source.now.color.image ? NEEDS_COLOR : 0u;
+    const struct loaded_frame *l = &viewer->source.now;
+    return (l->color.image ? NEEDS_COLOR : 0u) | (l->albedo.image ? NEEDS_ALBEDO : 0u) |
+           (l->specular.image ? NEEDS_SPECULAR : 0u);
 }
 
 void side_title(const struct viewer *viewer, enum side side, char *text, size_t size)
@@ -139,15 +148,15 @@ static void drop_results(struct viewer *viewer)
 /* What the options left to the file. */
 static void complete_settings(struct viewer *viewer)
 {
+    const struct gbuffer *g = &viewer->source.now.gbuffer;
     for (int i = 0; i < SIDES; i++) {
         struct setting *s = &viewer->settings[i];
-        const struct gbuffer *g = &viewer->source.now.gbuffer;
         if (!(s->params.radius > 0) && viewer->live)
             s->params.radius = live_scene_radius(viewer->live->kind);
         else if (!(s->params.radius > 0))
             s->params.radius = viewer->source.radius;
         if (!viewer->live && !viewer->bias_is_given[i])
-            s->params.bias = automatic_bias(g, s->params.radius, s->params.bias);
+            s->params.bias = settled_bias(g, s->params.radius, s->params.bias, &viewer->report);
         /* The colour of a live scene is its indirect light. */
         if (viewer->live && s->effect.composite_mode == VKAO_COMPOSITE_MULTIPLY)
             s->effect.composite_mode = VKAO_COMPOSITE_INDIRECT;
@@ -155,6 +164,30 @@ static void complete_settings(struct viewer *viewer)
         if (far > 0)
             s->params.debug_distance = (float)far;
     }
+    viewer_fit_depth(viewer);
+}
+
+void viewer_fit_depth(struct viewer *viewer)
+{
+    const struct loaded_frame *l = &viewer->source.now;
+    struct depth_shown *d = &viewer->depth_shown;
+    if (!d->is_automatic)
+        return;
+    d->near = viewer->live ? 0 : l->near_z;
+    d->far = viewer->live ? viewer->live->camera.distance * 2 : l->far_z;
+    if (!(d->far > d->near * (1 + 1e-6))) /* all of it is as far */
+        *d = (struct depth_shown){.is_automatic = true, .far = d->far > 0 ? d->far * 2 : 1};
+    viewer_mark_seen(viewer);
+}
+
+/* As vkao says it, but for what the panel can change. */
+static void say_summary(struct viewer *viewer)
+{
+    struct text summary = {0};
+    text_add_summary(&summary, &viewer->source.now.gbuffer);
+    if (summary.data)
+        report_note(&viewer->report, "using: %s", summary.data);
+    text_free(&summary);
 }
 
 bool viewer_load(struct viewer *viewer, size_t frame, size_t view)
@@ -175,6 +208,7 @@ bool viewer_load(struct viewer *viewer, size_t frame, size_t view)
             viewer->settings[i].params.bias = viewer->arguments->settings[i].params.bias;
     }
     if (other_files) {
+        say_summary(viewer);
         complete_settings(viewer);
         history_reset(&viewer->history, viewer->settings);
     }
@@ -207,6 +241,7 @@ static bool open_images(struct viewer *viewer, struct tool_error *err)
     plan_say_cameras(&viewer->source.plan, &viewer->report);
     if (!source_load(&viewer->source, 0, 0, &viewer->report, err))
         return false;
+    say_summary(viewer);
     complete_settings(viewer);
     return true;
 }
@@ -285,6 +320,10 @@ bool viewer_open(struct viewer *viewer, const struct arguments *arguments, struc
                          .wipe_at = arguments->wipe,
                          .wipe_is_placed = arguments->wipe >= 0,
                          .gain = 4,
+                         .exposure = arguments->exposure,
+                         .depth_shown = {.is_automatic = !(arguments->far > 0),
+                                         .near = arguments->near,
+                                         .far = arguments->far},
                          .show_panel = !arguments->no_panel,
                          .placing = {.fit = true, .zoom = 1}};
     memcpy(v->settings, arguments->settings, sizeof v->settings);

@@ -13,6 +13,7 @@
 #include "settings.h"
 #include "source.h"
 #include "swapchain.h"
+#include "tone.h"
 #include "window.h"
 
 enum side { SIDE_A, SIDE_B, SIDES };
@@ -57,12 +58,25 @@ struct viewer {
     bool wipe;
     double wipe_at; /* screen, texels */
     bool wipe_is_placed;
-    double gain; /* of the difference */
+    double gain;     /* of the difference */
+    double exposure; /* of the composite, stops */
+    /* View z that the depth view shows as black and white, scene units; automatic: as it follows
+     * from the files. */
+    struct depth_shown {
+        bool is_automatic;
+        double near, far;
+    } depth_shown;
 
     struct computation results[SIDES][FRAMES_IN_FLIGHT]; /* of files: only the first of each */
     bool stale[SIDES]; /* parameters have changed since it was recorded */
     bool stamped[SIDES][FRAMES_IN_FLIGHT];
     struct stage_times times[SIDES];
+    struct histogram {
+        bool is_wanted, is_known; /* the panel shows it; it is that of the picture */
+        uint32_t curves;          /* 1 of grey, 3 of colour */
+        uint32_t bins[3][256];    /* texels by the byte that they show */
+        uint32_t count;           /* texels */
+    } histogram;
     double error[SIDES]; /* RMS difference to the reference; < 0: not known */
     struct probe_result probed;
 
@@ -94,6 +108,9 @@ void viewer_handle_input(struct viewer *viewer);
 /* viewer_frame.c: draws and presents one frame; with a path it is written there as a PNG. False
  * without an error in err: there was nothing to draw into. */
 bool viewer_draw(struct viewer *viewer, const char *capture, struct tool_error *err);
+/* measure.c: what is asked of the pictures that the last frame showed; waits for the device only if
+ * there is something to ask. */
+bool viewer_measure(struct viewer *viewer, struct tool_error *err);
 /* panel.c: widgets of one frame. */
 void viewer_panel(struct viewer *viewer);
 /* save.c: writes command line, EXR and PNG of what the last frame showed. */
@@ -118,9 +135,15 @@ VkOffset2D viewer_image_offset(const struct viewer *viewer);
 /* The part of the window that the panel leaves. */
 VkRect2D viewer_area(const struct viewer *viewer);
 void viewer_fit(struct viewer *viewer);
+/* Something else is computed, or the same is shown in another way. */
 void viewer_mark_stale(struct viewer *viewer);
+void viewer_mark_seen(struct viewer *viewer);
+/* The range of the depth view, if it is the automatic one. */
+void viewer_fit_depth(struct viewer *viewer);
 /* Whether a side is seen, or asked about. */
 bool viewer_needs(const struct viewer *viewer, enum side side);
+/* How the view makes a side's values visible. */
+struct tone viewer_tone(const struct viewer *viewer, enum side side);
 /* The computation that the latest frame of a side is in. */
 const struct computation *viewer_result(const struct viewer *viewer, enum side side);
 unsigned viewer_images_there(const struct viewer *viewer);

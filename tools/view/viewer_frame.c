@@ -23,6 +23,17 @@ static uint32_t first_query(enum side side, uint32_t frame)
     return ((uint32_t)side * FRAMES_IN_FLIGHT + frame) * (STAGES + 1);
 }
 
+/* AO as it is shown: that of what is held out is less. */
+static void finish_probe(struct viewer *v)
+{
+    const struct gbuffer *g = &v->source.now.gbuffer;
+    const VkOffset2D offset = viewer_image_offset(v);
+    struct probe_result *r = &v->probed;
+    const size_t texel = (size_t)(r->y - offset.y) * g->width + (size_t)(r->x - offset.x);
+    for (int i = 0; g->holdout && i < 2; i++)
+        r->ao[i] += (1.0f - r->ao[i]) * g->holdout[texel];
+}
+
 static bool collect(struct viewer *v, uint32_t frame, struct tool_error *err)
 {
     for (int s = 0; s < SIDES; s++) {
@@ -31,37 +42,9 @@ static bool collect(struct viewer *v, uint32_t frame, struct tool_error *err)
                              err))
             v->stamped[s][frame] = false;
     }
-    probe_read(&v->probe, frame, &v->probed);
+    if (probe_read(&v->probe, frame, &v->probed))
+        finish_probe(v);
     return err->code == EXIT_OK;
-}
-
-/* RMS difference over the image, once for each result. */
-static bool measure_error(struct viewer *v, enum side side, struct tool_error *err)
-{
-    const struct loaded_frame *l = &v->source.now;
-    const struct computation *c = &v->results[side][0];
-    if (v->live || v->view != VIEW_DIFFERENCE || v->error[side] >= 0 || v->stale[side] ||
-        !l->reference_values || !c->frame)
-        return true;
-    const uint32_t width = c->ao.extent.width, height = c->ao.extent.height;
-    const uint64_t bytes = (uint64_t)width * height * sizeof(float);
-    float *ao = malloc((size_t)bytes);
-    struct gpu_image image = c->ao;
-    bool ok = (ao || fail(err, EXIT_MEMORY, "out of memory for a picture")) &&
-              gpu_image_download(&v->gpu, &image, ao, bytes, err);
-    if (ok) {
-        double sum = 0;
-        for (size_t y = 0; y < l->gbuffer.height; y++) {
-            for (size_t x = 0; x < l->gbuffer.width; x++) {
-                double d = (double)ao[(y + l->placement.top) * width + x + l->placement.left] -
-                           (double)l->reference_values[y * l->gbuffer.width + x];
-                sum += d * d;
-            }
-        }
-        v->error[side] = sqrt(sum / ((double)l->gbuffer.width * l->gbuffer.height));
-    }
-    free(ao);
-    return ok;
 }
 
 /* --- Making what is missing --- */
@@ -150,26 +133,42 @@ static void record_probe(struct viewer *v, uint32_t frame, VkCommandBuffer cmd)
 
 static uint32_t display_mode(const struct viewer *v, enum side side)
 {
-    static const uint32_t modes[VIEW_KINDS] = {[VIEW_RAW] = DISPLAY_GREY,
-                                               [VIEW_AO] = DISPLAY_GREY,
+    static const uint32_t modes[VIEW_KINDS] = {[VIEW_RAW] = DISPLAY_AO,
+                                               [VIEW_AO] = DISPLAY_AO,
                                                [VIEW_COMPOSITE] = DISPLAY_SRGB,
-                                               [VIEW_DEPTH] = DISPLAY_GREY,
+                                               [VIEW_DEPTH] = DISPLAY_DEPTH,
                                                [VIEW_NORMALS] = DISPLAY_PLAIN,
                                                [VIEW_BENT] = DISPLAY_PLAIN,
                                                [VIEW_DIFFERENCE] = DISPLAY_DIFFERENCE};
+    const struct computation *c = viewer_result(v, side);
     if (v->view == VIEW_BENT && !method_has_bent(v->settings[side].effect.method))
         return DISPLAY_NOTHING;
     if (v->view == VIEW_DIFFERENCE && (v->live || !v->source.now.reference.image))
         return DISPLAY_NOTHING;
+    if (v->view == VIEW_COMPOSITE && c->shape.effect.composite_mode == VKAO_COMPOSITE_MULTIPLY)
+        return DISPLAY_LIT;
     return modes[v->view];
 }
 
-static void record_picture(struct viewer *v, uint32_t frame, VkCommandBuffer cmd, bool there)
+struct tone viewer_tone(const struct viewer *viewer, enum side side)
+{
+    const struct viewer *v = viewer;
+    const double unit = (double)v->settings[side].params.debug_distance;
+    return (struct tone){.mode = display_mode(v, side),
+                         .gain = v->gain,
+                         .low = v->depth_shown.near / unit,
+                         .high = v->depth_shown.far / unit,
+                         .exposure = exp2(v->exposure)};
+}
+
+/* Both sides but for the mode. */
+static struct display_block picture_block(const struct viewer *v)
 {
     const VkExtent2D extent = viewer_image_extent(v);
     const VkOffset2D offset = viewer_image_offset(v);
     const double width = v->swapchain.extent.width;
-    struct display_block block = {
+    const struct tone tone = viewer_tone(v, v->active);
+    return (struct display_block){
         .origin_x = (float)v->placing.x,
         .origin_y = (float)v->placing.y,
         .zoom = (float)v->placing.zoom,
@@ -182,18 +181,29 @@ static void record_picture(struct viewer *v, uint32_t frame, VkCommandBuffer cmd
         .width = (int32_t)extent.width,
         .height = (int32_t)extent.height,
         .line = v->wipe,
-        .gain = (float)v->gain,
+        .gain = (float)tone.gain,
+        .low = (float)tone.low,
+        .high = (float)tone.high,
+        .exposure = (float)tone.exposure,
+        .is_kept = v->source.now.kept.image != VK_NULL_HANDLE,
     };
+}
+
+static void record_picture(struct viewer *v, uint32_t frame, VkCommandBuffer cmd, bool there)
+{
+    struct display_block block = picture_block(v);
     struct display_images images = {0};
     if (there && viewer_needs(v, SIDE_A)) {
-        block.mode_a = display_mode(v, SIDE_A);
+        block.mode_a = viewer_tone(v, SIDE_A).mode;
         images.bindings[DISPLAY_BINDING_A] = computation_result(viewer_result(v, SIDE_A), v->view);
     }
     if (there && viewer_needs(v, SIDE_B)) {
-        block.mode_b = display_mode(v, SIDE_B);
+        block.mode_b = viewer_tone(v, SIDE_B).mode;
         images.bindings[DISPLAY_BINDING_B] = computation_result(viewer_result(v, SIDE_B), v->view);
     }
     images.bindings[DISPLAY_BINDING_REFERENCE] = v->source.now.reference.view;
+    images.bindings[DISPLAY_BINDING_KEPT] = v->source.now.kept.view;
+    images.bindings[DISPLAY_BINDING_BEFORE] = v->source.now.before.view;
     display_bind(&v->display, frame, &images);
     display_draw(&v->display, cmd, frame, &block);
 }
@@ -320,7 +330,7 @@ bool viewer_draw(struct viewer *viewer, const char *capture, struct tool_error *
     if (!follow_window(v, err) || !swapchain_wait(&v->swapchain, err))
         return false;
     const uint32_t frame = v->swapchain.frame;
-    if (!measure_error(v, SIDE_A, err) || !measure_error(v, SIDE_B, err) || !collect(v, frame, err))
+    if (!viewer_measure(v, err) || !collect(v, frame, err))
         return false;
     widgets_begin_frame();
     viewer_panel(v);

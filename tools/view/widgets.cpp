@@ -264,6 +264,32 @@ bool ui_color(const char *label, float rgb[3])
     return ImGui::ColorEdit3(label, rgb, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_NoPicker);
 }
 
+void ui_histogram(uint32_t (*bins)[256], uint32_t curves, float height)
+{
+    static const ImU32 grey[] = {IM_COL32(200, 200, 200, 200)};
+    static const ImU32 colors[] = {IM_COL32(220, 60, 60, 120), IM_COL32(60, 200, 60, 120),
+                                   IM_COL32(80, 110, 255, 120)};
+    ImDrawList *list = ImGui::GetWindowDrawList();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const ImVec2 size(ImGui::GetContentRegionAvail().x, height);
+    uint32_t most = 1;
+    for (uint32_t c = 0; c < curves; c++)
+        for (int i = 1; i < 255; i++)
+            most = bins[c][i] > most ? bins[c][i] : most;
+    ImGui::Dummy(size);
+    list->AddRectFilled(at, ImVec2(at.x + size.x, at.y + size.y), IM_COL32(0, 0, 0, 255));
+    for (uint32_t c = 0; c < curves; c++) {
+        for (int i = 0; i < 256; i++) {
+            const float share = static_cast<float>(bins[c][i]) / static_cast<float>(most);
+            const float tall = size.y * (share < 1.0f ? share : 1.0f);
+            list->AddRectFilled(
+                ImVec2(at.x + size.x * static_cast<float>(i) / 256, at.y + size.y - tall),
+                ImVec2(at.x + size.x * static_cast<float>(i + 1) / 256, at.y + size.y),
+                curves == 1 ? grey[0] : colors[c]);
+        }
+    }
+}
+
 bool ui_begin_choice(const char *label, const char *now)
 {
     const bool open = ImGui::BeginCombo(label, now);

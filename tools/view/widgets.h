@@ -47,6 +47,8 @@ bool ui_slider_float(const char *label, float *value, float low, float high, boo
 bool ui_slider_uint(const char *label, uint32_t *value, uint32_t low, uint32_t high,
                     bool logarithmic);
 bool ui_color(const char *label, float rgb[3]);
+/* Curves of 256 bins each: one of grey, or three of red, green and blue. */
+void ui_histogram(uint32_t (*bins)[256], uint32_t curves, float height);
 /* A list to choose from: ui_begin_choice, an ui_choice for each word if it returned true, then
  * ui_end_choice. */
 bool ui_begin_choice(const char *label, const char *now);

@@ -9,6 +9,7 @@
 #include "parallel.h"
 #include "placement.h"
 #include "plan.h"
+#include "summary.h"
 #include "views.h"
 
 #include <inttypes.h>
@@ -92,48 +93,26 @@ static float choose_radius(struct session *s, const struct options *o, const str
     return radius;
 }
 
-static float choose_bias(const struct session *s, const struct options *o, const struct gbuffer *g,
-                         float radius)
-{
-    float bias = o->setting.params.bias;
-    if (o->bias_is_given || !(automatic_bias(g, radius, bias) > bias))
-        return bias;
-    bias = automatic_bias(g, radius, bias);
-    report_warn(s->report, "bias", "bias raised to %.2g for the steps of half depth", (double)bias);
-    return bias;
-}
-
 static void summarise(struct session *s, const struct options *o, const struct rendered_view *view)
 {
-    const struct gbuffer *g = &view->gbuffer;
-    const struct role *depth = &g->roles.kind[ROLE_DEPTH], *normal = &g->roles.kind[ROLE_NORMAL];
-    char normals[ROLE_LABEL_MAX + 32] = "from depth", camera[160],
-                                  device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
+    char device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
     if (s->summarised)
         return;
     s->summarised = true;
-    if (g->normal_space != NORMAL_SPACE_AUTO)
-        snprintf(normals, sizeof normals, "%s (%s%s)", normal->label,
-                 normal_space_name(g->normal_space),
-                 g->normal_encoding == NORMAL_ENCODING_UNSIGNED ? ", 0..1" : "");
-    const char *source = g->camera.source[0] ? g->camera.source : "assumed";
-    if (g->camera.type == CAMERA_ORTHOGRAPHIC)
-        snprintf(camera, sizeof camera, "ortho=%.5g (%s)", g->camera.half_width * 2.0, source);
-    else
-        snprintf(camera, sizeof camera, "fov=%.3gh (%s)", camera_fov_x_deg(&g->camera), source);
     device_name(s, device, sizeof device);
-    struct text radius = {0};
+    struct text reading = {0}, radius = {0};
+    text_add_summary(&reading, &view->gbuffer);
     text_add_float(&radius, view->setting.params.radius);
     const char *digits = radius.data ? radius.data : "";
-    report_note(s->report, "using: depth=%s (%s, %s) normal=%s %s radius=%s%s device=%s",
-                depth->label, depth_type_name(g->depth_type),
-                pixel_type_name(depth->channels[0]->type), normals, camera, digits,
+    report_note(s->report, "using: %s radius=%s%s device=%s", reading.data ? reading.data : "",
+                digits,
                 !o->radius_is_auto              ? ""
                 : o->relative_radius.amount > 0 ? " (by --radius)"
                                                 : " (auto)",
                 device);
     if (o->radius_is_auto && s->is_sequence)
         report_note(s->report, "other parts of the sequence get the same with --radius %s", digits);
+    text_free(&reading);
     text_free(&radius);
 }
 
@@ -204,10 +183,7 @@ static void open_part(void *data, uint32_t part)
         return;
     }
     struct gbuffer_options options = view_options(o->options, o->view);
-    const vkao_effect_info *effect = &o->options->setting.effect;
-    options.work_texel_bytes = ao_job_texel_bytes(false, options.want_color, effect);
-    options.work_normals_texel_bytes =
-        ao_job_texel_bytes(true, options.want_color, effect) - options.work_texel_bytes;
+    view_reserve_work(&options, &o->options->setting.effect);
     options.held_bytes = o->held_bytes;
     options.memory = &o->session->cameras[o->view - o->source->views];
     const double start = now_ms();
@@ -292,7 +268,9 @@ static bool render_view(struct session *s, const struct options *frame_options,
         compare_makers(s, view->record);
     out->setting = options.setting;
     out->setting.params.radius = choose_radius(s, &options, g);
-    out->setting.params.bias = choose_bias(s, &options, g, out->setting.params.radius);
+    if (!options.bias_is_given)
+        out->setting.params.bias =
+            settled_bias(g, out->setting.params.radius, out->setting.params.bias, s->report);
     ao_view_describe(&g->view, &out->setting.effect);
     summarise(s, &options, out);
     tell_details(s, source, out);
@@ -327,15 +305,6 @@ static bool open_frame(const struct plan_frame *frame, struct options *options,
            output_check_names(options, frame, source, err);
 }
 
-/* A message names the file it is about, which is the input if nothing else is. */
-static bool fail_of_frame(const struct plan_frame *frame, struct tool_error *err)
-{
-    for (int kind = 0; kind < ROLE_FILES; kind++)
-        if (frame->file[kind] && text_starts_with(err->message, frame->file[kind]))
-            return false;
-    return fail_of(err, frame->input);
-}
-
 static bool render_frame(struct session *s, const struct plan_frame *frame, struct tool_error *err)
 {
     struct options options = *s->options;
@@ -349,7 +318,7 @@ static bool render_frame(struct session *s, const struct plan_frame *frame, stru
     for (size_t i = 0; ok && i < source.view_count; i++)
         ok = render_view(s, &options, &source, &source.views[i], held_by(views, i), &views[i],
                          &times, err) ||
-             fail_of_frame(frame, err);
+             plan_fail_of_frame(frame, err);
     start = now_ms();
     char device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
     device_name(s, device, sizeof device);

@@ -10,6 +10,8 @@ layout(push_constant) uniform Block { display_block params; };
 layout(binding = DISPLAY_BINDING_A) uniform sampler2D image_a;
 layout(binding = DISPLAY_BINDING_B) uniform sampler2D image_b;
 layout(binding = DISPLAY_BINDING_REFERENCE) uniform sampler2D reference;
+layout(binding = DISPLAY_BINDING_KEPT) uniform sampler2D kept;
+layout(binding = DISPLAY_BINDING_BEFORE) uniform sampler2D before;
 layout(location = 0) out vec4 out_color;
 
 const vec3 background = vec3(0.09, 0.10, 0.11);
@@ -24,9 +26,22 @@ vec3 to_srgb(vec3 c)
     return mix(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, c * 12.92, dark);
 }
 
+/* As light_finish does it. */
+vec3 finish(vec3 value, ivec2 texel, uint mode)
+{
+    vec4 left = texelFetch(kept, texel, 0);
+    if (mode != DISPLAY_LIT)
+        return value + (1.0 - value) * left.a;
+    value += left.rgb;
+    return left.a > 0.0 ? mix(value, texelFetch(before, texel, 0).rgb, left.a) : value;
+}
+
 vec3 fetch(bool b, ivec2 texel, uint mode)
 {
     vec3 value = b ? texelFetch(image_b, texel, 0).rgb : texelFetch(image_a, texel, 0).rgb;
+    bool is_ao = mode == DISPLAY_AO || mode == DISPLAY_DIFFERENCE;
+    if (params.is_kept != 0u && (is_ao || mode == DISPLAY_LIT))
+        value = finish(value, texel - ivec2(params.offset_x, params.offset_y), mode);
     if (mode == DISPLAY_DIFFERENCE)
         value.x -= texelFetch(reference, texel, 0).x;
     return value;
@@ -52,10 +67,12 @@ vec3 sample_image(bool b, vec2 at, uint mode)
 
 vec3 tone(vec3 value, uint mode)
 {
-    if (mode == DISPLAY_GREY)
+    if (mode == DISPLAY_AO)
         return vec3(value.x);
-    if (mode == DISPLAY_SRGB)
-        return to_srgb(value);
+    if (mode == DISPLAY_DEPTH)
+        return vec3(value.x > 0.0 ? (value.x - params.low) / (params.high - params.low) : 0.0);
+    if (mode == DISPLAY_SRGB || mode == DISPLAY_LIT)
+        return to_srgb(value * params.exposure);
     if (mode == DISPLAY_DIFFERENCE) {
         float d = value.x * params.gain;
         return d < 0.0 ? -d * vec3(1.0, 0.35, 0.1) : d * vec3(0.15, 0.6, 1.0);

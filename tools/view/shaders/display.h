@@ -15,15 +15,19 @@
 #endif
 
 #define DISPLAY_NOTHING 0u    /* background alone */
-#define DISPLAY_GREY 1u       /* the first component */
-#define DISPLAY_PLAIN 2u      /* rgb as it is */
-#define DISPLAY_SRGB 3u       /* linear rgb, encoded */
-#define DISPLAY_DIFFERENCE 4u /* the first component to the reference */
+#define DISPLAY_AO 1u         /* the first component, 1 where it is held out */
+#define DISPLAY_DEPTH 2u      /* the first component in a range; 0 where nothing is */
+#define DISPLAY_PLAIN 3u      /* rgb as it is */
+#define DISPLAY_SRGB 4u       /* linear rgb, encoded */
+#define DISPLAY_LIT 5u        /* the same, with the light that AO left alone */
+#define DISPLAY_DIFFERENCE 6u /* AO to the reference */
 
 #define DISPLAY_BINDING_A 0
 #define DISPLAY_BINDING_B 1
 #define DISPLAY_BINDING_REFERENCE 2
-#define DISPLAY_BINDINGS 3
+#define DISPLAY_BINDING_KEPT 3   /* rgb: light that AO left alone, a: holdout */
+#define DISPLAY_BINDING_BEFORE 4 /* colour as it was, where there is holdout */
+#define DISPLAY_BINDINGS 5
 
 struct display_block {
     float origin_x, origin_y; /* screen: where the corner of the first image texel is */
@@ -32,8 +36,11 @@ struct display_block {
     INT offset_x, offset_y;   /* image: the first texel that is shown */
     INT width, height;        /* image: how many are shown */
     UINT mode_a, mode_b;
-    UINT line;  /* 1: draw the line at wipe */
-    float gain; /* of the difference */
+    UINT line;       /* 1: draw the line at wipe */
+    float gain;      /* of the difference */
+    float low, high; /* of depth: what is black and white, in values of the image */
+    float exposure;  /* of light: a factor */
+    UINT is_kept;    /* 1: KEPT and BEFORE are images, of width x height */
 };
 
 #endif
