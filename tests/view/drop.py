@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Drops files on a window as a file manager does: XDND version 5, spoken through libX11."""
+"""Drops files on a window as a file manager does (XDND version 5), and reads the clipboard, spoken
+through libX11."""
 import ctypes
 import ctypes.util
 import time
@@ -120,3 +121,29 @@ def drop_files(viewer, *paths):
         source.serve(data)
     finally:
         source.x.XCloseDisplay(source.display)
+
+
+def clipboard(viewer, seconds=20):
+    """The text that the viewer has put there."""
+    source = Source(viewer)
+    x, kind = source.x, source.atom('UTF8_STRING')
+    x.XConvertSelection(source.display, ctypes.c_ulong(source.atom('CLIPBOARD')),
+                        ctypes.c_ulong(kind), ctypes.c_ulong(kind), ctypes.c_ulong(source.window),
+                        ctypes.c_ulong(CURRENT_TIME))
+    x.XFlush(source.display)
+    event, end = Event(), time.monotonic() + seconds
+    while event.type != SELECTION_NOTIFY:
+        if time.monotonic() > end:
+            raise Failed('nobody answers for the clipboard')
+        if x.XPending(source.display):
+            x.XNextEvent(source.display, ctypes.byref(event))
+        else:
+            time.sleep(0.02)
+    text, of_type, form = ctypes.c_char_p(), ctypes.c_ulong(), ctypes.c_int()
+    count, left = ctypes.c_ulong(), ctypes.c_ulong()
+    x.XGetWindowProperty(source.display, ctypes.c_ulong(source.window), ctypes.c_ulong(kind),
+                         ctypes.c_long(0), ctypes.c_long(4096), 1, ctypes.c_ulong(0),
+                         ctypes.byref(of_type), ctypes.byref(form), ctypes.byref(count),
+                         ctypes.byref(left), ctypes.byref(text))
+    x.XCloseDisplay(source.display)
+    return (text.value or b'').decode()

@@ -87,7 +87,7 @@ def sweep(scratch, *arguments, each=1):
 
 @case
 def failing_calls_end_the_view_of_a_file(scratch):
-    sweep(scratch, 'in.exr', '--fov', FOV, '--radius', RADIUS, '--show', 'difference', '--versus',
+    sweep(scratch, 'in.exr', '--quiet', '--fov', FOV, '--radius', RADIUS, '--show', 'difference', '--versus',
           '--method hbao', '--wipe', '0.5')
 
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """vkao-view under keys and mouse, in windows that change their size."""
 import os
+import re
 import shlex
 import shutil
 import subprocess
@@ -10,7 +11,7 @@ import time
 import view  # first: it knows where cli.py lies
 from cli import (case, cases, check, check_close, equal, np, read_ao, read_parts, skip,
                  write_exr)
-from drop import drop_files
+from drop import clipboard, drop_files
 from scene import FOV, HEIGHT, RADIUS, WIDTH, Scene
 from view import LINE, PANEL_WIDTH, Viewer, more_channels, preview, read_png, same_picture
 
@@ -48,6 +49,13 @@ def screen(scratch, viewer, size):
     if done.returncode:
         skip(f'ImageMagick cannot take pictures: {done.stderr}')
     return read_png(scratch.path('screen.png'))
+
+
+def until(holds, what):
+    end = time.monotonic() + view.TIMEOUT
+    while not holds():
+        check(time.monotonic() < end, f'no {what}')
+        time.sleep(0.2)
 
 
 # --- Keys ---
@@ -365,6 +373,97 @@ def radius_of_the_reference_is_shown_and_taken(scratch):
     equal(float(command[command.index('--radius') + 1]), 0.8, 'the radius')
 
 
+@case
+def exposure_and_range_follow_the_panel(scratch):
+    with opened(scratch, '--show', 'composite', '--save', 'saved',
+                size=(WIDTH + PANEL_WIDTH, 700)) as viewer:
+        def light():
+            return screen(scratch, viewer, (WIDTH + PANEL_WIDTH, 700))[350, PANEL_WIDTH:].mean()
+        before = light()
+        viewer.drag((90, 102), (60, 102), hold=1)  # exposure
+        until(lambda: light() < before * 0.7, 'darker picture')
+        viewer.key('s')
+        until(lambda: 'saved.sh' in scratch.files(), 'saved picture')
+        viewer.key('4')
+        viewer.wait_title('- Depth -')
+        viewer.drag((30, 102), (60, 102), hold=1)  # near
+        viewer.key('s')
+        shown = viewer.finish()[:, PANEL_WIDTH:]
+    lines = scratch.bytes('saved.sh').decode().splitlines()
+    stops = float(re.search('exposed by (-[0-9.]+) stops', lines[1]).group(1))
+    planes = {k: c * 2 ** stops if k in 'RGB' else c for k, c in SCENE.color().items()}
+    write_exr(scratch.path('in.exr'), {**gbuffer(False), **planes})
+    same_picture(read_png(scratch.path('saved.png')), preview(scratch, 'in.exr', *READ, mode='comp'),
+                 'exposed')
+    depth = read_png(scratch.path('saved.2.png'))
+    top = (700 - HEIGHT) // 2
+    same_picture(depth, shown[top:top + HEIGHT], 'depth')
+    whole = (depth[~SCENE.sky] == 0).mean()
+    check(0.05 < whole < 0.9, f'{whole} of the foreground is nearer than the range')
+
+
+@case
+def histogram_counts_what_is_shown(scratch):
+    size = (WIDTH + PANEL_WIDTH, 700)
+    with opened(scratch, '--show', 'composite', size=size) as viewer:
+        viewer.drag((18, 613), (18, 613), hold=0.5)  # 'Histogram'
+
+        def curve(is_red):
+            below = screen(scratch, viewer, size)[530:620, :PANEL_WIDTH].astype(int)
+            red = (below[..., 0] - below[..., 1] > 60).sum()
+            grey = ((np.ptp(below, axis=-1) < 4) & (np.abs(below[..., 0] - 157) < 4)).sum()
+            return red > 100 if is_red else red == 0 and grey > 50
+        until(lambda: curve(True), 'curve of red')
+        viewer.key('2')
+        until(lambda: curve(False), 'curve of grey')
+        viewer.finish()
+
+
+# --- The list of files, and the clipboard ---
+
+@case
+def file_is_opened_from_the_list(scratch):
+    os.mkdir(scratch.path('more'))
+    write_exr(scratch.path('more', 'q1.exr'), gbuffer(False))
+    scratch.write('more/q2.exr', 'rubbish')
+    with opened(scratch, *WHOLE, size=(500, 300)) as viewer:
+        viewer.key('ctrl+o')
+        viewer.key('q', 'Tab', '3', 'Escape', 'ctrl+o')  # the list's, all of them
+        viewer.wait_title('^in.exr - AO - ')
+        viewer.key('m', 'o', 'Return', 'q', '2', 'Return')
+        time.sleep(1)
+        viewer.wait_title('^in.exr - AO - ')
+        viewer.key('BackSpace', '1', 'Return')
+        viewer.wait_title('^q1.exr - AO - ')
+        viewer.key('ctrl+o', 'BackSpace', 'Home', 'Down', 'Down', 'Return')
+        viewer.wait_title('^in.exr - AO - ')
+        viewer.key('ctrl+o', 'ctrl+o', '3')
+        viewer.wait_title('^in.exr - Composite - ')
+        viewer.finish()
+        check('more/q2.exr' in viewer.err, f'nothing is said:\n{viewer.err}')
+
+
+@case
+def probe_is_copied(scratch):
+    with opened(scratch, *WHOLE, '--versus', '--intensity 0', '--wipe', 0.9) as viewer:
+        viewer.move(80, 70)
+        time.sleep(0.5)
+        viewer.key('ctrl+c')
+        time.sleep(0.5)
+        text = clipboard(viewer)
+        viewer.finish()
+    number = r'(-?[0-9.e-]+)'
+    found = re.fullmatch(f'texel 80 70 AO {number} B 1 position {number} {number} {number} '
+                         f'normal {number} {number} {number}', text)
+    check(found, f'the clipboard has {text!r}')
+    values = [float(v) for v in found.groups()]
+    preview(scratch, 'in.exr', *READ)
+    z = SCENE.z[70, 80]
+    wanted = [read_ao(scratch.path('vkao.exr'))[70, 80], SCENE.x[70, 80] * z, SCENE.y[70, 80] * z,
+              -z, *SCENE.normal[70, 80]]
+    check(np.abs(np.array(values) - wanted).max() < 1e-4, f'{values}, want {wanted}')
+
+
 # --- Save ---
 
 def script(scratch, name):
@@ -536,16 +635,15 @@ def dropped_rubbish_is_told_in_a_window_without_the_panel(scratch):
     size = (500, 300)
     with opened(scratch, *WHOLE, size=size) as viewer:
         before = screen(scratch, viewer, size)
+
+        def changed():
+            return (screen(scratch, viewer, size) != before).any(axis=-1)
         drop_files(viewer, scratch.path('rubbish.exr'))
-        time.sleep(1)
-        told = screen(scratch, viewer, size)
+        until(lambda: changed()[-50:].sum() > 1000, 'word of it')
+        check(not changed()[:-50].any(), 'the picture above it is another')
         viewer.key('2')
-        time.sleep(1)
-        after = screen(scratch, viewer, size)
+        until(lambda: not changed().any(), 'picture as before after a key')
         viewer.finish()
-    check((told[-50:] != before[-50:]).any(axis=-1).sum() > 1000, 'nothing is said')
-    same_picture(told[:-50], before[:-50], 'the picture above it')
-    same_picture(after, before, 'the picture after a key')
 
 
 @case

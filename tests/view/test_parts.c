@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * The viewer's table of parameters against the command line of vkao, undo, quoting, and the probe's
- * arithmetic. */
+ * The viewer's table of parameters against the command line of vkao, undo, quoting, the list of
+ * files, and the probe's arithmetic. */
+#include "browse.h"
 #include "history.h"
 #include "options.h"
 #include "probe.h"
@@ -13,7 +14,10 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <cmocka.h>
 
 static uint32_t state = 1;
@@ -267,6 +271,127 @@ static void undo_brings_back_what_was_and_forgets_what_was_undone(void **unused)
     assert_false(now[0].effect.half_resolution);
 }
 
+/* --- The list of files --- */
+
+static const char *const folders[] = {"b", "b/c", "b/.hidden"};
+static const char *const files[] = {"z.exr", "a 1.EXR",      "camera.json", "notes.txt",
+                                    ".exr",  "b/c/shot.exr", "b/c/Shut.exr"};
+
+static void make_tree(char root[64])
+{
+    char path[128];
+    snprintf(root, 64, "/tmp/vkao-browse-XXXXXX");
+    assert_non_null(mkdtemp(root));
+    for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
+        snprintf(path, sizeof path, "%s/%s", root, folders[i]);
+        assert_int_equal(mkdir(path, 0700), 0);
+    }
+    for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
+        snprintf(path, sizeof path, "%s/%s", root, files[i]);
+        FILE *file = fopen(path, "w");
+        assert_non_null(file);
+        fclose(file);
+    }
+}
+
+static void remove_tree(const char *root)
+{
+    char path[128];
+    for (size_t i = sizeof files / sizeof *files; i-- > 0;) {
+        snprintf(path, sizeof path, "%s/%s", root, files[i]);
+        unlink(path);
+    }
+    for (size_t i = sizeof folders / sizeof *folders; i-- > 0;) {
+        snprintf(path, sizeof path, "%s/%s", root, folders[i]);
+        rmdir(path);
+    }
+    assert_int_equal(rmdir(root), 0);
+}
+
+static void assert_listed(const struct browser *b, const char *names)
+{
+    char is[512] = "";
+    for (size_t i = 0; i < b->shown_count; i++) {
+        const struct browser_entry *e = &b->entries[b->shown[i]];
+        snprintf(is + strlen(is), sizeof is - strlen(is), "%s%s%s|", i == b->at ? ">" : "", e->name,
+                 e->is_folder ? "/" : "");
+    }
+    assert_string_equal(is, names);
+}
+
+static void list_of_files_is_moved_through(void **unused)
+{
+    char root[64], path[128], chosen[128];
+    struct browser b = {0};
+    struct tool_error err = {0};
+    (void)unused;
+    make_tree(root);
+    snprintf(path, sizeof path, "%s/z.exr", root);
+    assert_true(browser_open(&b, path, &err));
+    assert_listed(&b, "../|b/|a 1.EXR|camera.json|>z.exr|");
+    browser_move(&b, -2);
+    assert_listed(&b, "../|b/|>a 1.EXR|camera.json|z.exr|");
+    browser_move(&b, -100);
+    assert_listed(&b, ">../|b/|a 1.EXR|camera.json|z.exr|");
+    browser_move(&b, 100);
+    assert_true(browser_choose(&b, chosen, sizeof chosen, &err));
+    assert_string_equal(chosen, path);
+    browser_move(&b, -3);
+    assert_false(browser_choose(&b, chosen, sizeof chosen, &err));
+    assert_listed(&b, ">../|c/|");
+    browser_move(&b, 1);
+    assert_false(browser_choose(&b, chosen, sizeof chosen, &err));
+    assert_listed(&b, ">../|Shut.exr|shot.exr|");
+    browser_type(&b, 'S');
+    browser_type(&b, 'H');
+    assert_listed(&b, ">Shut.exr|shot.exr|");
+    browser_move(&b, 1);
+    browser_type(&b, 'o');
+    assert_listed(&b, ">shot.exr|");
+    browser_type(&b, 0x1d11e);
+    assert_listed(&b, "");
+    assert_string_equal(b.filter, "SHo\xf0\x9d\x84\x9e");
+    assert_false(browser_choose(&b, chosen, sizeof chosen, &err));
+    assert_true(browser_erase(&b, &err));
+    assert_listed(&b, ">shot.exr|");
+    for (int i = 0; i < 3; i++)
+        assert_true(browser_erase(&b, &err));
+    assert_listed(&b, "../|Shut.exr|>shot.exr|");
+    assert_true(browser_erase(&b, &err)); /* up */
+    assert_listed(&b, "../|>c/|");
+    browser_move(&b, -1);
+    assert_false(browser_choose(&b, chosen, sizeof chosen, &err));
+    assert_listed(&b, "../|>b/|a 1.EXR|camera.json|z.exr|");
+    assert_int_equal(err.code, EXIT_OK);
+    browser_close(&b);
+    remove_tree(root);
+}
+
+static void list_of_the_working_directory_goes_up_and_back(void **unused)
+{
+    char root[64], before[512], chosen[128];
+    struct browser b = {0};
+    struct tool_error err = {0};
+    (void)unused;
+    make_tree(root);
+    assert_non_null(getcwd(before, sizeof before));
+    assert_int_equal(chdir(root), 0);
+    assert_true(browser_open(&b, NULL, &err));
+    browser_move(&b, 2);
+    assert_true(browser_choose(&b, chosen, sizeof chosen, &err));
+    assert_string_equal(chosen, "a 1.EXR");
+    for (int i = 0; i < 40; i++)
+        assert_true(browser_erase(&b, &err)); /* the root is above itself */
+    assert_true(browser_open(&b, "b/c/gone.exr", &err));
+    assert_listed(&b, ">../|Shut.exr|shot.exr|");
+    assert_false(browser_open(&b, "gone/x.exr", &err));
+    assert_int_equal(err.code, EXIT_INPUT);
+    assert_listed(&b, ">../|Shut.exr|shot.exr|");
+    browser_close(&b);
+    assert_int_equal(chdir(before), 0);
+    remove_tree(root);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -279,6 +404,8 @@ int main(void)
         cmocka_unit_test(shell_reads_back_what_was_quoted),
         cmocka_unit_test(probe_finds_the_point_that_was_projected),
         cmocka_unit_test(probe_knows_background),
+        cmocka_unit_test(list_of_files_is_moved_through),
+        cmocka_unit_test(list_of_the_working_directory_goes_up_and_back),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -28,7 +28,8 @@ const char arguments_help[] =
     "  --save STEM         S writes STEM.sh, .exr and .png; else FILE.view.sh ...\n"
     "  --exposure STOPS    of the composite; --show-range NEAR,FAR: of the depth view\n"
     "  --time X            a live scene's clock stands still at X seconds\n"
-    "  --no-panel, --help, --version; --validation, --device NAME; and what says how\n"
+    "  --panel-scale X     else by monitor and window; --no-panel\n"
+    "  --help, --version; --validation, --device NAME; and what says how\n"
     "  to read a file and what AO of it is wanted, as vkao has it: see 'vkao --help'.\n"
     "  The camera is that of --camera, FILE.camera.json if there, or the header's.\n" KEYS
     "Exit status: 0 done, 2 usage, 3 input, 4 channels, 5 no display or no device,\n"
@@ -152,6 +153,11 @@ static bool take_show_range(struct arguments *a, const char *argument)
            a->near >= 0 && a->far > a->near && isfinite(a->far);
 }
 
+static bool take_panel_scale(struct arguments *a, const char *argument)
+{
+    return text_to_number(argument, &a->panel_scale) && a->panel_scale >= 1 && a->panel_scale <= 4;
+}
+
 static bool take_time(struct arguments *a, const char *argument)
 {
     return text_to_number(argument, &a->time) && a->time >= 0 && a->time <= 1e6;
@@ -173,6 +179,7 @@ static const struct own_option own_options[] = {
     {"wipe", true, take_wipe, "a number >= 0 and <= 1"},
     {"exposure", true, take_exposure, "stops >= -10 and <= 10"},
     {"show-range", true, take_show_range, "NEAR,FAR, 0 <= NEAR < FAR"},
+    {"panel-scale", true, take_panel_scale, "a number >= 1 and <= 4"},
     {"time", true, take_time, "a number >= 0 and <= 1000000"},
 };
 

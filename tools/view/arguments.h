@@ -32,11 +32,12 @@ struct arguments {
     uint32_t frames;        /* 0: until somebody quits */
     uint32_t width, height; /* of the window; 0: after the image */
     enum view_kind view;
-    double zoom;      /* 0: fit */
-    double wipe;      /* share of the window's width; < 0: no wipe */
-    double exposure;  /* of the composite, stops */
-    double near, far; /* of the depth view, scene units; far 0: automatic */
-    double time;      /* seconds; where the clock of a live scene stands still; < 0: it runs */
+    double zoom;        /* 0: fit */
+    double wipe;        /* share of the window's width; < 0: no wipe */
+    double exposure;    /* of the composite, stops */
+    double near, far;   /* of the depth view, scene units; far 0: automatic */
+    double time;        /* seconds; where the clock of a live scene stands still; < 0: it runs */
+    double panel_scale; /* texels per unit; 0: by monitor and window */
     bool no_panel;
 
     struct options options; /* of vkao */

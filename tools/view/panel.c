@@ -112,15 +112,23 @@ static void presets(struct viewer *v)
 
 /* --- Files, views, sides --- */
 
+/* Names, since paths are long; those stand in the help. */
+static const char *name_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 static void file_rows(struct viewer *v)
 {
     const struct source *s = &v->source;
     const struct loaded_frame *l = &s->now;
     if (!source_is_loaded(s)) {
-        ui_text("no file: drop an EXR file here");
+        ui_text("no file: drop one here, or Ctrl+O");
         return;
     }
-    ui_paragraph(UI_PLAIN, l->path);
+    ui_paragraph(UI_PLAIN, name_of(l->path));
+    ui_help(l->path);
     ui_text("%u x %u", l->gbuffer.width, l->gbuffer.height);
     struct text summary = {0};
     text_add_summary(&summary, &l->gbuffer);
@@ -130,7 +138,7 @@ static void file_rows(struct viewer *v)
         ui_help(summary.data);
     text_free(&summary);
     if (s->plan.cameras_lie_beside && l->camera_path)
-        ui_paragraph(UI_DIM, l->camera_path);
+        ui_paragraph(UI_DIM, name_of(l->camera_path));
     if (v->warnings.length && !v->warnings.out_of_memory)
         ui_paragraph(UI_WARNING, v->warnings.data);
     if (s->plan.count > 1) {
@@ -380,6 +388,12 @@ static void save_rows(struct viewer *v)
     if (ui_button("copy command") && !viewer_copy_command(v, &err))
         viewer_say_error(v, &err);
     ui_end_disabled();
+    if (!v->live) {
+        ui_same_line();
+        if (ui_button("open"))
+            viewer_browse(v);
+        ui_help("lists the folder: Ctrl+O");
+    }
     if (v->status.text[0])
         ui_paragraph(v->status.bad ? UI_BAD : UI_DIM, v->status.text);
 }
@@ -393,7 +407,7 @@ static void labels(const struct viewer *v)
     const float middle_y = (float)area.extent.height / 2;
     const char *missing = NULL;
     if (!viewer_has_image(v))
-        missing = "drop an EXR file here";
+        missing = "drop an EXR file here, or press Ctrl+O";
     else if (v->view == VIEW_BENT && !method_has_bent(v->settings[v->active].effect.method))
         missing = "bent normals come with vbao, gtao and raymarch";
     else if (v->view == VIEW_DIFFERENCE && v->live)
@@ -401,30 +415,68 @@ static void labels(const struct viewer *v)
     else if (v->view == VIEW_DIFFERENCE && !v->source.now.reference.image)
         missing = "no reference: drop one here, or give --reference";
     if (missing)
-        ui_label(middle_x - (float)strlen(missing) * 3.5f, middle_y, 1, missing);
+        ui_label(middle_x, middle_y, UI_AROUND, missing);
     /* The panel says it otherwise. */
     if (v->status.bad && v->status.is_new && !v->show_panel)
-        ui_label(0, (float)area.extent.height - 40.0f, 1, v->status.text);
+        ui_label(0, (float)area.extent.height, UI_ABOVE, v->status.text);
     if (!v->wipe || !v->show_panel)
         return;
     char title[64];
     const float line = (float)floor(v->wipe_at * v->swapchain.extent.width);
     side_title(v, SIDE_A, title, sizeof title);
-    ui_label(line, 8, 0, title);
+    ui_label(line, 0, UI_LEFT_OF, title);
     side_title(v, SIDE_B, title, sizeof title);
-    ui_label(line + 1, 8, 1, title);
+    ui_label(line + 1, 0, UI_RIGHT_OF, title);
+}
+
+/* --- The list of files --- */
+
+/* As many rows as the window has room for, the chosen one among them. */
+static void file_list(struct viewer *v)
+{
+    enum { LEAST_ROWS = 3, MOST_ROWS = 20, OTHER_LINES = 5 };
+    const struct browser *b = &v->browser;
+    const VkExtent2D window = v->swapchain.extent;
+    const size_t lines = ui_lines((float)window.height);
+    const size_t room = lines > LEAST_ROWS + OTHER_LINES ? lines - OTHER_LINES : LEAST_ROWS;
+    const size_t rows = room < MOST_ROWS ? room : MOST_ROWS;
+    const size_t most = b->shown_count > rows ? b->shown_count - rows : 0;
+    const size_t middle = b->at > rows / 2 ? b->at - rows / 2 : 0;
+    const size_t first = middle < most ? middle : most;
+    bool is_clicked = false;
+    ui_begin_box((float)window.width, (float)window.height);
+    ui_paragraph(UI_PLAIN, strcmp(b->folder, ".") == 0 ? "./" : b->folder);
+    ui_text("find: %s_", b->filter);
+    for (size_t i = first; i < first + rows && i < b->shown_count; i++) {
+        const struct browser_entry *entry = &b->entries[b->shown[i]];
+        char row[300];
+        snprintf(row, sizeof row, "%s%s##%zu", entry->name, entry->is_folder ? "/" : "", i);
+        if (ui_choice(row, i == b->at, true)) {
+            v->browser.at = i;
+            is_clicked = true;
+        }
+    }
+    ui_paragraph(v->status.bad && v->status.is_new ? UI_BAD : UI_DIM,
+                 v->status.bad && v->status.is_new
+                     ? v->status.text
+                     : "type to find, Enter opens, Backspace: folder above, Esc");
+    ui_end_box();
+    if (is_clicked)
+        viewer_choose_file(v);
 }
 
 void viewer_panel(struct viewer *viewer)
 {
     struct viewer *v = viewer;
     labels(v);
+    if (v->browser.is_open)
+        file_list(v);
     if (v->show_help)
         ui_overlay((float)v->swapchain.extent.width, (float)v->swapchain.extent.height,
                    arguments_keys);
     if (!v->show_panel)
         return;
-    ui_begin_panel(PANEL_WIDTH, (float)v->swapchain.extent.height);
+    ui_begin_panel((float)viewer_panel_width(v), (float)v->swapchain.extent.height);
     if (v->live)
         live_rows(v);
     else
@@ -435,13 +487,12 @@ void viewer_panel(struct viewer *viewer)
     ui_separator();
     side_rows(v);
     presets(v);
-    ui_begin_scroll(v->status.text[0] ? 260.0f : 170.0f);
+    ui_begin_scroll();
     param_sections(v);
-    histogram_rows(v);
     ui_end_scroll();
     ui_separator();
     time_rows(v);
-    ui_separator();
+    histogram_rows(v);
     probe_rows(v);
     ui_separator();
     save_rows(v);

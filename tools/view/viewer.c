@@ -58,13 +58,35 @@ VkOffset2D viewer_image_offset(const struct viewer *viewer)
     return viewer->live ? (VkOffset2D){0} : (VkOffset2D){(int32_t)p->left, (int32_t)p->top};
 }
 
+/* On a monitor that does not tell how dense it is, a large window has a larger panel too. */
+static double scale_for(const struct viewer *v, double content_scale, VkExtent2D window)
+{
+    enum { ROOMY_WIDTH = 1600, ROOMY_HEIGHT = 1000 };
+    if (v->arguments->panel_scale > 0)
+        return widgets_scale(v->arguments->panel_scale);
+    const double roomy = fmin(window.width / (ROOMY_WIDTH * content_scale),
+                              window.height / (ROOMY_HEIGHT * content_scale));
+    return widgets_scale(content_scale * fmin(fmax(roomy, 1), 2));
+}
+
+void viewer_choose_scale(struct viewer *viewer)
+{
+    viewer->scale = scale_for(viewer, viewer->window.content_scale, viewer->swapchain.extent);
+}
+
+uint32_t viewer_panel_width(const struct viewer *viewer)
+{
+    return (uint32_t)(PANEL_WIDTH * viewer->scale + 0.5);
+}
+
 VkRect2D viewer_area(const struct viewer *viewer)
 {
     const VkExtent2D whole = viewer->swapchain.extent;
+    const uint32_t panel = viewer_panel_width(viewer);
     VkRect2D area = {.extent = whole};
-    if (viewer->show_panel && whole.width > PANEL_WIDTH) {
-        area.offset.x = PANEL_WIDTH;
-        area.extent.width = whole.width - PANEL_WIDTH;
+    if (viewer->show_panel && whole.width > panel) {
+        area.offset.x = (int32_t)panel;
+        area.extent.width = whole.width - panel;
     }
     return area;
 }
@@ -250,15 +272,17 @@ static bool open_images(struct viewer *viewer, struct tool_error *err)
 static VkExtent2D window_size(const struct viewer *viewer)
 {
     const struct arguments *a = viewer->arguments;
-    const uint32_t panel = viewer->show_panel ? PANEL_WIDTH : 0;
     VkExtent2D image = viewer_image_extent(viewer), largest = window_largest();
+    const double scale = scale_for(viewer, window_system_scale(), image);
+    const uint32_t panel = viewer->show_panel ? (uint32_t)(PANEL_WIDTH * scale + 0.5) : 0;
+    const uint32_t panel_height = (uint32_t)(PANEL_HEIGHT * scale);
     if (a->width)
         return (VkExtent2D){a->width, a->height};
     if (viewer->live || image.width == 0)
-        image = (VkExtent2D){960, 600};
+        image = (VkExtent2D){(uint32_t)(960 * scale), (uint32_t)(600 * scale)};
     image.width += panel;
-    if (panel && image.height < 640)
-        image.height = 640;
+    if (panel && image.height < panel_height)
+        image.height = panel_height;
     if (image.width > largest.width)
         image.width = largest.width;
     if (image.height > largest.height)
@@ -342,6 +366,7 @@ bool viewer_open(struct viewer *viewer, const struct arguments *arguments, struc
         return false;
     history_reset(&v->history, v->settings);
     viewer_mark_stale(v);
+    viewer_choose_scale(v);
     viewer_fit(v);
     if (arguments->zoom > 0) {
         const VkRect2D area = viewer_area(v);
@@ -368,6 +393,7 @@ void viewer_close(struct viewer *viewer)
         vkDestroySurfaceKHR(v->gpu.instance, v->surface, NULL);
     window_destroy(&v->window);
     source_close(&v->source);
+    browser_close(&v->browser);
     text_free(&v->warnings);
     live_destroy(v->live);
     vkao_context_destroy(v->context);

@@ -5,6 +5,7 @@
 #define VKAO_VIEW_VIEWER_H_
 
 #include "arguments.h"
+#include "browse.h"
 #include "compute.h"
 #include "display.h"
 #include "history.h"
@@ -18,7 +19,7 @@
 
 enum side { SIDE_A, SIDE_B, SIDES };
 enum drag { DRAG_NONE, DRAG_PAN, DRAG_WIPE, DRAG_ORBIT };
-enum { PANEL_WIDTH = 330 };
+enum { PANEL_WIDTH = 330, PANEL_HEIGHT = 640 }; /* units, see widgets_scale */
 
 /* Where the image is on the screen, in texels of the framebuffer. */
 struct placing {
@@ -81,6 +82,8 @@ struct viewer {
     struct probe_result probed;
 
     bool show_panel, show_help;
+    struct browser browser;
+    double scale; /* of the panel: texels per unit */
     struct placing placing;
     enum drag drag;
     double drag_x, drag_y;
@@ -105,6 +108,9 @@ void viewer_close(struct viewer *viewer);
 
 /* viewer_input.c: acts on keys, mouse and dropped files. */
 void viewer_handle_input(struct viewer *viewer);
+/* Opens the list of files, or what is chosen in it. */
+void viewer_browse(struct viewer *viewer);
+void viewer_choose_file(struct viewer *viewer);
 /* viewer_frame.c: draws and presents one frame; with a path it is written there as a PNG. False
  * without an error in err: there was nothing to draw into. */
 bool viewer_draw(struct viewer *viewer, const char *capture, struct tool_error *err);
@@ -132,6 +138,9 @@ bool viewer_has_image(const struct viewer *viewer);
 /* Of the image shown, its padding left out; and where that begins in the images. */
 VkExtent2D viewer_image_extent(const struct viewer *viewer);
 VkOffset2D viewer_image_offset(const struct viewer *viewer);
+/* By the monitor and the size of the window, unless the command line says it; each frame. */
+void viewer_choose_scale(struct viewer *viewer);
+uint32_t viewer_panel_width(const struct viewer *viewer);
 /* The part of the window that the panel leaves. */
 VkRect2D viewer_area(const struct viewer *viewer);
 void viewer_fit(struct viewer *viewer);

@@ -332,7 +332,8 @@ bool viewer_draw(struct viewer *viewer, const char *capture, struct tool_error *
     const uint32_t frame = v->swapchain.frame;
     if (!viewer_measure(v, err) || !collect(v, frame, err))
         return false;
-    widgets_begin_frame();
+    viewer_choose_scale(v);
+    widgets_begin_frame(v->scale);
     viewer_panel(v);
     const bool there = viewer_has_image(v) && prepare(v, frame);
     /* A live scene has the window's size from here on. */

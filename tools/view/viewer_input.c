@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-enum { WIPE_REACH = 8 /* screen texels from the line that the mouse takes hold of it */ };
+enum { WIPE_REACH = 8 /* units from the line that the mouse takes hold of it */ };
 
 static const double zoom_levels[] = {1.0 / 16, 1.0 / 8, 1.0 / 4, 1.0 / 2, 1,  2,  3,
                                      4,        6,       8,       12,      16, 24, 32};
@@ -81,7 +81,9 @@ static void escape(struct viewer *v)
 {
     if (widgets_close_choice())
         return;
-    if (v->show_help)
+    if (v->browser.is_open)
+        browser_close(&v->browser);
+    else if (v->show_help)
         v->show_help = false;
     else
         v->quit = true;
@@ -161,6 +163,9 @@ static void press_key(struct viewer *v, enum key_action key)
     case KEY_COPY:
         copy_probe(v);
         break;
+    case KEY_OPEN:
+        viewer_browse(v);
+        break;
     case KEY_HELP:
         v->show_help = !v->show_help;
         break;
@@ -179,7 +184,7 @@ static void press_key(struct viewer *v, enum key_action key)
 
 static bool is_at_line(const struct viewer *v, double x)
 {
-    return v->wipe && fabs(x - v->wipe_at * v->swapchain.extent.width) <= WIPE_REACH;
+    return v->wipe && fabs(x - v->wipe_at * v->swapchain.extent.width) <= WIPE_REACH * v->scale;
 }
 
 /* The line covers the column that the mouse is in. */
@@ -236,13 +241,15 @@ static void use_mouse(struct viewer *v, const struct input *in)
         scroll(v, in);
 }
 
-static void take_drop(struct viewer *v, const struct input *in)
+/* --- Files --- */
+
+static bool open_files(struct viewer *v, char *const *paths, size_t count)
 {
     struct source_undo undo;
     struct tool_error err = {0};
     if (v->live) {
-        fail(&err, EXIT_INPUT, "%s: a live scene takes no files", in->dropped[0]);
-    } else if (source_drop(&v->source, in->dropped, in->dropped_count, &undo, &err)) {
+        fail(&err, EXIT_INPUT, "%s: a live scene takes no files", paths[0]);
+    } else if (source_drop(&v->source, paths, count, &undo, &err)) {
         struct text before = v->warnings;
         v->warnings = (struct text){0};
         v->report.said_count = 0;
@@ -252,9 +259,74 @@ static void take_drop(struct viewer *v, const struct input *in)
         text_free(loaded ? &before : &v->warnings);
         if (!loaded)
             v->warnings = before;
+        return loaded;
     }
     if (err.code)
         viewer_say_error(v, &err);
+    return false;
+}
+
+void viewer_browse(struct viewer *viewer)
+{
+    struct tool_error err = {0};
+    const char *path = viewer->source.now.path;
+    if (viewer->browser.is_open)
+        browser_close(&viewer->browser);
+    else if (!browser_open(&viewer->browser, path, &err))
+        viewer_say_error(viewer, &err);
+}
+
+void viewer_choose_file(struct viewer *viewer)
+{
+    struct tool_error err = {0};
+    char path[sizeof viewer->browser.folder + 256];
+    char *const paths[] = {path};
+    if (browser_choose(&viewer->browser, path, sizeof path, &err)) {
+        if (open_files(viewer, paths, 1))
+            browser_close(&viewer->browser);
+    } else if (err.code) {
+        viewer_say_error(viewer, &err);
+    }
+}
+
+/* All keys are the list's while it is open. */
+static void press_key_in_list(struct viewer *v, enum key_action key, uint32_t character)
+{
+    enum { PAGE = 10 };
+    const long all = (long)v->browser.count;
+    struct tool_error err = {0};
+    switch (key) {
+    case KEY_CHARACTER:
+        browser_type(&v->browser, character);
+        break;
+    case KEY_UP:
+    case KEY_DOWN:
+        browser_move(&v->browser, key == KEY_UP ? -1 : 1);
+        break;
+    case KEY_PAGE_UP:
+    case KEY_PAGE_DOWN:
+        browser_move(&v->browser, key == KEY_PAGE_UP ? -PAGE : PAGE);
+        break;
+    case KEY_FIRST:
+    case KEY_LAST:
+        browser_move(&v->browser, key == KEY_FIRST ? -all : all);
+        break;
+    case KEY_ERASE:
+        if (!browser_erase(&v->browser, &err))
+            viewer_say_error(v, &err);
+        break;
+    case KEY_ENTER:
+        viewer_choose_file(v);
+        break;
+    case KEY_OPEN:
+        viewer_browse(v);
+        break;
+    case KEY_ESCAPE:
+        escape(v);
+        break;
+    default:
+        break;
+    }
 }
 
 void viewer_handle_input(struct viewer *viewer)
@@ -265,9 +337,16 @@ void viewer_handle_input(struct viewer *viewer)
         history_note(&viewer->history, viewer->settings);
     if (in->key_count > 0)
         viewer->status.is_new = false;
-    for (size_t i = 0; i < in->key_count && !widgets_want_keyboard(); i++)
-        press_key(viewer, in->keys[i]);
-    use_mouse(viewer, in);
+    for (size_t i = 0; i < in->key_count; i++) {
+        if (viewer->browser.is_open)
+            press_key_in_list(viewer, in->keys[i], in->characters[i]);
+        else if (!widgets_want_keyboard())
+            press_key(viewer, in->keys[i]);
+    }
+    if (!viewer->browser.is_open)
+        use_mouse(viewer, in);
+    else if (fabs(in->scroll) > 0)
+        browser_move(&viewer->browser, -lround(in->scroll * 3));
     if (in->dropped_count > 0)
-        take_drop(viewer, in);
+        open_files(viewer, in->dropped, in->dropped_count);
 }

@@ -5,6 +5,7 @@
 #include <backends/imgui_impl_vulkan.h>
 #include <imgui.h>
 
+#include <cmath>
 #include <cstdarg>
 
 namespace
@@ -13,6 +14,41 @@ VkDevice device;
 VkDescriptorPool pool;
 bool glfw_runs, vulkan_runs;
 bool choice_closes;
+
+/* Texels that letters are high, in the font's own grid or multiples of it, or near enough. */
+const float font_sizes[] = {13.0f, 16.0f, 20.0f, 26.0f, 32.0f, 39.0f, 52.0f};
+enum { FONTS = sizeof font_sizes / sizeof *font_sizes };
+ImFont *fonts[FONTS];
+float unit = 1.0f;    /* coordinates of Dear ImGui per unit */
+float below = 170.0f; /* what the panel had behind the part that scrolls */
+float below_begins;   /* where that part ends */
+
+/* Texels of the framebuffer -> coordinates. */
+ImVec2 place(float x, float y)
+{
+    const ImVec2 scale = ImGui::GetIO().DisplayFramebufferScale;
+    return ImVec2(scale.x > 0.0f ? x / scale.x : x, scale.y > 0.0f ? y / scale.y : y);
+}
+
+int nearest_font(double scale)
+{
+    int nearest = 0;
+    for (int i = 1; i < FONTS; i++)
+        if (std::fabs(font_sizes[i] - font_sizes[0] * scale) <
+            std::fabs(font_sizes[nearest] - font_sizes[0] * scale))
+            nearest = i;
+    return nearest;
+}
+
+void set_style()
+{
+    ImGuiStyle style;
+    ImGui::StyleColorsDark(&style);
+    style.WindowRounding = 0.0f;
+    style.WindowBorderSize = 0.0f;
+    style.ScaleAllSizes(unit);
+    ImGui::GetStyle() = style;
+}
 
 struct vulkan_failure {
     VkResult result;
@@ -101,9 +137,12 @@ bool widgets_create(void *glfw_window, struct gpu *gpu, VkRenderPass pass, uint3
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr; /* nothing is written that nobody asked for */
     ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
-    ImGui::StyleColorsDark();
-    ImGui::GetStyle().WindowRounding = 0.0f;
-    ImGui::GetStyle().WindowBorderSize = 0.0f;
+    for (int i = 0; i < FONTS; i++) {
+        ImFontConfig config;
+        config.SizePixels = font_sizes[i];
+        fonts[i] = ImGui::GetIO().Fonts->AddFontDefault(&config);
+    }
+    set_style();
     creation c = {gpu, pass, image_count, err, false};
     glfw_runs = ImGui_ImplGlfw_InitForVulkan(static_cast<GLFWwindow *>(glfw_window), true);
     if (glfw_runs && draw_or_fail(err, create_back_end, &c) && c.ok)
@@ -126,10 +165,26 @@ void widgets_destroy(void)
     vkDestroyDescriptorPool(device, pool, nullptr);
 }
 
-void widgets_begin_frame(void)
+double widgets_scale(double scale)
+{
+    return font_sizes[nearest_font(scale)] / font_sizes[0];
+}
+
+void widgets_begin_frame(double scale)
 {
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    ImGuiIO &io = ImGui::GetIO();
+    const int font = nearest_font(scale);
+    const float dense = io.DisplayFramebufferScale.y > 0.0f ? io.DisplayFramebufferScale.y : 1.0f;
+    const float wanted = font_sizes[font] / font_sizes[0] / dense;
+    io.FontDefault = fonts[font];
+    io.FontGlobalScale = 1.0f / dense;
+    if (wanted < unit || wanted > unit) {
+        below *= wanted / unit;
+        unit = wanted;
+        set_style();
+    }
     ImGui::NewFrame();
 }
 
@@ -161,24 +216,26 @@ bool widgets_close_choice(void)
 void ui_begin_panel(float width, float height)
 {
     ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
-    ImGui::SetNextWindowSize(ImVec2(width, height));
+    ImGui::SetNextWindowSize(place(width, height));
     ImGui::Begin("vkao", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
-    ImGui::PushItemWidth(width * 0.5f);
+    ImGui::PushItemWidth(place(width, 0.0f).x * 0.5f);
     /* Tab is a key of the viewer: it opens no text field. */
     ImGui::PushAllowKeyboardFocus(false);
 }
 
 void ui_end_panel(void)
 {
+    below = ImGui::GetCursorPosY() - below_begins;
     ImGui::PopAllowKeyboardFocus();
     ImGui::PopItemWidth();
     ImGui::End();
 }
 
-void ui_begin_scroll(float below)
+void ui_begin_scroll(void)
 {
-    ImGui::BeginChild("scroll", ImVec2(0.0f, -below));
+    const float left = ImGui::GetContentRegionAvail().y - below, least = 120.0f * unit;
+    ImGui::BeginChild("scroll", ImVec2(0.0f, left > least ? left : least));
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * 0.54f);
     ImGui::PushAllowKeyboardFocus(false);
 }
@@ -188,6 +245,7 @@ void ui_end_scroll(void)
     ImGui::PopAllowKeyboardFocus();
     ImGui::PopItemWidth();
     ImGui::EndChild();
+    below_begins = ImGui::GetCursorPosY();
 }
 
 bool ui_section(const char *label, bool open)
@@ -271,7 +329,7 @@ void ui_histogram(uint32_t (*bins)[256], uint32_t curves, float height)
                                    IM_COL32(80, 110, 255, 120)};
     ImDrawList *list = ImGui::GetWindowDrawList();
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const ImVec2 size(ImGui::GetContentRegionAvail().x, height);
+    const ImVec2 size(ImGui::GetContentRegionAvail().x, height * unit);
     uint32_t most = 1;
     for (uint32_t c = 0; c < curves; c++)
         for (int i = 1; i < 255; i++)
@@ -334,23 +392,60 @@ void ui_end_disabled(void)
     ImGui::EndDisabled();
 }
 
-void ui_label(float x, float y, float align, const char *text)
+void ui_begin_box(float width, float height)
+{
+    const ImVec2 all = place(width, height);
+    const float most = 420.0f * unit, edge = 16.0f * unit;
+    const float wide = all.x - edge < most ? all.x - edge : most;
+    ImGui::SetNextWindowPos(ImVec2(all.x / 2, all.y / 2), ImGuiCond_Always, ImVec2(0.5f, 0.5f));
+    ImGui::SetNextWindowSize(ImVec2(wide, 0.0f));
+    ImGui::SetNextWindowFocus();
+    ImGui::SetNextWindowBgAlpha(1.0f);
+    ImGui::Begin("files", nullptr,
+                 ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                     ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::PushAllowKeyboardFocus(false);
+}
+
+void ui_end_box(void)
+{
+    ImGui::PopAllowKeyboardFocus();
+    ImGui::End();
+}
+
+size_t ui_lines(float height)
+{
+    return static_cast<size_t>(place(0.0f, height).y / ImGui::GetTextLineHeightWithSpacing());
+}
+
+void ui_label(float x, float y, enum ui_place where, const char *text)
 {
     ImDrawList *list = ImGui::GetBackgroundDrawList();
-    const ImVec2 size = ImGui::CalcTextSize(text);
-    const float left = align > 0.5f ? x + 6.0f : x - 6.0f - size.x;
-    list->AddRectFilled(ImVec2(left - 4.0f, y - 2.0f),
-                        ImVec2(left + size.x + 4.0f, y + size.y + 2.0f), IM_COL32(0, 0, 0, 180));
-    list->AddText(ImVec2(left, y), IM_COL32(255, 255, 255, 255), text);
+    const float gap = 6.0f * unit, edge = 4.0f * unit, ledge = 2.0f * unit;
+    const float wrap = ImGui::GetIO().DisplaySize.x - 2.0f * gap;
+    const ImVec2 at = place(x, y), size = ImGui::CalcTextSize(text, nullptr, false, wrap);
+    const float left = where == UI_LEFT_OF  ? at.x - gap - size.x
+                       : where == UI_AROUND ? at.x - size.x / 2
+                                            : at.x + gap;
+    const float top = where == UI_ABOVE    ? at.y - size.y - gap
+                      : where == UI_AROUND ? at.y - size.y / 2
+                                           : at.y + gap;
+    list->AddRectFilled(ImVec2(left - edge, top - ledge),
+                        ImVec2(left + size.x + edge, top + size.y + ledge), IM_COL32(0, 0, 0, 180));
+    list->AddText(nullptr, 0.0f, ImVec2(left, top), IM_COL32(255, 255, 255, 255), text, nullptr,
+                  wrap);
 }
 
 void ui_overlay(float width, float height, const char *text)
 {
     ImDrawList *list = ImGui::GetForegroundDrawList();
-    const ImVec2 size = ImGui::CalcTextSize(text);
-    const float left = (width - size.x) / 2, top = (height - size.y) / 2;
-    list->AddRectFilled(ImVec2(left - 12.0f, top - 12.0f),
-                        ImVec2(left + size.x + 12.0f, top + size.y + 12.0f),
-                        IM_COL32(0, 0, 0, 230));
-    list->AddText(ImVec2(left, top), IM_COL32(255, 255, 255, 255), text);
+    const float edge = 12.0f * unit;
+    const ImVec2 all = place(width, height);
+    const float wrap = all.x - 2 * edge;
+    const ImVec2 size = ImGui::CalcTextSize(text, nullptr, false, wrap);
+    const float left = (all.x - size.x) / 2, top = (all.y - size.y) / 2;
+    list->AddRectFilled(ImVec2(left - edge, top - edge),
+                        ImVec2(left + size.x + edge, top + size.y + edge), IM_COL32(0, 0, 0, 230));
+    list->AddText(nullptr, 0.0f, ImVec2(left, top), IM_COL32(255, 255, 255, 255), text, nullptr,
+                  wrap);
 }

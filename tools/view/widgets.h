@@ -8,6 +8,7 @@
 #include "gpu.h"
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #ifdef __cplusplus
@@ -19,7 +20,10 @@ extern "C" {
 bool widgets_create(void *glfw_window, struct gpu *gpu, VkRenderPass pass, uint32_t image_count,
                     struct tool_error *err);
 void widgets_destroy(void);
-void widgets_begin_frame(void);
+/* Sizes that text can have: the nearest to `scale` texels of the framebuffer per unit, a unit being
+ * a texel of a monitor of 96 dpi. */
+double widgets_scale(double scale);
+void widgets_begin_frame(double scale);
 /* Inside the render pass; ends the frame. cmd may be VK_NULL_HANDLE to drop what was drawn. */
 bool widgets_end_frame(VkCommandBuffer cmd, struct tool_error *err);
 /* Whether input belongs to the panel, as of the last frame. */
@@ -28,11 +32,12 @@ bool widgets_want_keyboard(void);
 /* Closes the list that is open; false if none is. */
 bool widgets_close_choice(void);
 
-/* Sizes are in texels of the framebuffer. */
+/* In texels of the framebuffer. */
 void ui_begin_panel(float width, float height);
 void ui_end_panel(void);
-/* Widgets in between scroll, and leave `below` texels at the end of the panel. */
-void ui_begin_scroll(float below);
+/* Widgets in between scroll; those behind them stand at the end of the panel, if that is high
+ * enough. */
+void ui_begin_scroll(void);
 void ui_end_scroll(void);
 bool ui_section(const char *label, bool open);
 void ui_text(const char *format, ...) TOOL_PRINTF(1, 2);
@@ -47,7 +52,7 @@ bool ui_slider_float(const char *label, float *value, float low, float high, boo
 bool ui_slider_uint(const char *label, uint32_t *value, uint32_t low, uint32_t high,
                     bool logarithmic);
 bool ui_color(const char *label, float rgb[3]);
-/* Curves of 256 bins each: one of grey, or three of red, green and blue. */
+/* Curves of 256 bins each: one of grey, or three of red, green and blue. height: units. */
 void ui_histogram(uint32_t (*bins)[256], uint32_t curves, float height);
 /* A list to choose from: ui_begin_choice, an ui_choice for each word if it returned true, then
  * ui_end_choice. */
@@ -59,9 +64,16 @@ void ui_help(const char *text);
 bool ui_clicked_right(void);
 void ui_begin_disabled(bool disabled);
 void ui_end_disabled(void);
-/* A word on the picture, on a dark ground. align: 0 left of x, 1 right of it. */
-void ui_label(float x, float y, float align, const char *text);
-/* Text over everything, in the middle of width x height. */
+/* A box in the middle of width x height texels of the framebuffer, over the panel. */
+void ui_begin_box(float width, float height);
+void ui_end_box(void);
+/* How many lines of text so many texels hold. */
+size_t ui_lines(float height);
+/* A word on the picture, on a dark ground, at a texel of the framebuffer: beside it, in its middle,
+ * or on the bottom of the window, whose texel it then is. */
+enum ui_place { UI_LEFT_OF, UI_RIGHT_OF, UI_AROUND, UI_ABOVE };
+void ui_label(float x, float y, enum ui_place place, const char *text);
+/* Text over everything, in the middle of width x height texels. */
 void ui_overlay(float width, float height, const char *text);
 
 #ifdef __cplusplus

@@ -23,7 +23,11 @@ static const struct {
     {GLFW_KEY_S, KEY_SAVE},         {GLFW_KEY_P, KEY_PANEL},
     {GLFW_KEY_O, KEY_PROJECTION},   {GLFW_KEY_SPACE, KEY_PAUSE},
     {GLFW_KEY_Q, KEY_QUIT},         {GLFW_KEY_ESCAPE, KEY_ESCAPE},
-    {GLFW_KEY_F1, KEY_HELP},
+    {GLFW_KEY_F1, KEY_HELP},        {GLFW_KEY_UP, KEY_UP},
+    {GLFW_KEY_DOWN, KEY_DOWN},      {GLFW_KEY_PAGE_UP, KEY_PAGE_UP},
+    {GLFW_KEY_HOME, KEY_FIRST},     {GLFW_KEY_PAGE_DOWN, KEY_PAGE_DOWN},
+    {GLFW_KEY_END, KEY_LAST},       {GLFW_KEY_ENTER, KEY_ENTER},
+    {GLFW_KEY_KP_ENTER, KEY_ENTER}, {GLFW_KEY_BACKSPACE, KEY_ERASE},
 };
 
 /* --- The window system --- */
@@ -81,15 +85,19 @@ static struct window *window_of(GLFWwindow *handle)
 
 static void add_key(struct input *input, enum key_action action)
 {
-    if (input->key_count < MAX_KEYS)
-        input->keys[input->key_count++] = action;
+    if (input->key_count == MAX_KEYS)
+        input->key_count--; /* nobody types as fast */
+    input->characters[input->key_count] = 0;
+    input->keys[input->key_count++] = action;
 }
 
 /* A key that is held goes on zooming and stepping; whatever it switches or ends, it does once. */
 static bool repeats(enum key_action action)
 {
     return action == KEY_ZOOM_IN || action == KEY_ZOOM_OUT || action == KEY_PREVIOUS ||
-           action == KEY_NEXT || action == KEY_UNDO || action == KEY_REDO;
+           action == KEY_NEXT || action == KEY_UNDO || action == KEY_REDO || action == KEY_UP ||
+           action == KEY_DOWN || action == KEY_PAGE_UP || action == KEY_PAGE_DOWN ||
+           action == KEY_ERASE;
 }
 
 /* With Ctrl, by the letter: Z and Y change places from keyboard to keyboard. */
@@ -100,7 +108,10 @@ static enum key_action chord(int key, int scancode, int mods)
         return KEY_NONE;
     if (strcmp(name, "z") == 0)
         return mods & GLFW_MOD_SHIFT ? KEY_REDO : KEY_UNDO;
-    return strcmp(name, "y") == 0 ? KEY_REDO : strcmp(name, "c") == 0 ? KEY_COPY : KEY_NONE;
+    return strcmp(name, "y") == 0   ? KEY_REDO
+           : strcmp(name, "c") == 0 ? KEY_COPY
+           : strcmp(name, "o") == 0 ? KEY_OPEN
+                                    : KEY_NONE;
 }
 
 static void on_key(GLFWwindow *handle, int key, int scancode, int action, int mods)
@@ -124,6 +135,8 @@ static void on_character(GLFWwindow *handle, unsigned character)
 {
     struct input *input = &window_of(handle)->input;
     input->changed = true;
+    add_key(input, KEY_CHARACTER);
+    input->characters[input->key_count - 1] = character;
     if (character == '+' || character == '=')
         add_key(input, KEY_ZOOM_IN);
     else if (character == '-')
@@ -212,6 +225,20 @@ static void on_framebuffer(GLFWwindow *handle, int width, int height)
     w->input.changed = true;
 }
 
+static double usable_scale(float x, float y)
+{
+    const double larger = (double)(x > y ? x : y);
+    return larger >= 0.25 && larger <= 16 ? larger : 1;
+}
+
+/* The window has moved to another monitor, or somebody has changed what it says. */
+static void on_content_scale(GLFWwindow *handle, float x, float y)
+{
+    struct window *w = window_of(handle);
+    w->content_scale = usable_scale(x, y);
+    w->input.changed = true;
+}
+
 static void on_refresh(GLFWwindow *handle)
 {
     window_of(handle)->input.changed = true;
@@ -222,7 +249,7 @@ static void on_refresh(GLFWwindow *handle)
 bool window_create(struct window *window, VkExtent2D size, const char *title,
                    struct tool_error *err)
 {
-    *window = (struct window){.scale_x = 1, .scale_y = 1};
+    *window = (struct window){.scale_x = 1, .scale_y = 1, .content_scale = 1};
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     GLFWwindow *handle = glfwCreateWindow((int)size.width, (int)size.height, title, NULL, NULL);
     if (!handle)
@@ -237,7 +264,11 @@ bool window_create(struct window *window, VkExtent2D size, const char *title,
     glfwSetScrollCallback(handle, on_scroll);
     glfwSetDropCallback(handle, on_drop);
     glfwSetFramebufferSizeCallback(handle, on_framebuffer);
+    glfwSetWindowContentScaleCallback(handle, on_content_scale);
     glfwSetWindowRefreshCallback(handle, on_refresh);
+    float x = 1, y = 1;
+    glfwGetWindowContentScale(handle, &x, &y);
+    on_content_scale(handle, x, y);
     int width, height;
     glfwGetFramebufferSize(handle, &width, &height);
     on_framebuffer(handle, width, height);
@@ -263,6 +294,15 @@ bool window_surface(struct window *window, VkInstance instance, VkSurfaceKHR *su
         return gpu_ok(err, "glfwCreateWindowSurface", result);
     return fail(err, EXIT_DEVICE, "cannot draw into a window: VkResult %d (%s)", (int)result,
                 glfw_message);
+}
+
+double window_system_scale(void)
+{
+    float x = 1, y = 1;
+    GLFWmonitor *monitor = glfwGetPrimaryMonitor();
+    if (monitor)
+        glfwGetMonitorContentScale(monitor, &x, &y);
+    return usable_scale(x, y);
 }
 
 VkExtent2D window_largest(void)

@@ -12,7 +12,8 @@
 
 enum key_action {
     KEY_NONE,
-    KEY_VIEW_1, /* and the six after it, in the order of enum view_kind */
+    KEY_CHARACTER, /* what the keys so far have typed, of input.characters */
+    KEY_VIEW_1,    /* and the six after it, in the order of enum view_kind */
     KEY_SWAP = KEY_VIEW_1 + 7,
     KEY_WIPE,
     KEY_ZOOM_IN,
@@ -28,17 +29,27 @@ enum key_action {
     KEY_UNDO,
     KEY_REDO,
     KEY_COPY,
+    KEY_OPEN,
+    KEY_UP,
+    KEY_DOWN,
+    KEY_PAGE_UP,
+    KEY_PAGE_DOWN,
+    KEY_FIRST,
+    KEY_LAST,
+    KEY_ENTER,
+    KEY_ERASE,
     KEY_HELP,
     KEY_ESCAPE,
     KEY_QUIT
 };
 
-enum { MAX_KEYS = 64 };
+enum { MAX_KEYS = 128 };
 
 /* Lengths are texels of the framebuffer, from its upper left corner. */
 struct input {
     enum key_action keys[MAX_KEYS]; /* pressed, in order */
     size_t key_count;
+    uint32_t characters[MAX_KEYS];    /* of Unicode; 0 but for KEY_CHARACTER */
     double x, y;                      /* the mouse, now */
     bool inside;                      /* the mouse is over the window */
     bool left, right;                 /* buttons held now */
@@ -54,6 +65,7 @@ struct window {
     void *handle; /* GLFWwindow */
     struct input input;
     double scale_x, scale_y; /* framebuffer texels per screen coordinate */
+    double content_scale;    /* framebuffer texels per texel of a monitor of 96 dpi, where it is */
 };
 
 /* What gpu_create needs to know. Errors: EXIT_DEVICE if there is no display or no Vulkan on it. */
@@ -66,6 +78,8 @@ bool window_create(struct window *window, VkExtent2D size, const char *title,
 void window_destroy(struct window *window);
 bool window_surface(struct window *window, VkInstance instance, VkSurfaceKHR *surface,
                     struct tool_error *err);
+/* content_scale of a window that is still to open. */
+double window_system_scale(void);
 /* The size of the largest part of the screen that a window may take. */
 VkExtent2D window_largest(void);
 /* 0x0 while the window is minimised. */
