@@ -87,8 +87,8 @@ def sweep(scratch, *arguments, each=1):
 
 @case
 def failing_calls_end_the_view_of_a_file(scratch):
-    sweep(scratch, 'in.exr', '--quiet', '--fov', FOV, '--radius', RADIUS, '--show', 'difference', '--versus',
-          '--method hbao', '--wipe', '0.5')
+    sweep(scratch, 'in.exr', '--quiet', '--fov', FOV, '--radius', RADIUS, '--show', 'difference',
+          '--versus', '--method hbao', '--wipe', '0.5')
 
 
 @case

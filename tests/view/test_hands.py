@@ -393,8 +393,8 @@ def exposure_and_range_follow_the_panel(scratch):
     stops = float(re.search('exposed by (-[0-9.]+) stops', lines[1]).group(1))
     planes = {k: c * 2 ** stops if k in 'RGB' else c for k, c in SCENE.color().items()}
     write_exr(scratch.path('in.exr'), {**gbuffer(False), **planes})
-    same_picture(read_png(scratch.path('saved.png')), preview(scratch, 'in.exr', *READ, mode='comp'),
-                 'exposed')
+    wanted = preview(scratch, 'in.exr', *READ, mode='comp')
+    same_picture(read_png(scratch.path('saved.png')), wanted, 'exposed')
     depth = read_png(scratch.path('saved.2.png'))
     top = (700 - HEIGHT) // 2
     same_picture(depth, shown[top:top + HEIGHT], 'depth')

@@ -95,7 +95,7 @@ def sanitizer_options():
 class Viewer:
     """A running vkao-view, its window in the corner of the screen."""
 
-    def __init__(self, scratch, *arguments, size=None):
+    def __init__(self, scratch, *arguments, size=None, env=None):
         self.scratch, self.display = scratch, Display.get()
         arguments = [str(a) for a in arguments]
         if size:
@@ -105,7 +105,7 @@ class Viewer:
         self.process = subprocess.Popen(
             self.command, cwd=scratch.directory, text=True, stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            env={**os.environ, **self.display.environment()})
+            env={**os.environ, **self.display.environment(), **(env or {})})
         self.window = self.find_window()
 
     def __enter__(self):

@@ -33,7 +33,8 @@ void browser_close(struct browser *browser);
 
 /* By so many entries, up to the ends. */
 void browser_move(struct browser *browser, long by);
-/* Adds a character of Unicode to the filter, or takes its last character away; without one, goes to the folder above. */
+/* Adds a character of Unicode to the filter, or takes its last one away; without any, goes to the
+ * folder above. */
 void browser_type(struct browser *browser, uint32_t character);
 bool browser_erase(struct browser *browser, struct tool_error *err);
 /* Of the chosen entry: true with the path of a file; false for a folder, which is then listed, for
