@@ -307,10 +307,13 @@ def tab_after_a_drag_in_the_panel_opens_no_text_field(scratch):
 @case
 def escape_closes_a_list_before_the_window(scratch):
     with opened(scratch, size=(WIDTH + PANEL_WIDTH, 700)) as viewer:
+        def below_method():
+            return screen(scratch, viewer, (WIDTH, 300))[190:290, 10:90].astype(int)
+        before = below_method()
         viewer.click(80, 175)  # method
-        time.sleep(0.5)
+        until(lambda: (below_method() != before).any(axis=-1).mean() > 0.3, 'list')
         viewer.key('Escape')
-        time.sleep(0.5)
+        until(lambda: (below_method() == before).all(), 'end of the list')
         viewer.click(26, 129)  # 'fast', which an open list would cover or close instead
         viewer.wait_title('A vbao half')
         viewer.key('F1', 'Escape')

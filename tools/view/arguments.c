@@ -9,7 +9,7 @@
     "Keys: 1 raw AO 2 AO 3 composite 4 depth 5 normals 6 bent normals 7 difference\n"              \
     "  Tab A or B   W wipe: drag the line   P panel   S save   F1 ? help  Q, Esc quit\n"           \
     "  + - wheel zoom   drag pan   0, F fit   Z 1:1   Left Right frames of a sequence\n"           \
-    "  Ctrl+Z, Ctrl+Y undo, redo   Ctrl+C copies what the mouse is on   Drop: opens\n"             \
+    "  Ctrl+Z, Y undo, redo   Ctrl+C copies what the mouse is on   Ctrl+O, drop: open\n"           \
     "  Live: drag turns, right drag moves, wheel nears, O projection, Space the clock\n"
 
 const char arguments_keys[] = KEYS;

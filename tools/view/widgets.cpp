@@ -217,6 +217,7 @@ void ui_begin_panel(float width, float height)
 {
     ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
     ImGui::SetNextWindowSize(place(width, height));
+    ImGui::SetNextWindowBgAlpha(1.0f);
     ImGui::Begin("vkao", nullptr,
                  ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize);
     ImGui::PushItemWidth(place(width, 0.0f).x * 0.5f);
