@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """The camera where nobody tells it: from depth and normals, or plainly not."""
 import json
+import re
 
 import numpy as np
 
@@ -265,6 +266,75 @@ def panoramas_are_refused_and_headers_contradicted(scratch):
     view, said = inspect(scratch)
     for text in (view['camera']['remark'], said):
         matches('cameraFocalLength says 90 degrees, cameraFov 60: cameraFov is taken', text, 'it')
+
+
+@cases([('a little', 0.1), ('much', 0.2)])
+def uncertain_estimate_is_better_than_none(scratch, _, amount):
+    # Bumps as fine as texels: how far off it may be is said, and so it is.
+    scene = Scene()
+    n = scene.normal + np.random.default_rng(1).normal(0, amount, scene.normal.shape)
+    n = np.where(scene.sky[..., None], 0, n / np.linalg.norm(n, axis=-1, keepdims=True)) @ TURN
+    normals = {f'N.{c}': n[..., i].astype(np.float32) for i, c in enumerate('XYZ')}
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **normals})
+    view, said = inspect(scratch)
+    bound = float(re.fullmatch(r'estimated, \+-(\d+) %', view['camera']['source'])[1]) / 100
+    check(bound > 0.02, f'{bound} is called uncertain')
+    error = half_width(view['camera']['fov_x_deg']) / half_width(FOV) - 1
+    check(abs(error) < bound + 0.005, f'{view["camera"]["fov_x_deg"]} degrees +-{bound}')
+    matches(r'by depth and normals it is perhaps \d.*: the field of view is uncertain by', said,
+            'the warning')
+    matches('uncertain: the field of view', view['camera']['remark'], 'the remark')
+
+
+def what_is_doubted(scratch, fov, scene, cut=None, **layout):
+    channels = {'Z': scene.depth(), **scene.normals(space='world')}
+    write_exr(scratch.path('in.exr'), {k: v[cut] if cut else v for k, v in channels.items()},
+              attributes=[('cameraFov', 'float', fov)], **layout)
+    view, said = inspect(scratch)
+    equal(view['camera']['source'], 'cameraFov', 'source')
+    return [line for line in said.splitlines() if 'cameraFov says' in line]
+
+
+@cases([('right', 60, 60, False), ('too narrow', 48, 60, True), ('too wide', 75, 60, True),
+        ('wide', 105, 90, True), ('nearly right', 60.5, 60, False)])
+def header_that_the_image_contradicts_is_said(scratch, _, told, true, is_said):
+    said = what_is_doubted(scratch, told, Scene(fov=true))
+    equal(len(said), is_said, f'number of doubts: {said}')
+    for line in said:
+        matches(rf'says {told} degrees .*, but depth and normals ({true}|{true - 1}\.9\d*|'
+                rf'{true}\.\d+) degrees .*that of cameraFov is taken \(--fov', line, 'the doubt')
+
+
+@case
+def lens_shift_that_the_header_lacks_is_said(scratch):
+    # A crop that lost its display window looks to the side.
+    scene, cut = Scene(200, 120, 66), (slice(30, 120), slice(50, 200))
+    said = what_is_doubted(scratch, 66, scene, cut)
+    equal(len(said), 1, f'number of doubts: {said}')
+    matches(r'depth and normals 5[12].* degrees .*, shift 0\.1[67]', said[0], 'the doubt')
+    equal(what_is_doubted(scratch, 66, scene, cut, x=50, y=30, display=(0, 0, 199, 119)), [],
+          'doubts with its display window')
+
+
+@cases([('alone', '0.2', {}, 72.7), ('as per cent', '20', {}, 72.7),
+        ('outside of the display', '0.2', {'display': (10, 5, 149, 84)}, 63.0)])
+def overscan_of_unreal_widens_the_view(scratch, _, percentage, layout, fov):
+    write_exr(scratch.path('in.exr'), {'Z': Scene().depth()},
+              attributes=[('unreal/camera/Cam/fov', '63.0'),
+                          ('unreal/camera/overscanPercentage', percentage)], **layout)
+    view, said = inspect(scratch)
+    check(abs(view['camera']['fov_x_deg'] - fov) < 0.05, f'{view["camera"]["fov_x_deg"]}')
+    equal('with an overscan of 20 %' in said, fov > 63, f'whether it is said in {said}')
+
+
+@case
+def radial_depth_from_a_near_plane_needs_no_name_for_it(scratch):
+    scene = Scene(fov=100)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth('radial-near'), **scene.normals()},
+              attributes=[('cameraFov', 'float', 100)])
+    view, _ = inspect(scratch)
+    equal(view['conventions']['depth_type'], 'radial-near', 'depth type')
+    check(abs(view['camera']['near'] / NEAR - 1) < 0.05, f'near is {view["camera"]["near"]}')
 
 
 # --- Sequences ---

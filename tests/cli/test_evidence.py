@@ -248,6 +248,46 @@ def normalised_depth_needs_its_range(scratch, _, near, far, inverted):
     check((read_ao(scratch.path('again.exr')) == ao).all(), '--like gives other AO')
 
 
+@case
+def normalised_depth_may_be_radial(scratch):
+    scene, far = Scene(fov=95), 20.0
+    wanted, _ = clean(scratch, scene, fov=95, normals=False)
+    depth = np.where(scene.sky, 1, scene.z * scene.stretch / far).astype(np.float32)
+    options = ('--fov', 95, '--depth-type', 'normalized', '--depth-range', f'0,{far}')
+    ao, said = run(scratch, {'Z': depth}, *options)
+    check_same(ao, wanted, 'normalised distances from the eye')
+    matches('taken for distances from the eye', said, 'stderr')
+    planar = np.where(scene.sky, 1, scene.z / far).astype(np.float32)
+    check('from the eye' not in run(scratch, {'Z': planar}, *options)[1], 'planar is called radial')
+
+
+@cases([('a third', 1 / 3, True), ('nothing', 0, False)])
+def depth_from_a_near_plane_is_said(scratch, _, share, is_said):
+    scene = Scene()
+    depth = depth_of(scene, 1e10) - np.float32(share * scene.z.min())
+    write_exr(scratch.path('in.exr'), {'Z': depth, **scene.normals(space='world')})
+    said = str(inspect(scratch)['warnings'])
+    equal('looks measured from a near plane' in said, is_said, f'whether it is in {said}')
+
+
+@case
+def positions_come_before_parts_of_a_range(scratch):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene)
+    z = np.where(scene.sky, 0, scene.z)
+    p = np.where(scene.sky[..., None], 0,
+                 (np.stack([scene.x * z, scene.y * z, -z], axis=-1) - MOVE) @ TURN)
+    channels = {'Z': depth_of(scene, 1, 1 / 20), **scene.normals(space='world'),
+                **{f'P.{c}': p[..., i].astype(np.float32) for i, c in enumerate('XYZ')}}
+    for attributes in ([], [('cameraFov', 'float', FOV), *rotation_header()]):
+        ao, said = run(scratch, channels, attributes=attributes)
+        check_same(ao, wanted, f'P beside normalised Z, {len(attributes)} attributes')
+        matches("depth 'Z' is not that of the positions 'P'.*: depth is taken from them", said,
+                'stderr')
+    scratch.fails(CHANNELS, "depth 'Z' is from .* normalised", 'in.exr', '-o', 'x.exr', '--depth',
+                  'Z', hint="or --depth 'P', which are positions")
+
+
 @cases(['1', '1,', '5,1', '-1,5', '1,5,upside', '1,5,', 'a,b', '1,inf'])
 def bad_ranges_are_refused(scratch, argument):
     write_exr(scratch.path('in.exr'), {'Z': Scene().depth()})
@@ -377,15 +417,16 @@ def world_normals_are_known_by_agreement(scratch):
 def normals_that_agree_with_nothing_are_left_out(scratch):
     scene = Scene()
     wanted, _ = clean(scratch, scene, normals=False)
-    n = scene.normals(space='world')
-    odd = {'N.X': n['N.Y'], 'N.Y': n['N.Z'], 'N.Z': n['N.X']}
+    blocks = np.random.default_rng(2).normal(size=(9, 16, 3)).repeat(10, axis=0).repeat(10, axis=1)
+    blocks /= np.linalg.norm(blocks, axis=-1, keepdims=True)
+    odd = {f'N.{c}': blocks[..., i].astype(np.float32) for i, c in enumerate('XYZ')}
     ao, said = run(scratch, {'Z': scene.depth(), **odd}, '--fov', FOV,
                    attributes=rotation_header())
     check_same(ao, wanted, 'normals of another scene')
     matches('do not agree with the depth in any space: deriving', said, 'stderr')
 
 
-@cases([('its own', 0, False), ('of another camera', 40, True)])
+@cases([('its own', 0, False), ('a little off', 15, True), ('of another camera', 40, True)])
 def rotation_that_depth_contradicts_is_said(scratch, _, degrees, is_said):
     # Turned round the upright of the floor, whose normals stay; the ball and the wall disagree.
     scene = Scene()
@@ -399,14 +440,42 @@ def rotation_that_depth_contradicts_is_said(scratch, _, degrees, is_said):
 
 
 @case
-def background_with_normals_is_doubted(scratch):
+def axes_of_another_world_are_found(scratch):
+    # z up where the header has y up: the rotation that the image shows is taken.
+    scene = Scene()
+    wanted, _ = clean(scratch, scene)
+    n = scene.normals(space='world')
+    turned = {'N.X': n['N.X'], 'N.Y': -n['N.Z'], 'N.Z': n['N.Y']}
+    ao, said = run(scratch, {'Z': scene.depth(), **turned}, '--fov', FOV,
+                   attributes=rotation_header())
+    check_same(ao, wanted, 'with other axes')
+    matches('by the rotation of worldToCamera: that of the image is taken', said, 'stderr')
+
+
+@cases([('40', 40), ('8', 8)])
+def background_with_normals_is_doubted(scratch, _, value):
     # Colours of normals are (.5, .5, 1) where there is nothing, which faces the camera.
     scene = hidden(0.6)
     normals = scene.normals()
     normals['N.Z'] = np.where(scene.sky, 1, normals['N.Z']).astype(np.float32)
-    write_exr(scratch.path('in.exr'), {'Z': depth_of(scene, 40), **normals})
-    matches('taken for a wall .*--background 40', str(inspect(scratch, '--fov', FOV)['warnings']),
-            'the warnings')
+    write_exr(scratch.path('in.exr'), {'Z': depth_of(scene, value), **normals})
+    matches(f'taken for a wall .*--background {value}',
+            str(inspect(scratch, '--fov', FOV)['warnings']), 'the warnings')
+
+
+@cases([('noise', None), ('sideways', (1, 0, 0))])
+def no_wall_has_such_normals(scratch, _, normal):
+    # Behind all else by a little, always as far, and normals that no wall has.
+    scene = hidden(0.6)
+    planes = scene.normal.copy()
+    noise = np.random.default_rng(4).normal(size=planes.shape)
+    noise /= np.linalg.norm(noise, axis=-1, keepdims=True)
+    planes[scene.sky] = noise[scene.sky] if normal is None else normal
+    normals = {f'N.{c}': planes[..., i].astype(np.float32) for i, c in enumerate('XYZ')}
+    wanted, _ = clean(scratch, scene)
+    ao, _ = run(scratch, {'Z': depth_of(scene, 7), **normals}, '--fov', FOV)
+    check_same(ao, wanted, 'a near background')
+    check((ao[scene.sky] == 1).all(), 'the sky is not 1')
 
 
 NORMAL_NAMES = [
@@ -427,6 +496,21 @@ def normals_are_found_by_all_their_names(scratch, _, names):
     write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **planes})
     view = inspect(scratch, '--fov', FOV)
     equal(view['roles']['normal'] and view['roles']['normal']['channels'], list(names), 'normals')
+
+
+@cases([('Octane', ('Normal (geometric)', 'Normal (shading)', 'Normal (tangent)'), 1),
+        ('Corona', ('Normals - Geometric', 'Normals - Shading'), 1),
+        ('without shading', ('Geo Normal', 'My Normal'), 1)])
+def one_of_several_normals_is_taken_by_rule(scratch, _, layers, wanted):
+    scene = Scene(48, 27)
+    channels = {'Z': scene.depth()}
+    for layer in layers:
+        channels.update(scene.normals(layer, letters='RGB'))
+    write_exr(scratch.path('in.exr'), channels)
+    view = inspect(scratch, '--fov', FOV)
+    equal(view['roles']['normal']['name'], layers[wanted], 'normals')
+    check({'role': 'normal', 'name': layers[0], 'why': f"'{layers[wanted]}' comes first"} in
+          view['passed_over'], str(view['passed_over']))
 
 
 @cases([('hitPz',), ('ImageDepth.R',), ('Z-depth.R',), ('dd.y',), ('Depth.V',), ('Depth',),
@@ -472,6 +556,34 @@ def grey_images_are_hinted_at(scratch):
                            ({'Y': depth}, '--depth Y')):
         write_exr(scratch.path('in.exr'), channels)
         scratch.fails(CHANNELS, 'no depth channel found', 'in.exr', '-o', 'x.exr', hint=hint)
+
+
+@case
+def grey_files_called_depth_are_depth(scratch):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene, normals=False)
+    write_exr(scratch.path('shot_depth.0001.exr'), {c: scene.depth() for c in 'RGB'})
+    options = ('-o', 'ao.exr', *OPTIONS, '--fov', FOV)
+    said = scratch.render('shot_depth.0001.exr', *options).stderr
+    check_same(read_ao(scratch.path('ao.exr')), wanted, 'a grey image')
+    matches("no channel is called depth, but the file is: 'R' of its grey image", said, 'stderr')
+    write_exr(scratch.path('depth.exr'), {c: v for c, v in scene.color().items()})
+    scratch.fails(CHANNELS, "'R' and 'G' differ: a picture in colours", 'depth.exr', *options,
+                  hint='--depth R')
+    write_exr(scratch.path('depth_of_field.exr'), {c: scene.depth() for c in 'RGB'})
+    scratch.fails(CHANNELS, 'no depth channel found', 'depth_of_field.exr', *options)
+
+
+@case
+def colours_in_a_layer_called_depth_are_refused(scratch):
+    scene = Scene()
+    colors = {f'depth.{c}': v for c, v in scene.color(alpha=False).items()}
+    write_exr(scratch.path('in.exr'), colors)
+    scratch.fails(CHANNELS, "'depth.R' and 'depth.G' differ: a picture in colours", 'in.exr', '-o',
+                  'x.exr', '--fov', FOV)
+    nothing = np.zeros_like(scene.depth())
+    channels = {'depth.R': scene.depth(), 'depth.G': nothing, 'depth.B': nothing}
+    run(scratch, channels, '--fov', FOV)
 
 
 # --- Files ---

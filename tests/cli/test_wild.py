@@ -114,10 +114,6 @@ REFUSED = [
     ('3delight_primitives_Z', INPUT, 'deep data', 'flatten'),
     ('arnold_1321_normals', CHANNELS, 'no depth channel', '--depth'),
     ('bispectral_864ch', CHANNELS, 'no depth channel', '--depth'),
-    ('blender_depth_RGBA', CHANNELS, 'no depth channel', '--depth R'),
-    ('blender_scene_depth_RGBA', CHANNELS, 'no depth channel', '--depth R'),
-    ('dibr_depth.0000', CHANNELS, 'no depth channel', '--depth R'),
-    ('depth_BGR', CHANNELS, 'no depth channel', '--depth R'),
     ('blender_depth_Y_a', CHANNELS, 'no depth channel', '--depth Y'),
     ('crypto_special_chars', CHANNELS, 'no depth channel', '--depth'),
     ('mitsuba_spot_multi', CHANNELS, 'no depth channel', '--depth'),
@@ -164,12 +160,14 @@ def roles_are_found_each_on_its_own(scratch, name, roles):
             check(view['roles'][role], f'{name}: {role} is not found in view {view["name"]!r}')
 
 
-@cases(['blender_depth_RGBA', 'dibr_depth.0000', 'depth_BGR'])
-def grey_depth_is_taken_when_it_is_named(scratch, name):
-    found = json.loads(scratch.run('inspect', path(name), '--depth', 'R', '--fov', 40,
-                                   '--json').stdout)['views'][0]
-    check(found['verdict']['can_be_processed'], str(found))
-    check(found['conventions']['max_z'] < 1000, 'the background counts')
+@cases(['blender_depth_RGBA', 'blender_scene_depth_RGBA', 'dibr_depth.0000', 'depth_BGR'])
+def grey_depth_is_taken_by_its_name_or_that_of_its_file(scratch, name):
+    for options, is_guessed in (((), True), (('--depth', 'R'), False)):
+        found = json.loads(scratch.run('inspect', path(name), *options, '--fov', 40,
+                                       '--json').stdout)['views'][0]
+        check(found['verdict']['can_be_processed'], str(found))
+        check(found['conventions']['max_z'] < 1000, 'the background counts')
+        equal("'R' of its grey image" in str(found['warnings']), is_guessed, 'whether it is said')
 
 
 if __name__ == '__main__':

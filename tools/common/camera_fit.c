@@ -12,6 +12,8 @@
 enum { MOST_FOUND = 64, MOST_RIVALS = 8, SEARCH_SAMPLES = 1500, FIELDS_OF_VIEW = 15 };
 
 static const double sharpest_sigma = 0.0005, least_sigma = 0.004, most_sigma = 0.12;
+/* Bumps and smooth shading turn normals by as much, as a sine: half of one agrees. */
+static const double half_agreement = 0.12;
 
 /* --- Search --- */
 
@@ -35,6 +37,14 @@ static void keep(struct found *f, const struct fit_solution *solution)
 {
     if (f->count < MOST_FOUND)
         f->list[f->count++] = *solution;
+}
+
+/* Of the whole image as it is seen. */
+static double aspect_of(const struct fit_input *input)
+{
+    const double width = (double)input->display_window.x_max - input->display_window.x_min + 1.0;
+    const double height = (double)input->display_window.y_max - input->display_window.y_min + 1.0;
+    return width / height * input->pixel_aspect;
 }
 
 struct starts {
@@ -118,6 +128,10 @@ static void search_model(const struct fit_samples *s, const struct fit_input *in
                                      ? log(input->near_half_width) + (i - count / 2) * 0.02
                                      : trial(s, model, i, count);
             row[i].p[FIT_C] = starts.offsets[start];
+            if (is_known) {
+                row[i].p[FIT_CX] = -2.0 * input->shift_x;
+                row[i].p[FIT_CY] = -2.0 * input->shift_y / aspect_of(input);
+            }
             row[i].rotation = fit_start_rotation(s, &row[i]);
             row[i].cost = fit_cost(s, &row[i], 0.1);
         }
@@ -165,10 +179,15 @@ static void merge_doubles(struct found *f)
     f->count = kept;
 }
 
+static bool is_in_unit_range(const struct fit_samples *s)
+{
+    return s->least >= -1e-6 && s->most <= 1.0001;
+}
+
 static bool search(const struct fit_samples *s, const struct fit_input *input, struct found *f)
 {
     struct fit_samples few;
-    const bool in_unit_range = s->least >= -1e-6 && s->most <= 1.0001;
+    const bool in_unit_range = is_in_unit_range(s);
     if (!fit_samples_thin(s, SEARCH_SAMPLES, &few))
         return false;
     f->count = 0;
@@ -319,8 +338,10 @@ static void settle_offset(const struct fit_samples *s, const struct fit_input *i
     plain.p[FIT_C] = 0;
     plain.free[FIT_C] = false;
     best->near_known = true;
-    if (plain.model == FIT_RADIAL && best->model == FIT_RADIAL) {
-        offset.model = FIT_RADIAL_NEAR;
+    if (plain.model == best->model && (plain.model == FIT_RADIAL || plain.model == FIT_PLANAR)) {
+        offset.model = plain.model == FIT_RADIAL ? FIT_RADIAL_NEAR : FIT_PLANAR_NORMALIZED;
+        if (plain.model == FIT_PLANAR && !(input->models >> offset.model & 1u))
+            return;
         offset.p[FIT_C] = 0.01;
         offset.free[FIT_C] = true;
     } else if (plain.model == best->model || !(input->models >> plain.model & 1u)) {
@@ -328,7 +349,11 @@ static void settle_offset(const struct fit_samples *s, const struct fit_input *i
     }
     const double common = fmax(best->sigma, least_sigma);
     fit_refine(s, &offset, common);
-    const bool earned = earns(s, &plain, &offset, common) && earns(s, &plain, &offset, best->sigma);
+    /* A little of an offset is what filters and rounding leave. */
+    const double least =
+        offset.model == FIT_PLANAR_NORMALIZED && best->model == FIT_PLANAR ? 0.03 : 0;
+    const bool earned = fabs(offset.p[FIT_C]) > least && earns(s, &plain, &offset, common) &&
+                        earns(s, &plain, &offset, best->sigma);
     fit_refine(s, &plain, common);
     const double apart = fabs(plain.p[FIT_LN_K] - offset.p[FIT_LN_K]);
     *best = sharpened(s, earned ? &offset : &plain);
@@ -472,6 +497,14 @@ static struct shares find_shares(const struct fit_samples *s, const struct fit_s
     return shares;
 }
 
+/* Of hundreds of crops of renders whose field of view was uncertain, all of these were nearer to
+ * the truth than 40 degrees. */
+static bool is_likely(const struct fit *fit)
+{
+    const double most = fit->model == FIT_ORTHO ? 0.02 : 0.25;
+    return fit->bound < most && (fit->model <= FIT_RADIAL_NEAR || fit->model == FIT_ORTHO);
+}
+
 static bool judge(const struct fit_samples *s, const struct found *f, double sigma,
                   const struct fit_solution *best, struct fit *fit)
 {
@@ -496,10 +529,13 @@ static bool judge(const struct fit_samples *s, const struct found *f, double sig
     if (!fit->why[0] && !find_rival(s, f, sigma, best, fit))
         return false;
     fit_directions(s, best, values, &weakest);
-    fit->rotation_known = values[1] > 0.035 && best->rotation_deviation < 1.0;
+    const bool has_directions = values[1] > 0.035;
+    const bool is_vague = shares.near < 0.4 || fit->bound > 0.02;
+    fit->rotation_known = has_directions && best->rotation_deviation < 1.0;
     if (!fit->rotation_known && !fit->why[0])
         snprintf(fit->why, sizeof fit->why, "nearly all normals are parallel");
     fit->is_sure = !fit->why[0];
+    fit->is_usable = fit->is_sure || (is_vague && has_directions && is_likely(fit));
     return true;
 }
 
@@ -514,15 +550,16 @@ struct attempt {
 static void describe(const struct fit_samples *s, const struct fit_input *input,
                      const struct fit_solution *best, struct fit *fit)
 {
-    const double width = (double)input->display_window.x_max - input->display_window.x_min + 1.0;
-    const double height = (double)input->display_window.y_max - input->display_window.y_min + 1.0;
     const struct vec3 rows[3] = {best->rotation.x, best->rotation.y, best->rotation.z};
     fit->model = best->model;
     fit->half_width = exp(best->p[FIT_LN_K]);
     fit->shift_x = -best->p[FIT_CX] / 2.0;
-    fit->shift_y = -best->p[FIT_CY] / 2.0 * width / height * input->pixel_aspect;
-    fit->near_plane = best->model == FIT_RADIAL_NEAR ? best->p[FIT_C] * s->median : 0;
+    fit->shift_y = -best->p[FIT_CY] / 2.0 * aspect_of(input);
+    fit->near_plane = best->model == FIT_RADIAL_NEAR || best->model == FIT_PLANAR_NORMALIZED
+                          ? best->p[FIT_C] * s->median
+                          : 0;
     fit->near_known = best->near_known;
+    fit->in_unit_range = is_in_unit_range(s);
     for (int i = 0; i < 3; i++) {
         fit->rotation[i * 3] = rows[i].x;
         fit->rotation[i * 3 + 1] = rows[i].y;
@@ -556,6 +593,7 @@ static bool attempt(const struct fit_input *input, unsigned blur, struct attempt
             settle_sign(&s, &a->best);
             a->near_share = find_shares(&s, &a->best).near;
             describe(&s, input, &a->best, &a->fit);
+            a->fit.agreement = 1.0 - fit_cost(&s, &a->best, half_agreement);
             ok = judge(&s, &f, sigma, &a->best, &a->fit);
             *tried = true;
         }

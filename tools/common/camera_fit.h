@@ -38,22 +38,26 @@ struct fit_input {
     uint32_t width, height;
     struct exr_box data_window, display_window;
     double pixel_aspect;
-    unsigned models;   /* 1 << enum fit_model or-ed: what the depth may be */
-    double half_width; /* what of the camera is known, as struct camera has it; 0: nothing */
+    unsigned models; /* 1 << enum fit_model or-ed: what the depth may be */
+    /* What of the camera is known, as struct camera has it; half_width 0: nothing. */
+    double half_width, shift_x, shift_y;
     /* Where to look first, and not far from it; 0: everywhere. */
     double near_half_width;
 };
 
 struct fit {
     bool is_sure;        /* of model, half_width and shift */
+    bool is_usable;      /* or likely to be nearer than a guess */
     bool rotation_known; /* else all normals are parallel, or nearly */
     bool near_known;     /* of FIT_RADIAL and FIT_RADIAL_NEAR */
+    bool in_unit_range;  /* depth is */
     enum fit_model model;
     double half_width;       /* at distance 1; FIT_ORTHO: scene units */
     double shift_x, shift_y; /* as struct camera has them */
-    double near_plane;       /* of FIT_RADIAL_NEAR, scene units */
+    double near_plane;       /* of FIT_RADIAL_NEAR and FIT_PLANAR_NORMALIZED, units of depth */
     double rotation[9];      /* of the stored normals to view space, m[row * 3 + column] */
     double bound;            /* relative error of half_width that is not exceeded, surely not */
+    double agreement;        /* [0,1] of the stored normals with those of depth */
     char why[192];           /* not sure: because ... */
 };
 

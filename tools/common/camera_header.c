@@ -325,6 +325,18 @@ static double half_width_by(const struct exr_part *part, const struct fov_row *r
     return focal > 0 && sensor > 0 ? sensor / (2.0 * focal) : 0;
 }
 
+/* Unreal's cameras do not know how much more is rendered around what they see. Where the data
+ * window says so, theirs is the display window. */
+static double overscan_of(const struct exr_part *part, const char *name)
+{
+    const struct exr_box *data = &part->data_window, *display = &part->display_window;
+    double more = number(part, "unreal/camera/*overscanPercentage", 0);
+    if (!text_starts_with(name, "unreal/") || !(more > 0 && more <= 100) ||
+        data->x_min < display->x_min || data->x_max > display->x_max)
+        return 1.0;
+    return 1.0 + (more > 1 ? more / 100.0 : more);
+}
+
 /* Focus breathing makes a lens some per cent longer than it says. */
 static bool agree(const struct fov_row *row, double a, double b)
 {
@@ -340,9 +352,13 @@ static void take_fov(const struct exr_part *part, struct camera *camera)
     for (size_t i = 0; i < sizeof fov_table / sizeof *fov_table; i++) {
         const struct fov_row *row = &fov_table[i];
         const char *name = row->fov ? row->fov : row->focal;
-        double half = half_width_by(part, row);
+        const double overscan = overscan_of(part, name);
+        double half = half_width_by(part, row) * overscan;
         if (!(half > 0))
             continue;
+        if (overscan > 1 && !taken)
+            remark(camera, "%s is %.4g degrees with an overscan of %.3g %%", name, fov_of(half),
+                   (overscan - 1.0) * 100.0);
         if (camera->type == CAMERA_ORTHOGRAPHIC)
             return; /* renderers write a field of view beside it, which means nothing */
         if (camera->type != CAMERA_UNKNOWN && agree(row, half, camera->half_width))

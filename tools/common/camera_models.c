@@ -70,7 +70,9 @@ static struct vec3 normal_with(const struct fit_samples *s, const struct fit_sam
         const double ys[5] = {y, y, y, y - s->step_y, y + s->step_y};
         double w[5];
         for (int i = 0; i < 5; i++)
-            w[i] = inverse_z(s, model, p->d[i], c, stretch_at(model, k, xs[i], ys[i]));
+            w[i] = model == FIT_PLANAR
+                       ? 1.0 / p->d[i]
+                       : inverse_z(s, model, p->d[i], c, stretch_at(model, k, xs[i], ys[i]));
         const double w_x = (w[2] - w[1]) / dx, w_y = (w[4] - w[3]) / dy;
         n = vec3(-w_x / k, -w_y / k, w[0] - x * w_x - y * w_y);
     }
@@ -397,7 +399,7 @@ void fit_descend(const struct fit_samples *s, struct fit_solution *at, double si
             struct fit_solution next = stepped(s, at, &eq, damping);
             next.cost = fit_cost(s, &next, sigma);
             better = next.cost < at->cost;
-            done = !better || at->cost - next.cost < 1e-9 * fmax(at->cost, 1e-12);
+            done = !better || at->cost - next.cost < 1e-6 * fmax(at->cost, 1e-9);
             damping = better ? fmax(damping * 0.2, 1e-9) : damping * 10.0;
             if (better)
                 *at = next;

@@ -128,11 +128,12 @@ static float *read_role(const struct gbuffer *g, const struct role *role, size_t
     return aligned;
 }
 
-/* Of a depth that is none, and where nothing else tells the camera. */
-static bool wants_positions(const struct gbuffer *g)
+/* Of a depth that is none, and where anything is left to be told. */
+static bool wants_positions(const struct gbuffer *g, const struct gbuffer_options *options)
 {
+    const bool is_told = options->depth_type != DEPTH_AUTO || options->roles.name[ROLE_DEPTH];
     return g->depth_type == DEPTH_POSITION ||
-           (g->roles.kind[ROLE_POSITION].found && !g->camera.source[0]);
+           (g->roles.kind[ROLE_POSITION].found && !(is_told && g->camera.source[0]));
 }
 
 static bool use_positions(struct gbuffer *g, const struct gbuffer_options *options,
@@ -140,7 +141,7 @@ static bool use_positions(struct gbuffer *g, const struct gbuffer_options *optio
 {
     const struct role *role =
         &g->roles.kind[g->depth_type == DEPTH_POSITION ? ROLE_DEPTH : ROLE_POSITION];
-    if (!wants_positions(g))
+    if (!wants_positions(g, options))
         return true;
     float *positions = read_role(g, role, 4, 0.0f, err);
     const bool ok =
@@ -173,23 +174,29 @@ static bool read_depth(struct gbuffer *g, struct tool_error *err)
            exr_read_channels(role->info, role->part, reads, has_alpha ? 2 : 1, err);
 }
 
-/* A picture in colours is no depth, whatever its red is. Lossy compression leaves grey nearly
- * so. */
-static bool check_grey(const struct gbuffer *g, struct tool_error *err)
+/* A picture in colours is no depth, whatever its red is. Lossy compression leaves grey nearly so;
+ * a green of zero is none that anybody wrote. */
+static bool check_grey(const struct gbuffer *g, struct report *report, struct tool_error *err)
 {
     const struct role *depth = &g->roles.kind[ROLE_DEPTH];
     const size_t texels = gbuffer_texels(g);
-    size_t colored = 0;
+    size_t colored = 0, used = 0;
     if (!depth->twin)
         return true;
+    if (depth->is_guessed)
+        report_warn(report, "grey depth",
+                    "%s: no channel is called depth, but the file is: '%s' of its grey image is "
+                    "taken (--depth NAME says another)",
+                    depth->info->path, depth->channels[0]->name);
     const struct role role = {.info = depth->info, .part = depth->part, .channels = {depth->twin}};
     float *twin = read_role(g, &role, 1, 0.0f, err);
     for (size_t i = 0; twin && i < texels; i++) {
         const float a = g->depth[i], b = twin[i];
         colored += fabsf(a - b) > 0.01f * fmaxf(fabsf(a), fabsf(b));
+        used += fabsf(b) > 0.0f;
     }
     free(twin);
-    if (!twin || colored * 100 <= texels)
+    if (!twin || colored * 100 <= texels || (!depth->is_guessed && used == 0))
         return twin != NULL;
     fail_hint(err, "give the file of the depth; or if one channel is depth, say which: --depth R");
     return fail(err, EXIT_CHANNELS, "%s: '%s' and '%s' differ: a picture in colours, no depth",
@@ -390,7 +397,7 @@ static bool check_budget(const struct exr_info *info, const struct gbuffer_optio
         return false;
     if (normal->found)
         add_role(g, normal, 4, &texel_bytes, &for_a_while);
-    if (wants_positions(g))
+    if (wants_positions(g, options))
         add_role(g, &g->roles.kind[ROLE_POSITION], 4, &texel_bytes, &for_a_while);
     if (options->want_color)
         add_role(g, color, 4, &texel_bytes, &for_a_while);
@@ -498,6 +505,7 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
     g->depth_type = options->depth_type != DEPTH_AUTO ? options->depth_type
                     : depth->depth_type != DEPTH_AUTO ? depth->depth_type
                                                       : DEPTH_PLANAR;
+    g->depth_range = options->depth_range;
     if (depth->depth_type == DEPTH_POSITION)
         g->depth_type = DEPTH_POSITION; /* whatever --depth-type says of numbers */
     if (options->want_color && !g->roles.kind[ROLE_COLOR].found)
@@ -553,7 +561,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     const struct exr_info *normals = normal->found ? normal->info : info;
     if (g->camera.remark[0])
         report_warn(report, "camera remark", "%s: %s", info->path, g->camera.remark);
-    if (!read_depth(g, err) || !check_grey(g, err))
+    if (!read_depth(g, err) || !check_grey(g, report, err))
         goto failed;
     if (normal->found) {
         g->normals = read_role(g, normal, 4, 0.0f, err);

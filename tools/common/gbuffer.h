@@ -26,7 +26,7 @@ enum background_reason {
     BACKGROUND_GIVEN_VALUE, /* --background */
     BACKGROUND_FAR_PLANE,   /* it is that of the camera */
     BACKGROUND_ALPHA,       /* alpha is 0 there */
-    BACKGROUND_NO_NORMALS,  /* normals are 0 there */
+    BACKGROUND_NO_NORMALS,  /* normals are 0 there, or none of a wall */
     BACKGROUND_FAR,         /* always the same, and far behind all else */
     BACKGROUND_DOUBT        /* always the same, but not so far: taken for a wall */
 };
@@ -62,6 +62,7 @@ struct depth_planes {
 struct depth_range {
     bool is_given;
     double zero, one; /* scene units */
+    bool is_radial;   /* from the eye; found, not given */
 };
 
 enum normal_encoding { NORMAL_ENCODING_AUTO, NORMAL_ENCODING_SIGNED, NORMAL_ENCODING_UNSIGNED };
@@ -125,6 +126,9 @@ struct gbuffer {
     double filtered_share; /* [0,1] of edges with a texel in between, as antialiasing makes them */
     enum normal_space normal_space; /* AUTO if there are no normals */
     enum normal_encoding normal_encoding;
+    /* Of the normals to view space, by the image, whatever header or file say. */
+    bool has_seen_rotation;
+    double seen_rotation[9]; /* m[row * 3 + column] */
     double normal_agreement; /* [0,1] of the normals with those of depth; 0 if that has too few */
     double min_z, median_z, max_z; /* view z of the foreground, scene units; 0 if there is none */
     double background_share;       /* [0,1], with the invalid ones */

@@ -37,6 +37,7 @@ struct surroundings {
     size_t texels;
     size_t normals, transparent; /* of these, with a normal, and with alpha 0 */
     size_t borders, touching;    /* borders to something else, and those without a jump */
+    double mean[3];              /* normal */
 };
 
 static int compare(const void *a, const void *b)
@@ -98,13 +99,34 @@ static bool has_normal(const struct gbuffer *g, size_t texel)
     return x * x + y * y + z * z > 0.25 && grey > 0.02;
 }
 
+static bool is_in(const struct gbuffer *g, size_t texel, double low, double high)
+{
+    const double d = gbuffer_distance(g, g->depth[texel]);
+    return d >= low && d <= high;
+}
+
+/* A wall has one normal, but for its bumps. */
+static void find_mean_normal(const struct gbuffer *g, double low, double high,
+                             struct surroundings *s)
+{
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        const float *n = g->normals + i * 4;
+        if (!is_in(g, i, low, high) || !has_normal(g, i))
+            continue;
+        const double x = (double)n[0], y = (double)n[1], z = (double)n[2];
+        const double share = 1.0 / (sqrt(x * x + y * y + z * z) * (double)s->normals);
+        s->mean[0] += x * share;
+        s->mean[1] += y * share;
+        s->mean[2] += z * share;
+    }
+}
+
 static struct surroundings look_around(const struct gbuffer *g, const struct cluster *c)
 {
     struct surroundings s = {0};
     const double low = c->value * same_value, high = c->value / same_value;
     for (size_t i = 0; i < gbuffer_texels(g); i++) {
-        const double d = gbuffer_distance(g, g->depth[i]);
-        if (!(d >= low && d <= high))
+        if (!is_in(g, i, low, high))
             continue;
         s.texels++;
         s.normals += g->normals && has_normal(g, i);
@@ -118,15 +140,28 @@ static struct surroundings look_around(const struct gbuffer *g, const struct clu
             if (neighbours[k] == i || (other >= low && other <= high))
                 continue;
             s.borders++;
-            s.touching += other > c->value * 0.75;
+            s.touching += other > c->value * 0.93;
         }
     }
+    if (g->normals)
+        find_mean_normal(g, low, high, &s);
     return s;
 }
 
 static bool mostly(size_t part, size_t whole)
 {
     return (double)part > 0.9 * (double)whole;
+}
+
+/* What is always as far is a wall that faces the camera, by the rotation that the image shows; if
+ * it shows none, normals prove nothing. */
+static bool has_normal_of_wall(const struct gbuffer *g, const struct surroundings *s)
+{
+    static const double least_length = 0.7, facing = 0.96; /* of a mean, and a cosine */
+    const double *m = s->mean, *r = g->seen_rotation + 6;
+    const double length = sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2]);
+    const double along = fabs(r[0] * m[0] + r[1] * m[1] + r[2] * m[2]);
+    return !g->has_seen_rotation || (length > least_length && along > facing * length);
 }
 
 /* Whether the cluster is background, and why. */
@@ -145,13 +180,15 @@ static enum background_reason judge(const struct gbuffer *g, const struct cluste
         return c->gap > 1.0 ? BACKGROUND_NO_NORMALS : BACKGROUND_NONE;
     if (c->gap >= clear_gap)
         return BACKGROUND_FAR;
+    if (has_normals && g->depth_type != DEPTH_RADIAL && !has_normal_of_wall(g, &s))
+        return c->gap > 1.0 ? BACKGROUND_NO_NORMALS : BACKGROUND_NONE;
     /* Colours of normals have some where there is nothing. */
-    if (has_normals)
-        return c->gap >= least_gap ? BACKGROUND_DOUBT : BACKGROUND_NONE;
+    if (has_normals && c->gap >= least_gap)
+        return BACKGROUND_DOUBT;
     if ((double)s.touching > 0.05 * (double)s.borders)
         return BACKGROUND_NONE;
     return c->gap >= least_gap ? BACKGROUND_FAR
-           : c->share > 0.02   ? BACKGROUND_DOUBT
+           : c->share > 0.005  ? BACKGROUND_DOUBT
                                : BACKGROUND_NONE;
 }
 

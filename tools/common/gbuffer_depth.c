@@ -32,7 +32,8 @@ static size_t clean(const struct gbuffer *g, float *values, bool is_half)
             (b->is_transparent && !(g->alpha[i] > 0)))
             values[i] = g->background_depth;
         else if (g->depth_type == DEPTH_NORMALIZED)
-            values[i] = (float)distance;
+            values[i] =
+                (float)(g->depth_range.is_radial ? distance / gbuffer_ray_length(g, i) : distance);
         /* Rays of Mitsuba start at the near plane; in double, since the result is compared with
          * that of planar files. */
         else if (g->depth_type == DEPTH_RADIAL_NEAR)
@@ -305,7 +306,6 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
     const char *path = info->path;
     const struct role *role = &g->roles.kind[ROLE_DEPTH];
     g->depth_is_half = role->channels[0]->type == EXR_HALF;
-    g->depth_range = options->depth_range;
     g->filtered_share = gbuffer_filtered_share(g);
     const struct stored_range stored = look_at_range(g);
     if (!gbuffer_resolve_depth_type(g, info, options, report, err) || !check_range(g, path, err) ||

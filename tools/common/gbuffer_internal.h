@@ -6,7 +6,9 @@
 
 #include "gbuffer.h"
 
+#include <math.h>
 #include <stddef.h>
+#include <string.h>
 
 /* Statistics look at this many texels at most, spread evenly. */
 enum { GBUFFER_MAX_SAMPLES = 1 << 18 };
@@ -24,6 +26,26 @@ static inline size_t gbuffer_sample_step(const struct gbuffer *g)
 static inline bool gbuffer_is_foreground(const struct gbuffer *g, size_t texel)
 {
     return !(g->depth[texel] <= g->background_depth && g->depth[texel] >= g->background_depth);
+}
+
+/* Of the whole image as it is seen: pixels may not be square. */
+static inline double gbuffer_aspect(const struct gbuffer *g)
+{
+    const double width = (double)g->display_window.x_max - g->display_window.x_min + 1.0;
+    const double height = (double)g->display_window.y_max - g->display_window.y_min + 1.0;
+    return width * (double)g->pixel_aspect / height;
+}
+
+/* The user said so. */
+static inline bool gbuffer_camera_is_explicit(const struct camera *camera)
+{
+    return camera->source[0] == '-' || strcmp(camera->source, "camera file") == 0;
+}
+
+/* Of normals in camera space, with z towards the eye or away from it. */
+static inline bool gbuffer_is_camera_rotation(const double r[9])
+{
+    return r[0] > 0.9999 && r[4] > 0.9999 && fabs(r[8]) > 0.9999;
 }
 
 /* The camera by positions, width * height * 4, and depth from them if it is DEPTH_POSITION, which

@@ -114,8 +114,12 @@ static bool fail_unknown(const struct gbuffer *g, const struct value_facts *f, e
                     "%s: depth '%s' is from %.4g to %.4g and no distance: a depth buffer or 1/z",
                     path, label, f->low, f->high);
     }
-    fail_hint(err, "--depth-type normalized --depth-range NEAR,FAR[,inverted]; device with --near "
-                   "and --far; inverse; or planar or radial if these are scene units");
+    const struct role *position = &g->roles.kind[ROLE_POSITION];
+    fail_hint(err,
+              "--depth-type normalized --depth-range NEAR,FAR[,inverted]; device with --near and "
+              "--far; inverse; or planar or radial if these are scene units%s%s%s",
+              position->found ? "; or --depth '" : "", position->found ? position->label : "",
+              position->found ? "', which are positions" : "");
     return fail(err, EXIT_CHANNELS,
                 "%s: depth '%s' is from %.4g to %.4g: normalised%s, not in scene units?", path,
                 label, f->low, f->high, say == SAY_OFFSET ? " by its looks" : "");
@@ -209,6 +213,24 @@ static void take_seen(struct gbuffer *g, const struct value_facts *f, enum plane
     take(g, DEPTH_PLANAR, DEPTH_ASSUMED);
 }
 
+/* A range says where depth begins and ends, and not along which way. */
+static bool settle_range(struct gbuffer *g, const char *path, struct report *report,
+                         struct tool_error *err)
+{
+    const char *by = g->depth_range.is_radial ? "normals agree" : "flat things are flat";
+    if (!g->depth_range.is_radial) {
+        if (!gbuffer_read_planes(g, &g->planes))
+            return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+        g->depth_range.is_radial = listen(g, &g->planes) == SAY_RADIAL;
+    }
+    if (g->depth_range.is_radial)
+        report_warn(report, "radial range",
+                    "%s: normalised depth '%s' is taken for distances from the eye, not along the "
+                    "view axis: %s only then",
+                    path, g->roles.kind[ROLE_DEPTH].label, by);
+    return true;
+}
+
 static bool is_constant(const struct value_facts *f)
 {
     return !(f->low < f->high);
@@ -247,7 +269,8 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
     const struct value_facts seen = look_at_values(g);
     if (options->depth_type != DEPTH_AUTO) {
         take(g, options->depth_type, DEPTH_BY_OPTION);
-        return true;
+        return g->depth_type != DEPTH_NORMALIZED || !g->depth_range.is_given ||
+               settle_range(g, info->path, report, err);
     }
     if (role->depth_type != DEPTH_AUTO) {
         take(g, role->depth_type, DEPTH_BY_NAME);

@@ -216,8 +216,14 @@ static bool fail_without_rotation(const char *path, struct tool_error *err)
 
 /* --- By agreement with the depth --- */
 
-/* Ways to turn stored normals into view space: out of the world, or with camera axes either way. */
-enum { WAY_WORLD, WAY_CAMERA, FLIPS = 4, WAYS = WAY_CAMERA + FLIPS };
+/* Ways to turn stored normals into view space: out of the world by the rotation that is told, with
+ * camera axes either way, or out of the world by the rotation that the image shows. */
+enum { WAY_WORLD, WAY_CAMERA, FLIPS = 4, WAY_SEEN = WAY_CAMERA + FLIPS, WAYS };
+
+static enum normal_space space_of(int way)
+{
+    return way == WAY_WORLD || way == WAY_SEEN ? NORMAL_SPACE_WORLD : NORMAL_SPACE_CAMERA;
+}
 
 struct way {
     bool is_known;
@@ -248,14 +254,18 @@ static void judge_way(struct way *way, const struct normal_pairs *pairs)
 }
 
 static void judge_ways(struct way ways[WAYS], const struct normal_pairs *pairs,
-                       const float world[9], bool has_world)
+                       const struct gbuffer *g, const float world[9])
 {
     static const float flips[FLIPS][3] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
     memset(ways, 0, WAYS * sizeof *ways);
-    if (has_world) {
+    if (g->camera.has_rotation) {
         memcpy(ways[WAY_WORLD].matrix, world, sizeof ways->matrix);
         judge_way(&ways[WAY_WORLD], pairs);
     }
+    for (int i = 0; g->has_seen_rotation && i < 9; i++)
+        ways[WAY_SEEN].matrix[i % 3 * 3 + i / 3] = (float)g->seen_rotation[i];
+    if (g->has_seen_rotation)
+        judge_way(&ways[WAY_SEEN], pairs);
     for (int f = 0; f < FLIPS; f++) {
         struct way *way = &ways[WAY_CAMERA + f];
         for (int c = 0; c < 3; c++)
@@ -269,19 +279,25 @@ static const struct way *best_way(const struct way ways[WAYS], enum normal_space
 {
     const struct way *best = NULL;
     for (int w = 0; w < WAYS; w++) {
-        const enum normal_space space = w == WAY_WORLD ? NORMAL_SPACE_WORLD : NORMAL_SPACE_CAMERA;
-        if (ways[w].is_known && (wanted == NORMAL_SPACE_AUTO || wanted == space) &&
+        if (ways[w].is_known && (wanted == NORMAL_SPACE_AUTO || wanted == space_of(w)) &&
             (!best || ways[w].agreement.share > best->agreement.share + 0.02))
             best = &ways[w];
     }
     return best;
 }
 
-static void tell_way(const struct gbuffer *g, const char *path, struct report *report)
+static void tell_way(const struct gbuffer *g, double before, bool is_seen, const char *path,
+                     struct report *report)
 {
     const float *m = g->view.normal_to_view;
     const char *label = g->roles.kind[ROLE_NORMAL].label;
-    if (g->normal_space == NORMAL_SPACE_WORLD)
+    if (is_seen)
+        report_warn(report, "agreeing normals",
+                    "%s: normals '%s' hardly agree with the depth (%.0f %%) by the rotation of %s: "
+                    "that of the image is taken (%.0f %%)",
+                    path, label, before * 100.0, g->camera.rotation_source,
+                    g->normal_agreement * 100.0);
+    else if (g->normal_space == NORMAL_SPACE_WORLD)
         report_warn(report, "agreeing normals",
                     "%s: normals '%s' are in world space by agreement with the depth "
                     "(--normal-space overrides)",
@@ -306,11 +322,13 @@ static void ask_depth(struct gbuffer *g, const struct way ways[WAYS],
     if (best->agreement.share >= least_agreement &&
         best->agreement.share > g->normal_agreement + clear_agreement) {
         const enum normal_space before = g->normal_space;
-        g->normal_space = best == &ways[WAY_WORLD] ? NORMAL_SPACE_WORLD : NORMAL_SPACE_CAMERA;
+        const double by_before = g->normal_agreement;
+        const bool is_seen = best == &ways[WAY_SEEN];
+        g->normal_space = space_of((int)(best - ways));
         g->normal_agreement = best->agreement.share;
         memcpy(g->view.normal_to_view, best->matrix, sizeof best->matrix);
-        if (before != g->normal_space || g->normal_space == NORMAL_SPACE_CAMERA)
-            tell_way(g, path, report);
+        if (is_seen || before != g->normal_space || g->normal_space == NORMAL_SPACE_CAMERA)
+            tell_way(g, by_before, is_seen, path, report);
     }
 }
 
@@ -397,7 +415,7 @@ static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const cha
         return false;
     if (!gbuffer_pair_normals(g, &pairs))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
-    judge_ways(ways, &pairs, world, g->camera.has_rotation);
+    judge_ways(ways, &pairs, g, world);
     ask_depth(g, ways, &pairs, wanted, path, report);
     const size_t count = pairs.count;
     gbuffer_free_pairs(&pairs);
@@ -420,9 +438,15 @@ bool gbuffer_prepare_normals(struct gbuffer *g, const struct gbuffer_options *op
                              const char *path, struct report *report, struct tool_error *err)
 {
     if (!g->normals) {
+        const struct camera *c = &g->camera;
+        /* Planar depth is that of things through any lens. */
+        const bool is_unchecked =
+            c->source[0] && !gbuffer_camera_is_explicit(c) && strcmp(c->source, "positions") != 0;
         if (!options->roles.no_normals)
             report_warn(report, "no normals",
-                        "%s: no normals; deriving them from depth (edges less accurate)", path);
+                        "%s: no normals; deriving them from depth (edges less accurate)%s%s%s",
+                        path, is_unchecked ? "; nothing checks the field of view of " : "",
+                        is_unchecked ? c->source : "", is_unchecked ? " either" : "");
         drop_normals(g);
         return true;
     }

@@ -42,6 +42,13 @@ static double storage_noise(const struct gbuffer *g)
     return g->depth_is_half ? ldexp(1.0, -11) : 2e-6;
 }
 
+/* Parts of a range are no distances, but what they stand for. */
+static double as_measured(const struct gbuffer *g, size_t texel)
+{
+    return g->depth_type == DEPTH_NORMALIZED ? gbuffer_distance(g, g->depth[texel])
+                                             : (double)g->depth[texel];
+}
+
 static size_t collect(const struct gbuffer *g, struct triple *triples)
 {
     const size_t reach = g->depth_is_half ? 10 : 4, width = g->width, texels = gbuffer_texels(g);
@@ -59,7 +66,7 @@ static size_t collect(const struct gbuffer *g, struct triple *triples)
             double d[3], r[3];
             bool ok = true;
             for (int k = 0; k < 3; k++) {
-                d[k] = (double)g->depth[at[k]];
+                d[k] = as_measured(g, at[k]);
                 ok &= gbuffer_is_measurable(d[k]) && d[k] < g->background.limit;
                 r[k] = d[k] / gbuffer_ray_length(g, at[k]);
             }

@@ -144,11 +144,26 @@ static bool contains_nocase(const char *text, const char *word, size_t length)
     return false;
 }
 
-/* Whether name is one of the alternatives, or contains the word behind '~'. */
+/* Words joined by '&', each of them in the name, or not in it with '!' in front. */
+static bool contains_words(const char *name, const char *words)
+{
+    while (*words) {
+        const bool unwanted = *words == '!';
+        words += unwanted;
+        const size_t length = strcspn(words, "&");
+        if (contains_nocase(name, words, length) == unwanted)
+            return false;
+        words += length;
+        words += *words == '&';
+    }
+    return true;
+}
+
+/* Whether name is one of the alternatives, or contains the words behind '~'. */
 static bool name_fits(const char *alternatives, const char *name)
 {
     if (alternatives[0] == '~')
-        return contains_nocase(name, alternatives + 1, strlen(alternatives + 1));
+        return contains_words(name, alternatives + 1);
     size_t length = strlen(name);
     for (const char *p = alternatives; length; p++) {
         size_t word = strcspn(p, "|");
@@ -513,6 +528,19 @@ static void make_label(const struct search *s, const struct hit *hit, char label
                  with_part ? "/" : "", length, channel);
 }
 
+/* G beside an R: whether that is a picture in grey shows when it is read. */
+static const struct exr_channel *twin_of(const struct search *s, const struct role *role)
+{
+    const struct exr_part *part = &s->info->parts[role->part];
+    struct channel_name name;
+    return role->channel_count == 1 &&
+                   channel_name_read(part, role->channels[0]->name, s->view,
+                                     s->info->part_count > 1, &name) &&
+                   name_fits("R|red", name.component)
+               ? sibling(s, role->part, &name, "G|green")
+               : NULL;
+}
+
 static void take_hit(const struct search *s, const struct hit *hit, const struct role_row *row,
                      struct role *role)
 {
@@ -524,6 +552,7 @@ static void take_hit(const struct search *s, const struct hit *hit, const struct
     role->depth_type = row ? row->depth_type : DEPTH_AUTO;
     role->normal_space = row ? row->normal_space : NORMAL_SPACE_AUTO;
     role->follows_positions = row && row->companion;
+    role->twin = twin_of(s, role);
     make_label(s, hit, role->label);
 }
 
@@ -662,6 +691,7 @@ static bool resolve_named(struct search *s, enum role_kind kind, const char *nam
                 known = &role_table[i];
     }
     take_hit(s, &hit, known, role);
+    role->twin = NULL; /* whoever names one channel means it */
     role->of_another_view = !in_view;
     return true;
 }
@@ -697,6 +727,43 @@ static bool take_positions(struct roles *roles)
     return true;
 }
 
+static bool is_named_depth(const char *path)
+{
+    const char *name = strrchr(path, '/');
+    name = name ? name + 1 : path;
+    return contains_words(name, "depth") && !contains_words(name, "depthoffield") &&
+           !contains_words(name, "depth_of_field");
+}
+
+/* A picture of its own in a file that is called depth: R of it, if it is grey. */
+static bool take_grey_file(struct search *s, struct roles *roles)
+{
+    static const char *const sets[][ROLE_MAX_COMPONENTS] = {{"R"}, {NULL}};
+    struct role *depth = &roles->kind[ROLE_DEPTH], *color = &roles->kind[ROLE_COLOR];
+    if (!is_named_depth(s->info->path))
+        return false;
+    s->count = 0;
+    for (size_t p = 0; p < s->info->part_count; p++) {
+        const struct exr_part *part = &s->info->parts[p];
+        for (size_t c = 0; part_has_view(part, s->view) && c < part->channel_count; c++) {
+            struct channel_name name;
+            if (channel_name_read(part, part->channels[c].name, s->view, s->info->part_count > 1,
+                                  &name) &&
+                name.bare)
+                match_sets(s, sets, p, &part->channels[c], &name);
+        }
+    }
+    if (s->count != 1)
+        return false;
+    take_hit(s, &s->hits[0], NULL, depth);
+    depth->is_guessed = depth->twin != NULL;
+    if (depth->is_guessed && color->channels[0] == depth->channels[0])
+        *color = (struct role){0};
+    if (!depth->is_guessed)
+        *depth = (struct role){0};
+    return depth->found;
+}
+
 /* In a file of its own a role needs no name: R, G and B of a normal pass are normals. */
 static bool resolve_alone(struct search *s, enum role_kind kind, struct role *role,
                           struct tool_error *err)
@@ -712,13 +779,6 @@ static bool resolve_alone(struct search *s, enum role_kind kind, struct role *ro
     if (s->count > 1)
         return fail_ambiguous(s, kind, err);
     take_hit(s, &s->hits[0], NULL, role);
-    struct channel_name name;
-    const char *channel = role->channels[0]->name;
-    if (role_is_scalar(kind) &&
-        channel_name_read(&s->info->parts[role->part], channel, s->view, s->info->part_count > 1,
-                          &name) &&
-        text_equal_nocase(name.component, "R"))
-        role->twin = sibling(s, role->part, &name, "G");
     return true;
 }
 
@@ -754,7 +814,8 @@ bool roles_resolve(const struct exr_info *info, const struct role_request *reque
               : is_alone ? resolve_alone(&s, (enum role_kind)kind, role, err)
                          : resolve_found(&s, (enum role_kind)kind, depth, role, err);
     }
-    if (ok && !depth->found && !take_positions(roles))
+    s.info = info;
+    if (ok && !depth->found && !take_positions(roles) && !take_grey_file(&s, roles))
         return fail_without_depth(info, s.view, err);
     return ok;
 }

@@ -66,7 +66,8 @@ struct role_row {
     enum role_kind kind;
     /* Last component of the layer, alternatives separated by '|', case ignored. NULL: no layer.
      * "*": any layer.
-     * '~' in front: the layer contains the word. '=' in front: one name, and its case counts. */
+     * '~' in front: the layer contains all of the words, which '&' joins, or not those with '!'.
+     * '=' in front: one name, and its case counts. */
     const char *layers;
     /* Spellings of the components, case ignored; all of one set must be there. '|' separates
      * alternatives; '~' in front: the component contains the word. */
@@ -101,7 +102,8 @@ struct role {
     const struct exr_channel
         *channels[ROLE_MAX_COMPONENTS + 1]; /* the last: alpha of colour, or NULL */
     size_t channel_count;                   /* without alpha */
-    const struct exr_channel *twin;         /* G of R where a grey image was guessed, or NULL */
+    const struct exr_channel *twin;         /* G of R that nobody named, or NULL */
+    bool is_guessed;                        /* by the name of the file, if the twin is alike */
     enum depth_type depth_type;             /* as the name implies, or AUTO */
     enum normal_space normal_space;         /* likewise */
     bool follows_positions;     /* normals that are in the space of the positions beside them */

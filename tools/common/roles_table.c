@@ -85,7 +85,12 @@ const struct role_row role_table[] = {
      .sets = VECTOR_COMPONENTS},
     {.kind = ROLE_NORMAL, .layers = "N_denoise|Denoising Normal|OptiXNormals|denoise_normal",
      .sets = VECTOR_COMPONENTS},
-    {.kind = ROLE_NORMAL, .layers = "~normal", .sets = VECTOR_COMPONENTS},
+    /* Octane, Corona and others: Normal (shading), Normal (smooth), Normal (geometric). Nothing is
+     * seen in tangent space */
+    {.kind = ROLE_NORMAL, .layers = "~normal&shading&!tangent", .sets = VECTOR_COMPONENTS},
+    {.kind = ROLE_NORMAL, .layers = "~normal&smooth&!tangent", .sets = VECTOR_COMPONENTS},
+    {.kind = ROLE_NORMAL, .layers = "~normal&!geo&!tangent", .sets = VECTOR_COMPONENTS},
+    {.kind = ROLE_NORMAL, .layers = "~normal&!tangent", .sets = VECTOR_COMPONENTS},
 
     {.kind = ROLE_COLOR, .sets = COLOR_COMPONENTS, .place = ROLE_SINGLE_PART},
     {.kind = ROLE_COLOR, .layers = "rgba|rgb|beauty|Combined|C|Ci|RGB_color|color|Composite|Image",
