@@ -73,7 +73,8 @@ struct camera_memory {
     bool is_known;
     struct camera camera; /* its projection */
     enum depth_type depth_type;
-    unsigned models; /* as camera_fit takes them: what it was */
+    unsigned models;    /* as camera_fit takes them: what it was */
+    struct camera told; /* that of header or options which was held against the image */
 };
 
 struct gbuffer_options {

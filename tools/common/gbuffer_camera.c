@@ -298,9 +298,11 @@ static bool find_unknown(struct gbuffer *g, const struct gbuffer_options *option
 
 /* --- A camera that somebody tells --- */
 
-/* Below this share of agreeing normals the image is asked for another camera; by this much more
- * must agree with that; and by so much as ln of half widths, or of shifts, cameras are others. */
-static const double doubtful_agreement = 0.995, clear_gain = 0.15, other_view = 0.03;
+/* Below this share of agreeing normals the image is asked for another camera. By so much more must
+ * agree with that, if it is sure and if it is not; and by so much as ln of half widths, or of
+ * shifts, cameras are others. */
+static const double doubtful_agreement = 0.995, sure_gain = 0.002, clear_gain = 0.15,
+                    other_view = 0.03;
 
 static bool is_other_view(const struct camera *c, const struct fit *fit)
 {
@@ -310,14 +312,21 @@ static bool is_other_view(const struct camera *c, const struct fit *fit)
            fabs(c->shift_y - fit->shift_y) > other_view;
 }
 
+static bool is_same_view(const struct camera *a, const struct camera *b)
+{
+    return a->type == b->type && fabs(a->half_width - b->half_width) <= 0 &&
+           fabs(a->shift_x - b->shift_x) <= 0 && fabs(a->shift_y - b->shift_y) <= 0;
+}
+
 /* Where the image says another thing than header or options, which are believed all the same. */
 static void weigh(const struct gbuffer *g, const struct fit *told, const struct fit *seen,
                   const char *path, struct report *report)
 {
     const struct camera *c = &g->camera;
-    const bool is_clear = seen->is_usable && seen->agreement > told->agreement + clear_gain;
+    const double gain = seen->agreement - told->agreement;
     char by_told[VIEW_BYTES], by_seen[VIEW_BYTES], shift[48] = "";
-    if (!(seen->is_sure || is_clear) || !is_other_view(c, seen))
+    if (!seen->is_usable || gain < (seen->is_sure ? sure_gain : clear_gain) ||
+        !is_other_view(c, seen))
         return;
     describe(c->type, c->half_width, by_told);
     describe(seen->model == FIT_ORTHO ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE, seen->half_width,
@@ -339,7 +348,10 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
     if (!estimate_as(g, possible_models(g, options, true), true, 0, &told, err))
         return false;
     const bool is_exact = strcmp(g->camera.source, "positions") == 0;
-    if (told.half_width > 0 && told.agreement < doubtful_agreement && !is_exact) {
+    const bool was_asked = options->memory && is_same_view(&options->memory->told, &g->camera);
+    if (options->memory)
+        options->memory->told = g->camera;
+    if (told.half_width > 0 && told.agreement < doubtful_agreement && !is_exact && !was_asked) {
         if (!estimate_as(g, possible_models(g, options, false), false, 0, &seen, err))
             return false;
         weigh(g, &told, &seen, path, report);
