@@ -497,12 +497,15 @@ static struct shares find_shares(const struct fit_samples *s, const struct fit_s
     return shares;
 }
 
-/* Of hundreds of crops of renders whose field of view was uncertain, all of these were nearer to
- * the truth than 40 degrees. */
+/* Of the crops of renders whose field of view was uncertain, these were nearer to the truth than 40
+ * degrees; not so what ends where the search does. */
 static bool is_likely(const struct fit *fit)
 {
-    const double most = fit->model == FIT_ORTHO ? 0.02 : 0.25;
-    return fit->bound < most && (fit->model <= FIT_RADIAL_NEAR || fit->model == FIT_ORTHO);
+    static const double narrowest = 0.09, widest = 1.7;
+    if (fit->model == FIT_ORTHO)
+        return fit->bound < 0.02;
+    return fit->model <= FIT_RADIAL_NEAR && fit->bound < 0.25 && fit->half_width > narrowest &&
+           fit->half_width < widest;
 }
 
 static bool judge(const struct fit_samples *s, const struct found *f, double sigma,
