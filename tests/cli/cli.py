@@ -5,7 +5,9 @@ A test program is `test_NAME.py VKAO [--corpus DIR] [CASE...]`. It prints one li
 starts and one as it ends, and exits 0, 1 (a case failed) or 77 (all cases were skipped).
 """
 import argparse
+import hashlib
 import os
+import pickle
 import re
 import resource
 import subprocess
@@ -261,10 +263,12 @@ class Part:
         return self.channels[channel]
 
 
-def _read_part(file, path, index):
+def _read_part(file, path, index, only):
     spec = file.spec(index)
     channels = {}
     for c, name in enumerate(spec.channelnames):
+        if only and name not in only:
+            continue
         kind = str(spec.channelformats[c] if spec.channelformats else spec.format)
         pixels = file.read_image(index, 0, c, c + 1, kind)
         check(pixels is not None, f'{path}: {file.geterror()}')
@@ -272,19 +276,20 @@ def _read_part(file, path, index):
     return Part(spec, channels)
 
 
-def read_parts(path):
+def read_parts(path, only=()):
+    """only: the names of the channels to read; all of them without it."""
     file = oiio.ImageInput.open(path)
     check(file, f'{path}: {oiio.geterror()}')
     parts = []
     while file.seek_subimage(len(parts), 0):
-        parts.append(_read_part(file, path, len(parts)))
+        parts.append(_read_part(file, path, len(parts), only))
     file.close()
     return parts
 
 
 def read_ao(path, channel=None, part=0):
     """By its name in a file of its own, or else beside other things."""
-    channels = read_parts(path)[part].channels
+    channels = read_parts(path, (channel,) if channel else ('R', 'AO'))[part].channels
     return channels[channel or ('R' if 'R' in channels else 'AO')].astype(np.float32)
 
 
@@ -339,6 +344,25 @@ def write_exr(path, *parts, **options):
         check(ok, f'{path}: {file.geterror()}')
     file.close()
     return path
+
+
+_computed = {}
+
+
+def compute_ao(scratch, channels, *options, source='in.exr', target='ao.exr', **layout):
+    """Writes both files: the AO, and what vkao says. The same of the same is computed once for all
+    cases; an option that names a file stands for what the file holds."""
+    write_exr(scratch.path(source), channels, **layout)
+    options = [source, '-o', target, *map(str, options)]
+    files = [scratch.bytes(o) for o in options[3:] if os.path.isfile(scratch.path(o))]
+    what = pickle.dumps((list(channels.items()), repr(layout), options, files))
+    key = hashlib.sha256(what).digest()
+    if key not in _computed:
+        said = scratch.render(*options).stderr
+        _computed[key] = scratch.bytes(target), said
+    data, said = _computed[key]
+    scratch.write(target, data)
+    return read_ao(scratch.path(target)), said
 
 
 def run_tool(*command, cwd=None):

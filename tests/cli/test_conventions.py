@@ -6,7 +6,7 @@ import re
 
 import numpy as np
 
-from cli import (case, cases, check, check_close, equal, main, matches, oiio, read_ao,
+from cli import (case, cases, check, check_close, compute_ao, equal, main, matches, oiio, read_ao,
                  write_exr)
 from scene import (FAR, FOV, HEIGHT, MOVE, NEAR, RADIUS, TURN, WIDTH, Scene, camera, write_camera)
 
@@ -15,9 +15,7 @@ BASE = ('--radius', RADIUS, '--pixel-type', 'float', '--overwrite', 'always')
 
 
 def ao_of(scratch, channels, *options, **layout):
-    write_exr(scratch.path('in.exr'), channels, **layout)
-    scratch.render('in.exr', '-o', 'ao.exr', *BASE, *options)
-    return read_ao(scratch.path('ao.exr'))
+    return compute_ao(scratch, channels, *BASE, *options, **layout)[0]
 
 
 def planar(scratch, *options):

@@ -7,7 +7,7 @@ import json
 
 import numpy as np
 
-from cli import (CHANNELS, OK, case, cases, check, equal, main, matches, oiio, read_ao,
+from cli import (CHANNELS, OK, case, cases, check, compute_ao, equal, main, matches, oiio, read_ao,
                  write_exr)
 from scene import FAR, FOV, MOVE, NEAR, TURN, Scene, write_camera
 
@@ -32,9 +32,7 @@ def depth_of(scene, background, unit=1.0):
 
 
 def run(scratch, channels, *options, **layout):
-    write_exr(scratch.path('in.exr'), channels, **layout)
-    result = scratch.render('in.exr', '-o', 'ao.exr', *OPTIONS, *options)
-    return read_ao(scratch.path('ao.exr')), result.stderr
+    return compute_ao(scratch, channels, *OPTIONS, *options, **layout)
 
 
 def clean(scratch, scene, *options, fov=FOV, unit=1.0, normals=True):

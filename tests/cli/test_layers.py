@@ -6,8 +6,8 @@ import re
 
 import numpy as np
 
-from cli import (CHANNELS, INPUT, MEMORY, OK, USAGE, case, cases, check, check_close, equal, main,
-                 matches, read_ao, write_exr)
+from cli import (CHANNELS, INPUT, MEMORY, OK, USAGE, case, cases, check, check_close, compute_ao,
+                 equal, main, matches, read_ao, write_exr)
 from exr_raw import read_raw
 
 WIDTH, HEIGHT, FOV = 128, 96, 60.0
@@ -71,9 +71,7 @@ def channels(kind='planar', background=None):
 
 
 def ao_of(scratch, *options, planes=None, **layout):
-    write_exr(scratch.path('in.exr'), planes or channels(), **layout)
-    scratch.render('in.exr', '-o', 'ao.exr', *BASE, *options)
-    return read_ao(scratch.path('ao.exr'))
+    return compute_ao(scratch, planes or channels(), *BASE, *options, **layout)[0]
 
 
 METHODS = [('vbao',), ('raymarch',)]

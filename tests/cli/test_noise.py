@@ -7,14 +7,17 @@ Digits of the noise repeat after four texels, and turns climb by a quarter of 1/
 Whatever the scene makes of that, a flat wall shows as waves (i / 4, j / 4 + k / 4g); those along a
 column, i = 0, are mixtures of turns and moves. The scene goes out of the spectrum with the mean
 over several noise patterns."""
+from functools import lru_cache
+
 import numpy as np
 
-from cli import cases, check, check_ao, corpus, main, read_ao, read_parts
+from cli import cases, check, check_ao, corpus, main, read_ao, read_parts, write_exr
 
 TILE, CLIMB = 4, 1 / 1.32471795724474602596 / 4
 WAVES = [(i / TILE, j / TILE + k * CLIMB, i > 0 or k == 0) for k in range(-3, 4)
          for i in range(TILE) for j in range(TILE) if i or j or k]
-PATTERNS = range(8)
+# Before the blur they are plain to see in a few.
+PATTERNS, NOISY_PATTERNS = range(8), range(3)
 
 SIZE, STRIDE, WINDOWS = 64, 32, 16
 RAISED_COSINE = np.sin(np.pi * (np.arange(SIZE) + 0.5) / SIZE) ** 2
@@ -96,25 +99,36 @@ def is_flat(depth, normals):
     return (normals @ (mean / np.linalg.norm(mean))).min() > 0.99 and bend < 1e-3
 
 
-def flat_windows(name, ao):
-    """The darkest ones: an open wall has nothing to show a pattern in."""
-    channels = {c: v for part in read_parts(corpus(f'{name}.exr')) for c, v in
-                part.channels.items()}
+@lru_cache(1)
+def planes_of(name):
+    """Depth and normals, by their names in the file."""
     depth, normal = IMAGES[name]
-    depth = channels[depth].astype(np.float64)
-    normals = np.stack([channels[normal + axis] for axis in 'XYZ'], -1).astype(np.float64)
+    wanted = depth, *(normal + axis for axis in 'XYZ')
+    parts = read_parts(corpus(f'{name}.exr'), wanted)
+    return {c: v for part in parts for c, v in part.channels.items()}
+
+
+@lru_cache(1)
+def flat_windows(name):
+    depth, *normals = (v.astype(np.float64) for v in planes_of(name).values())
+    normals = np.stack(normals, -1)
     windows = [(slice(y, y + SIZE), slice(x, x + SIZE))
                for y in range(0, depth.shape[0] - SIZE + 1, STRIDE)
                for x in range(0, depth.shape[1] - SIZE + 1, STRIDE)]
     flat = [w for w in windows if is_flat(depth[w], normals[w])]
     check(len(flat) >= WINDOWS, f'{name}: {len(flat)} flat windows')
-    return sorted(flat, key=lambda w: ao[w].mean())[:WINDOWS]
+    return flat
 
 
-def render(scratch, name, radius, *options):
+def darkest(windows, ao):
+    """An open wall has nothing to show a pattern in."""
+    return sorted(windows, key=lambda w: ao[w].mean())[:WINDOWS]
+
+
+def render(scratch, name, radius, patterns, *options):
     images = []
-    for pattern in PATTERNS:
-        scratch.render(corpus(f'{name}.exr'), '-o', 'ao.exr', '--camera',
+    for pattern in patterns:
+        scratch.render('in.exr', '-o', 'ao.exr', '--camera',
                        corpus(f'{name}.camera.json'), '--radius', radius, '--pixel-type', 'float',
                        '--compression', 'none', '--overwrite', 'always', '--noise-index', pattern,
                        *options)
@@ -137,9 +151,11 @@ def spectrum_of(images, windows):
 def no_pattern_of_the_noise_is_left(scratch, _, name, quality):
     radius = f'{read_parts(corpus(f"{name}.gt.exr"))[0].attributes["aoRadius"]:.6g}'
     options = '--quality', quality
-    blurred, noisy = render(scratch, name, radius, *options), \
-        render(scratch, name, radius, *options, '--blur', 0)
-    windows = flat_windows(name, blurred.mean(0))
+    # Of many images of it, what is not needed need not be unpacked.
+    write_exr(scratch.path('in.exr'), planes_of(name), compression='none')
+    blurred, noisy = render(scratch, name, radius, PATTERNS, *options), \
+        render(scratch, name, radius, NOISY_PATTERNS, *options, '--blur', 0)
+    windows = darkest(flat_windows(name), blurred.mean(0))
     before = Waves(spectrum_of(noisy, windows), quality == 'fast')
     after = Waves(spectrum_of(blurred, windows), quality == 'fast')
     print(f'  {name} {quality}: noisy: {before}; blurred: {after}')
