@@ -180,11 +180,13 @@ def one_texel_of_any_depth_is_computed(scratch, _, value):
     write_exr(scratch.path('in.exr'), {'Z': depth})
     scratch.render('clean.exr', '-o', 'clean.ao.exr', *VIEW, '--pixel-type', 'float')
     clean = read_ao(scratch.path('clean.ao.exr'))
+    # Methods differ in what is computed on the device, which sanitizers do not see.
+    methods = ('vbao',) if vkao_is_sanitized() else ('vbao', 'raymarch')
     for options in ((), ('--depth-type', 'inverse'), ('--depth-type', 'radial'),
                     ('--depth-type', 'radial-near', '--near', 0.1),
                     ('--depth-type', 'device', '--near', 1e-3, '--far', 'inf'),
                     ('--ortho', 3, '--normal', 'none')):
-        for method in ('vbao', 'raymarch'):
+        for method in methods:
             scratch.render('in.exr', '-o', 'ao.exr', '--pixel-type', 'float', '--bent-normals',
                            '--method', method, '--overwrite', 'always', *VIEW[2:],
                            *(() if '--ortho' in options else VIEW[:2]), *options)
