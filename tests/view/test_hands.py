@@ -1,61 +1,24 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """vkao-view under keys and mouse, in windows that change their size."""
-import os
 import re
-import shlex
 import shutil
-import subprocess
 import time
 
 import view  # first: it knows where cli.py lies
-from cli import (case, cases, check, check_close, equal, np, read_ao, read_parts, skip,
-                 write_exr)
-from drop import clipboard, drop_files
-from scene import FOV, HEIGHT, RADIUS, WIDTH, Scene
-from view import LINE, PANEL_WIDTH, Viewer, more_channels, preview, read_png, same_picture
+from cli import case, check, equal, np, read_ao, skip, write_exr
+from drop import clipboard
+from scene import FOV, HEIGHT, RADIUS, WIDTH
+from view import (LINE, PANEL_WIDTH, READ, SCENE, WHOLE, Viewer, gbuffer, opened, preview,
+                  read_png, same_picture, screen, script, until)
 
-SCENE = Scene()
-READ = ('--fov', FOV, '--radius', RADIUS)
-WHOLE = ('--no-panel',)
 VBAO, HBAO = r'- A vbao -', r'- B hbao -'
-
-
-def gbuffer(color=True, more=False):
-    channels = {'Z': SCENE.depth(), **SCENE.normals(), **(more_channels(SCENE) if more else {})}
-    return {**channels, **SCENE.color()} if color else channels
-
-
-def opened(scratch, *arguments, more=False, **settings):
-    write_exr(scratch.path('in.exr'), gbuffer(more=more))
-    viewer = Viewer(scratch, 'in.exr', *READ, *arguments, **settings)
-    viewer.wait_title('^in.exr - ')
-    return viewer
 
 
 def line_column(picture):
     columns = np.nonzero((picture == LINE).all(axis=(0, 2)))[0]
     equal(len(columns), 1, 'columns with the colour of the line')
     return int(columns[0])
-
-
-def screen(scratch, viewer, size):
-    """What is on the screen, without a key that ends it."""
-    done = subprocess.run(
-        ['import', '-silent', '-window', 'root', '-crop', f'{size[0]}x{size[1]}+0+0', '+repage',
-         '-depth', '8', 'png24:screen.png'],
-        cwd=scratch.directory, capture_output=True, text=True,
-        env={**os.environ, 'DISPLAY': viewer.display.name})
-    if done.returncode:
-        skip(f'ImageMagick cannot take pictures: {done.stderr}')
-    return read_png(scratch.path('screen.png'))
-
-
-def until(holds, what):
-    end = time.monotonic() + view.TIMEOUT
-    while not holds():
-        check(time.monotonic() < end, f'no {what}')
-        time.sleep(0.2)
 
 
 # --- Keys ---
@@ -422,30 +385,6 @@ def histogram_counts_what_is_shown(scratch):
         viewer.finish()
 
 
-# --- The list of files, and the clipboard ---
-
-@case
-def file_is_opened_from_the_list(scratch):
-    os.mkdir(scratch.path('more'))
-    write_exr(scratch.path('more', 'q1.exr'), gbuffer(False))
-    scratch.write('more/q2.exr', 'rubbish')
-    with opened(scratch, *WHOLE, size=(500, 300)) as viewer:
-        viewer.key('ctrl+o')
-        viewer.key('q', 'Tab', '3', 'Escape', 'ctrl+o')  # the list's, all of them
-        viewer.wait_title('^in.exr - AO - ')
-        viewer.key('m', 'o', 'Return', 'q', '2', 'Return')
-        time.sleep(1)
-        viewer.wait_title('^in.exr - AO - ')
-        viewer.key('BackSpace', '1', 'Return')
-        viewer.wait_title('^q1.exr - AO - ')
-        viewer.key('ctrl+o', 'BackSpace', 'Home', 'Down', 'Down', 'Return')
-        viewer.wait_title('^in.exr - AO - ')
-        viewer.key('ctrl+o', 'ctrl+o', '3')
-        viewer.wait_title('^in.exr - Composite - ')
-        viewer.finish()
-        check('more/q2.exr' in viewer.err, f'nothing is said:\n{viewer.err}')
-
-
 @case
 def probe_is_copied(scratch):
     with opened(scratch, *WHOLE, '--versus', '--intensity 0', '--wipe', 0.9) as viewer:
@@ -465,201 +404,6 @@ def probe_is_copied(scratch):
     wanted = [read_ao(scratch.path('vkao.exr'))[70, 80], SCENE.x[70, 80] * z, SCENE.y[70, 80] * z,
               -z, *SCENE.normal[70, 80]]
     check(np.abs(np.array(values) - wanted).max() < 1e-4, f'{values}, want {wanted}')
-
-
-# --- Save ---
-
-def script(scratch, name):
-    """The command that Save wrote."""
-    lines = scratch.bytes(name).decode().splitlines()
-    equal(lines[0], '#!/bin/sh', 'first line')
-    command = [line for line in lines if not line.startswith('#')]
-    equal(len(command), 1, 'commands')
-    words = shlex.split(command[0])
-    equal(words[0], 'vkao', 'the command')
-    return words[1:]
-
-
-SAVES = {
-    'default': ('2', ()),
-    'raw': ('1', ('--intensity', '2')),
-    'composite': ('3', ('--tint', '0.1,0.2,0.3', '--strength', '0.7')),
-    'gtao': ('2', ('--method', 'gtao', '--slices', '3', '--steps', '7', '--blur', '7',
-                   '--falloff', 'threshold', '--noise-index', '3')),
-    'half': ('2', ('--quality', 'fast', '--thickness', '0.3', '--bias', '0.01', '--power', '1.3')),
-    'sphere': ('2', ('--method', 'sphere', '--sphere-form', 'literal', '--blocking-scale', '7',
-                     '--samples', '9')),
-    'sharp': ('2', ('--method', 'hemisphere', '--blur-sharpness', '33', '--blur-normal-power',
-                    '0', '--samples', '33')),
-    'no normals': ('2', ('--normal', 'none', '--depth', 'Z')),
-    'bent': ('6', ()),
-    'light': ('3', ('--indirect', 'gi', '--specular', 'spec', '--holdout', 'matte', '--back-depth',
-                    'back')),
-    'light unseen': ('2', ('--indirect', 'gi', '--albedo', 'albedo', '--holdout', 'matte',
-                           '--layer2', 'behind')),
-}
-
-
-# The tool compiles its pipelines for the settings at hand, the viewer for all: the same operations,
-# but other instructions, so that the last bit differs, and once in a while a sample at the edge of
-# a texel or sector.
-LARGEST, MEAN = 5e-3, 1e-6
-
-
-@cases(SAVES.items())
-def saved_command_makes_the_saved_files(scratch, _, row):
-    key, options = row
-    with opened(scratch, *WHOLE, *options, more='--holdout' in options) as viewer:
-        viewer.key(key, 's')
-        shown = viewer.finish()
-    equal(scratch.files(), ['in.exr', 'in.view.exr', 'in.view.png', 'in.view.sh', 'last.png'],
-          'files')
-    command = script(scratch, 'in.view.sh')
-    check(shlex.split(viewer.out)[1:] == command, f'not printed: {viewer.out}')
-    saved = read_parts(scratch.path('in.view.exr'))[0]
-    same_picture(read_png(scratch.path('in.view.png')), shown, 'PNG')
-    scratch.render(*command, '--device', 'cpu')
-    made = read_parts(scratch.path('in.view.exr'))[0]
-    equal(sorted(saved.channels), sorted(made.channels), 'channels')
-    for name, channel in saved.channels.items():
-        check_close(channel, made[name], LARGEST, MEAN, name)
-    equal(saved.attributes['vkao/params'], made.attributes['vkao/params'], 'vkao/params')
-    if key in '123':
-        same_picture(read_png(scratch.path('in.view.png')), shown, 'PNG of vkao')
-
-
-@cases(['2', '3', '6'])
-def save_of_a_cropped_window_is_what_vkao_makes(scratch, key):
-    part = {k: np.ascontiguousarray(c[21:, 17:]) for k, c in gbuffer().items()}
-    write_exr(scratch.path('in.exr'), part, x=17, y=21, display=(0, 0, WIDTH - 1, HEIGHT - 1))
-    with Viewer(scratch, 'in.exr', *READ, *WHOLE) as viewer:
-        viewer.key(key, 's')
-        shown = viewer.finish()
-    same_picture(read_png(scratch.path('in.view.png')), shown, 'PNG')
-    saved = read_parts(scratch.path('in.view.exr'))[0]
-    scratch.render(*script(scratch, 'in.view.sh'), '--device', 'cpu')
-    made = read_parts(scratch.path('in.view.exr'))[0]
-    equal(saved.data_window, made.data_window, 'data window')
-    for name, channel in made.channels.items():
-        check_close(saved[name], channel, LARGEST, MEAN, name)
-
-
-@case
-def saving_again_overwrites_nothing(scratch):
-    with opened(scratch, *WHOLE, '--save', 'a b') as viewer:
-        viewer.key('s')
-        viewer.key('4')
-        viewer.wait_title('- Depth -')
-        viewer.key('s')
-        shown = viewer.finish()
-    check({'a b.sh', 'a b.exr', 'a b.png', 'a b.2.sh', 'a b.2.exr', 'a b.2.png'} <=
-          set(scratch.files()), f'{scratch.files()}')
-    same_picture(read_png(scratch.path('a b.2.png')), shown, 'depth')
-    check('vkao writes no picture' in scratch.bytes('a b.2.sh').decode(), 'it is not said')
-    scratch.render(*script(scratch, 'a b.2.sh'), '--device', 'cpu')
-
-
-@case
-def save_that_fails_is_said_and_leaves_nothing(scratch):
-    with opened(scratch, *WHOLE, '--save', 'nowhere/x') as viewer:
-        viewer.key('s')
-        viewer.finish()
-        check('vkao: nowhere/x.' in viewer.err, f'nothing is said:\n{viewer.err}')
-    equal(scratch.files(), ['in.exr', 'last.png'], 'files')
-
-
-# --- Dropped files ---
-
-@case
-def dropped_file_is_opened(scratch):
-    write_exr(scratch.path('other one.exr'), gbuffer(False))
-    with opened(scratch, *WHOLE) as viewer:
-        drop_files(viewer, scratch.path('other one.exr'))
-        viewer.wait_title('^other one.exr - ')
-        viewer.finish()
-
-
-@case
-def window_without_a_file_waits_for_one(scratch):
-    write_exr(scratch.path('in.exr'), gbuffer())
-    with Viewer(scratch, *READ, *WHOLE, size=(WIDTH, HEIGHT)) as viewer:
-        viewer.wait_title('^no file - ')
-        drop_files(viewer, scratch.path('in.exr'))
-        viewer.wait_title('^in.exr - .* 100 %')
-        shown = viewer.finish()
-    same_picture(shown, preview(scratch, 'in.exr', *READ), 'AO')
-
-
-@case
-def dropped_files_become_a_sequence(scratch):
-    for name in ('a.exr', 'b.exr'):
-        write_exr(scratch.path(name), gbuffer(False))
-    with opened(scratch, *WHOLE) as viewer:
-        drop_files(viewer, scratch.path('a.exr'), scratch.path('b.exr'))
-        viewer.wait_title(r'^a.exr \[1/2\]')
-        viewer.key('Right')
-        viewer.wait_title(r'^b.exr \[2/2\]')
-        viewer.finish()
-
-
-@case
-def dropped_reference_is_compared_to(scratch):
-    with opened(scratch, *WHOLE, '--show', 'difference') as viewer:
-        preview(scratch, 'in.exr', *READ)
-        ao = read_ao(scratch.path('vkao.exr'))
-        write_exr(scratch.path('truth.exr'), {'AO': (ao - 0.1).astype(np.float32)})
-        drop_files(viewer, scratch.path('truth.exr'))
-        time.sleep(1)
-        viewer.wait_title('^in.exr - Difference')
-        shown = viewer.finish()
-    wanted = np.floor(np.array([0.15, 0.6, 1]) * 0.4 * 255 + 0.5)
-    check(np.abs(shown - wanted).max() <= 1, f'{shown[0, 0]}, want {wanted}')
-
-
-@case
-def dropped_rubbish_is_refused(scratch):
-    scratch.write('rubbish.exr', 'rubbish')
-    for number in (1, 2):
-        write_exr(scratch.path(f'in.{number}.exr'), gbuffer())
-    with Viewer(scratch, 'in.%d.exr', *READ, *WHOLE) as viewer:
-        drop_files(viewer, scratch.path('rubbish.exr'))
-        time.sleep(0.5)
-        viewer.wait_title(r'^in.1.exr \[1/2\] - ')
-        viewer.key('Right')
-        viewer.wait_title(r'^in.2.exr \[2/2\] - ')
-        shown = viewer.finish()
-        check('rubbish.exr' in viewer.err, f'nothing is said:\n{viewer.err}')
-    same_picture(shown, preview(scratch, 'in.2.exr', *READ), 'AO')
-
-
-@case
-def dropped_rubbish_is_told_in_a_window_without_the_panel(scratch):
-    scratch.write('rubbish.exr', 'rubbish')
-    size = (500, 300)
-    with opened(scratch, *WHOLE, size=size) as viewer:
-        before = screen(scratch, viewer, size)
-
-        def changed():
-            return (screen(scratch, viewer, size) != before).any(axis=-1)
-        drop_files(viewer, scratch.path('rubbish.exr'))
-        until(lambda: changed()[-50:].sum() > 1000, 'word of it')
-        check(not changed()[:-50].any(), 'the picture above it is another')
-        viewer.key('2')
-        until(lambda: not changed().any(), 'picture as before after a key')
-        viewer.finish()
-
-
-@case
-def dropped_camera_is_taken(scratch):
-    write_exr(scratch.path('in.exr'), gbuffer())
-    scratch.write('wide.json', '{"fov_x_deg": 90}')
-    with Viewer(scratch, 'in.exr', '--radius', RADIUS, *WHOLE) as viewer:
-        drop_files(viewer, scratch.path('wide.json'))
-        time.sleep(0.5)
-        viewer.wait_title('^in.exr - ')
-        shown = viewer.finish()
-    wanted = preview(scratch, 'in.exr', '--radius', RADIUS, '--fov', 90)
-    same_picture(shown, wanted, 'AO')
 
 
 if __name__ == '__main__':

@@ -7,18 +7,11 @@ import os
 import sys
 
 import view  # first: it knows where cli.py lies
-from cli import case, check, is_sanitized, skip, write_exr
-from scene import FOV, HEIGHT, RADIUS, WIDTH, Scene
-from view import BACKGROUND, PANEL_WIDTH, Viewer, preview, same_picture
+from cli import case, check, is_sanitized, skip
+from scene import HEIGHT, WIDTH
+from view import BACKGROUND, PANEL_WIDTH, READ, opened, preview, same_picture
 
 SHIM = os.path.abspath(sys.argv.pop(3))
-SCENE = Scene()
-READ = ('--fov', FOV, '--radius', RADIUS)
-
-
-def opened(scratch, *arguments, **more):
-    write_exr(scratch.path('in.exr'), {'Z': SCENE.depth(), **SCENE.normals()})
-    return Viewer(scratch, 'in.exr', *READ, *arguments, **more)
 
 
 def on_monitor(scratch, scale, *arguments, **more):

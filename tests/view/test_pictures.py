@@ -6,17 +6,9 @@ import subprocess
 
 import view  # first: it knows where cli.py lies
 from cli import case, cases, check, check_message, equal, matches, np, write_exr
-from scene import FOV, HEIGHT, RADIUS, WIDTH, Scene
-from view import BACKGROUND, LINE, Viewer, more_channels, preview, same_picture, shoot
-
-SCENE = Scene()
-READ = ('--fov', FOV, '--radius', RADIUS)
-
-
-def gbuffer(color=True):
-    channels = {'Z': SCENE.depth(), **SCENE.normals()}
-    return {**channels, **SCENE.color()} if color else channels
-
+from scene import FOV, HEIGHT, RADIUS, WIDTH
+from view import (BACKGROUND, LINE, READ, SCENE, Viewer, gbuffer, more_channels, preview,
+                  same_picture, shoot)
 
 # --- Pictures ---
 

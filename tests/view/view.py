@@ -7,6 +7,7 @@ and with it the case.
 """
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -18,13 +19,18 @@ ROOT = os.path.normpath(os.path.join(HERE, '..', '..'))
 sys.path.insert(0, os.path.join(HERE, '..', 'cli'))
 
 import cli  # noqa: E402, after its directory is known
-from cli import Failed, check, equal, np, oiio  # noqa: E402
+from cli import Failed, check, equal, np, oiio, skip, write_exr  # noqa: E402
+from scene import FOV, RADIUS, Scene  # noqa: E402
 
 VIEWER = None
 TIMEOUT = 120
 PANEL_WIDTH = 330  # of tools/view/viewer.h
 BACKGROUND = (23, 26, 28)  # of shaders/display.frag
 LINE = (255, 153, 26)
+
+SCENE = Scene()
+READ = ('--fov', FOV, '--radius', RADIUS)
+WHOLE = ('--no-panel',)
 
 
 def main():
@@ -244,3 +250,47 @@ def more_channels(scene):
     return {**layer('gi', 0.15), **layer('albedo', 0.8), **layer('spec', 0.1), 'rough': plane(0.2),
             'matte': ball.astype(np.float32), 'thick': plane(0.3),
             'back': scene.depth() + plane(0.4), 'behind': behind}
+
+
+# --- What most cases begin and end with ---
+
+def gbuffer(color=True, more=False):
+    channels = {'Z': SCENE.depth(), **SCENE.normals(), **(more_channels(SCENE) if more else {})}
+    return {**channels, **SCENE.color()} if color else channels
+
+
+def opened(scratch, *arguments, more=False, **settings):
+    write_exr(scratch.path('in.exr'), gbuffer(more=more))
+    viewer = Viewer(scratch, 'in.exr', *READ, *arguments, **settings)
+    viewer.wait_title('^in.exr - ')
+    return viewer
+
+
+def screen(scratch, viewer, size):
+    """What is on the screen, without a key that ends it."""
+    done = subprocess.run(
+        ['import', '-silent', '-window', 'root', '-crop', f'{size[0]}x{size[1]}+0+0', '+repage',
+         '-depth', '8', 'png24:screen.png'],
+        cwd=scratch.directory, capture_output=True, text=True,
+        env={**os.environ, 'DISPLAY': viewer.display.name})
+    if done.returncode:
+        skip(f'ImageMagick cannot take pictures: {done.stderr}')
+    return read_png(scratch.path('screen.png'))
+
+
+def until(holds, what):
+    end = time.monotonic() + TIMEOUT
+    while not holds():
+        check(time.monotonic() < end, f'no {what}')
+        time.sleep(0.2)
+
+
+def script(scratch, name):
+    """The command that Save wrote."""
+    lines = scratch.bytes(name).decode().splitlines()
+    equal(lines[0], '#!/bin/sh', 'first line')
+    command = [line for line in lines if not line.startswith('#')]
+    equal(len(command), 1, 'commands')
+    words = shlex.split(command[0])
+    equal(words[0], 'vkao', 'the command')
+    return words[1:]

@@ -1,0 +1,132 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Files that are opened in a running vkao-view: from its list, and dropped on it."""
+import os
+import time
+
+import view  # first: it knows where cli.py lies
+from cli import case, check, np, read_ao, write_exr
+from drop import drop_files
+from scene import HEIGHT, RADIUS, WIDTH
+from view import (READ, WHOLE, Viewer, gbuffer, opened, preview, same_picture, screen, until)
+
+# --- From the list ---
+
+@case
+def file_is_opened_from_the_list(scratch):
+    os.mkdir(scratch.path('more'))
+    write_exr(scratch.path('more', 'q1.exr'), gbuffer(False))
+    scratch.write('more/q2.exr', 'rubbish')
+    with opened(scratch, *WHOLE, size=(500, 300)) as viewer:
+        viewer.key('ctrl+o')
+        viewer.key('q', 'Tab', '3', 'Escape', 'ctrl+o')  # the list's, all of them
+        viewer.wait_title('^in.exr - AO - ')
+        viewer.key('m', 'o', 'Return', 'q', '2', 'Return')
+        time.sleep(1)
+        viewer.wait_title('^in.exr - AO - ')
+        viewer.key('BackSpace', '1', 'Return')
+        viewer.wait_title('^q1.exr - AO - ')
+        viewer.key('ctrl+o', 'BackSpace', 'Home', 'Down', 'Down', 'Return')
+        viewer.wait_title('^in.exr - AO - ')
+        viewer.key('ctrl+o', 'ctrl+o', '3')
+        viewer.wait_title('^in.exr - Composite - ')
+        viewer.finish()
+        check('more/q2.exr' in viewer.err, f'nothing is said:\n{viewer.err}')
+
+
+# --- Dropped files ---
+
+@case
+def dropped_file_is_opened(scratch):
+    write_exr(scratch.path('other one.exr'), gbuffer(False))
+    with opened(scratch, *WHOLE) as viewer:
+        drop_files(viewer, scratch.path('other one.exr'))
+        viewer.wait_title('^other one.exr - ')
+        viewer.finish()
+
+
+@case
+def window_without_a_file_waits_for_one(scratch):
+    write_exr(scratch.path('in.exr'), gbuffer())
+    with Viewer(scratch, *READ, *WHOLE, size=(WIDTH, HEIGHT)) as viewer:
+        viewer.wait_title('^no file - ')
+        drop_files(viewer, scratch.path('in.exr'))
+        viewer.wait_title('^in.exr - .* 100 %')
+        shown = viewer.finish()
+    same_picture(shown, preview(scratch, 'in.exr', *READ), 'AO')
+
+
+@case
+def dropped_files_become_a_sequence(scratch):
+    for name in ('a.exr', 'b.exr'):
+        write_exr(scratch.path(name), gbuffer(False))
+    with opened(scratch, *WHOLE) as viewer:
+        drop_files(viewer, scratch.path('a.exr'), scratch.path('b.exr'))
+        viewer.wait_title(r'^a.exr \[1/2\]')
+        viewer.key('Right')
+        viewer.wait_title(r'^b.exr \[2/2\]')
+        viewer.finish()
+
+
+@case
+def dropped_reference_is_compared_to(scratch):
+    with opened(scratch, *WHOLE, '--show', 'difference') as viewer:
+        preview(scratch, 'in.exr', *READ)
+        ao = read_ao(scratch.path('vkao.exr'))
+        write_exr(scratch.path('truth.exr'), {'AO': (ao - 0.1).astype(np.float32)})
+        drop_files(viewer, scratch.path('truth.exr'))
+        time.sleep(1)
+        viewer.wait_title('^in.exr - Difference')
+        shown = viewer.finish()
+    wanted = np.floor(np.array([0.15, 0.6, 1]) * 0.4 * 255 + 0.5)
+    check(np.abs(shown - wanted).max() <= 1, f'{shown[0, 0]}, want {wanted}')
+
+
+@case
+def dropped_rubbish_is_refused(scratch):
+    scratch.write('rubbish.exr', 'rubbish')
+    for number in (1, 2):
+        write_exr(scratch.path(f'in.{number}.exr'), gbuffer())
+    with Viewer(scratch, 'in.%d.exr', *READ, *WHOLE) as viewer:
+        drop_files(viewer, scratch.path('rubbish.exr'))
+        time.sleep(0.5)
+        viewer.wait_title(r'^in.1.exr \[1/2\] - ')
+        viewer.key('Right')
+        viewer.wait_title(r'^in.2.exr \[2/2\] - ')
+        shown = viewer.finish()
+        check('rubbish.exr' in viewer.err, f'nothing is said:\n{viewer.err}')
+    same_picture(shown, preview(scratch, 'in.2.exr', *READ), 'AO')
+
+
+@case
+def dropped_rubbish_is_told_in_a_window_without_the_panel(scratch):
+    scratch.write('rubbish.exr', 'rubbish')
+    size = (500, 300)
+    with opened(scratch, *WHOLE, size=size) as viewer:
+        before = screen(scratch, viewer, size)
+
+        def changed():
+            return (screen(scratch, viewer, size) != before).any(axis=-1)
+        drop_files(viewer, scratch.path('rubbish.exr'))
+        until(lambda: changed()[-50:].sum() > 1000, 'word of it')
+        check(not changed()[:-50].any(), 'the picture above it is another')
+        viewer.key('2')
+        until(lambda: not changed().any(), 'picture as before after a key')
+        viewer.finish()
+
+
+@case
+def dropped_camera_is_taken(scratch):
+    write_exr(scratch.path('in.exr'), gbuffer())
+    scratch.write('wide.json', '{"fov_x_deg": 90}')
+    with Viewer(scratch, 'in.exr', '--radius', RADIUS, *WHOLE) as viewer:
+        drop_files(viewer, scratch.path('wide.json'))
+        time.sleep(0.5)
+        viewer.wait_title('^in.exr - ')
+        shown = viewer.finish()
+    wanted = preview(scratch, 'in.exr', '--radius', RADIUS, '--fov', 90)
+    same_picture(shown, wanted, 'AO')
+
+
+if __name__ == '__main__':
+    view.main()
