@@ -40,10 +40,10 @@ Lines lines_of(bool vertical, int shift, ivec2 size)
 {
     ivec2 block = ivec2(gl_WorkGroupID.xy), blocks = ((size - 1) >> 5) + 1;
     int at = vertical ? block.y : block.x, count = vertical ? blocks.y : blocks.x;
-    int word = at >> shift, sharing = min(1 << shift, count - (word << shift));
+    int word = at >> shift, sharing = clamp(count - (word << shift), 1, 1 << shift);
     int log = max(5 - findMSB(sharing), 0), skipped = at - (word << shift) << log;
     return Lines(vertical, shift, word, WORD * (vertical ? block.x : block.y) + skipped, log,
-                 skipped < WORD ? 1 << log : 0);
+                 at < count && skipped < WORD ? 1 << log : 0);
 }
 
 ivec2 texel_of(Lines l, int along, int across)
