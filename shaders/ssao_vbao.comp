@@ -127,9 +127,10 @@ void hide(inout March march, inout Trail last, Slice s, Masks m, Bounds b, float
     vec2 back = bound_of(b, back_x, back_y, 0.0);
     joined = bvec2(joined.x && seen.x, joined.y && seen.y);
     front = max(front, mix(vec2(0.0), last.front, joined));
-    /* Open as before are those from front on, and those up to back. */
-    uvec2 upper = uvec2(last.rounding + sectors_under(b, front));
-    uvec2 above = uvec2((32.0 - VKAO_VBAO_ROUND) - sectors_under(b, back));
+    /* Open as before are those from front on, and those up to back. Bounds of a side that has next
+     * to no mass may be anything. */
+    uvec2 upper = uvec2(last.rounding + sectors_under(b, front)) & 31u;
+    uvec2 above = uvec2((32.0 - VKAO_VBAO_ROUND) - sectors_under(b, back)) & 31u;
     march.open &= uvec2(~1u) << upper | uvec2(~0u) >> above;
     vec2 near_y = min(max(back_y, vec2(0.0)), y), count = counted(march.open);
     vec2 w = weight_at(inner_x, near_y) * (march.count - count);
