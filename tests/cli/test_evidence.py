@@ -349,6 +349,17 @@ def depth_without_shape_is_an_error(scratch, _, value):
     matches("warning: in.exr: depth 'Z' is .*AO is 1 everywhere", said, 'stderr')
 
 
+@cases([('whole numbers', 1 / 64, True), ('floats', 0, False)])
+def depth_in_steps_is_said(scratch, _, step, is_said):
+    scene = Scene()
+    depth = depth_of(scene, 1e10)
+    if step:
+        depth = np.where(scene.sky, depth, np.round(depth / step) * step).astype(np.float32)
+    write_exr(scratch.path('in.exr'), {'Z': depth, **scene.normals()})
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    equal('in steps; at the median' in said, is_said, f'whether it is in {said}')
+
+
 @case
 def filtered_depth_is_said(scratch):
     scene = Scene(640, 360)

@@ -198,7 +198,8 @@ static bool check_grey(const struct gbuffer *g, struct report *report, struct to
     free(twin);
     if (!twin || colored * 100 <= texels || (!depth->is_guessed && used == 0))
         return twin != NULL;
-    fail_hint(err, "give the file of the depth; or if one channel is depth, say which: --depth R");
+    fail_hint(err, "give the file of the depth; or if one channel is depth, say which: --depth %s",
+              depth->channels[0]->name);
     return fail(err, EXIT_CHANNELS, "%s: '%s' and '%s' differ: a picture in colours, no depth",
                 depth->info->path, depth->channels[0]->name, depth->twin->name);
 }

@@ -134,7 +134,7 @@ struct gbuffer {
     double min_z, median_z, max_z; /* view z of the foreground, scene units; 0 if there is none */
     double background_share;       /* [0,1], with the invalid ones */
     double invalid_share;          /* [0,1] of NaN, -Inf and negative values */
-    double depth_step; /* distance between neighbouring half values at the median; 0 for float */
+    double depth_step; /* between neighbouring values at the median, scene units; 0 if it is fine */
     struct ao_view view;
 };
 

@@ -195,6 +195,39 @@ static double half_step(const struct gbuffer *g)
     return ldexp(1.0, (int)floor(log2(fmax(stored, 6.1e-5))) - 10) * slope;
 }
 
+static int compare_floats(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* Of distances that were integers once: the least difference of any two, if that is one that no
+ * surface has, else 0. False if memory runs out. */
+static bool find_steps(const struct gbuffer *g, double *least)
+{
+    enum { MOST = 1 << 14, FEW = 24 };
+    const size_t step = gbuffer_texels(g) / MOST + 1;
+    float *values = malloc((gbuffer_texels(g) / step + 1) * sizeof *values);
+    size_t count = 0, different = 0;
+    if (!values)
+        return false;
+    for (size_t i = 0; i < gbuffer_texels(g); i += step)
+        if (gbuffer_is_foreground(g, i))
+            values[count++] = g->depth[i];
+    qsort(values, count, sizeof *values, compare_floats);
+    *least = INFINITY;
+    for (size_t i = 1; i < count; i++) {
+        const double gap = (double)values[i] - (double)values[i - 1];
+        different += gap > 0;
+        *least = gap > 0 ? fmin(*least, gap) : *least;
+    }
+    /* Of many values of a surface some are nearly the same, but for rounding. */
+    if (different < FEW || count < 8 * different || *least < 2e-4 * g->median_z)
+        *least = 0;
+    free(values);
+    return true;
+}
+
 /* Of the values as stored, background and all. */
 struct stored_range {
     float low, high;
@@ -228,10 +261,9 @@ static void warn_about_depth(const struct gbuffer *g, const char *path, struct r
             "%s: %s of depth values are NaN, negative or out of range: treated as background", path,
             share);
     if (g->depth_step > 0)
-        report_warn(
-            report, "half depth",
-            "%s: depth is HALF; at the median distance %.4g the step is %.2g: expect banding", path,
-            g->median_z, g->depth_step);
+        report_warn(report, "half depth",
+                    "%s: depth is %s; at the median distance %.4g the step is %.2g: expect banding",
+                    path, g->depth_is_half ? "HALF" : "in steps", g->median_z, g->depth_step);
     text_percent(share, g->filtered_share);
     if (g->filtered_share > 0.3)
         report_warn(report, "filtered depth",
@@ -336,6 +368,10 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
     prepare_behind(g);
     if (g->depth_is_half && g->median_z > 0)
         g->depth_step = half_step(g);
+    const bool is_distance = g->view.depth_encoding == VKAO_DEPTH_VIEW_Z ||
+                             g->view.depth_encoding == VKAO_DEPTH_DISTANCE;
+    if (!g->depth_is_half && is_distance && !find_steps(g, &g->depth_step))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     warn_about_compression(g, &info->parts[role->part], path, report);
     warn_about_depth(g, path, report);
     return true;

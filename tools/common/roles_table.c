@@ -70,8 +70,8 @@ const struct role_row role_table[] = {
      .sets = {{"Nsx", "Nsy", "Nsz"}, {"NX", "NY", "NZ"}, {"N_x", "N_y", "N_z"},
               {"normalX", "normalY", "normalZ"}, {"normal_x", "normal_y", "normal_z"}}},
     {.kind = ROLE_NORMAL,
-     .layers = "__Nworld|Nworld|normal_world|normW|guideNormalW|SHADING_NORMAL|NormalWS|"
-               "CGeometry_NormalsShading",
+     .layers = "__Nworld|Nworld|N_world|normal_world|normW|guideNormalW|SHADING_NORMAL|NormalWS|"
+               "N_WS|CGeometry_NormalsShading",
      .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_WORLD},
     /* Unreal */
     {.kind = ROLE_NORMAL, .layers = "~worldnormal", .sets = VECTOR_COMPONENTS,
