@@ -349,9 +349,12 @@ def depth_without_shape_is_an_error(scratch, _, value):
     matches("warning: in.exr: depth 'Z' is .*AO is 1 everywhere", said, 'stderr')
 
 
-@cases([('whole numbers', 1 / 64, True), ('floats', 0, False)])
+@cases([('whole numbers', 1 / 16, True), ('floats', 0, False)])
 def depth_in_steps_is_said(scratch, _, step, is_said):
     scene = Scene()
+    # A floor seen level has rows of one depth each, whose differences no ball hides then.
+    ball = (np.abs(scene.normal[..., 2]) < 0.999) & (scene.normal[..., 1] < 0.999)
+    scene.z = np.where(ball & ~scene.sky & (step == 0), 6.0, scene.z)
     depth = depth_of(scene, 1e10)
     if step:
         depth = np.where(scene.sky, depth, np.round(depth / step) * step).astype(np.float32)

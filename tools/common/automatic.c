@@ -40,7 +40,7 @@ float settled_bias(const struct gbuffer *gbuffer, float radius, float bias, stru
 {
     const float raised = automatic_bias(gbuffer, radius, bias);
     if (raised > bias)
-        report_warn(report, "bias", "bias raised to %.2g for the steps of half depth",
+        report_warn(report, "bias", "bias raised to %.2g for the steps of the depth",
                     (double)raised);
     return raised;
 }

@@ -201,8 +201,26 @@ static int compare_floats(const void *a, const void *b)
     return x < y ? -1 : x > y;
 }
 
-/* Of distances that were integers once: the least difference of any two, if that is one that no
- * surface has, else 0. False if memory runs out. */
+/* Stairs of this height, two texels a step or more: what is smooth has none, and what lies along
+ * the rows of the image, as floors do, changes with each. */
+static bool has_stairs(const struct gbuffer *g, double height)
+{
+    const size_t steps[2] = {1, g->width}, texels = gbuffer_texels(g);
+    size_t count = 0;
+    for (size_t i = 0; i + 3 * g->width < texels; i++)
+        for (int k = 0; k < 2; k++) {
+            const float *d = g->depth + i;
+            const size_t s = steps[k];
+            const double rise = fabs((double)d[2 * s] - (double)d[s]);
+            const double treads =
+                fabs((double)d[s] - (double)d[0]) + fabs((double)d[3 * s] - (double)d[2 * s]);
+            count += !(treads > 0) && fabs(rise - height) < 0.01 * height;
+        }
+    return count > texels / 200;
+}
+
+/* Of distances that were whole numbers once: the least difference of any two, if that is one that
+ * no surface has, else 0. False if memory runs out. */
 static bool find_steps(const struct gbuffer *g, double *least)
 {
     enum { MOST = 1 << 14, FEW = 24 };
@@ -222,7 +240,7 @@ static bool find_steps(const struct gbuffer *g, double *least)
         *least = gap > 0 ? fmin(*least, gap) : *least;
     }
     /* Of many values of a surface some are nearly the same, but for rounding. */
-    if (different < FEW || count < 8 * different || *least < 2e-4 * g->median_z)
+    if (different < FEW || *least < 2e-4 * g->median_z || !has_stairs(g, *least))
         *least = 0;
     free(values);
     return true;
