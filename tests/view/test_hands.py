@@ -389,9 +389,12 @@ def histogram_counts_what_is_shown(scratch):
 def probe_is_copied(scratch):
     with opened(scratch, *WHOLE, '--versus', '--intensity 0', '--wipe', 0.9) as viewer:
         viewer.move(80, 70)
-        time.sleep(0.5)
-        viewer.key('ctrl+c')
-        time.sleep(0.5)
+
+        def copied():
+            viewer.key('ctrl+c')
+            time.sleep(0.5)
+            return clipboard(viewer)
+        until(lambda: copied().startswith('texel 80 70 '), 'copy of the probe')
         text = clipboard(viewer)
         viewer.finish()
     number = r'(-?[0-9.e-]+)'
