@@ -100,11 +100,7 @@ uint32_t vkao_blur_tile_words(const vkao_effect_info *effect)
 void vkao_blur_constants(const struct vkao_recording *r, const vkao_params *params,
                          struct vkao_constants *out)
 {
-    const vkao_effect_info *e = &r->frame->program->settings;
-    /* What else than SSAO makes AO may not follow depth. */
-    const bool has_detail =
-        e->half_resolution && e->stages & VKAO_STAGE_SSAO && params->sharpness > 0.0f;
-    out->detail = has_detail ? (float)VKAO_BLUR_DETAIL : 0.0f;
+    (void)r;
     /* Devices may take denormal numbers for 0, and no power of 0 is that. */
     out->power = fmaxf(params->power, 1e-30f);
 }

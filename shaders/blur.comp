@@ -26,7 +26,6 @@ layout(binding = VKAO_BINDING_SOURCE) uniform texture2D source_image;
 layout(binding = VKAO_BINDING_TARGET) uniform writeonly image2D target_image;
 #endif
 
-const bool HAS_DETAIL = GRID_SHIFT > 0u;
 const ivec2 AXIS = VERTICAL ? ivec2(0, 1) : ivec2(1, 0);
 
 /* Visibility less 1: where all is open, sums are exactly 0 and so is what a division makes of
@@ -47,24 +46,12 @@ float local_slope(ivec2 texel, float z)
                        surface_z(load_view_z(texel + AXIS)));
 }
 
-/* In the part of v that visibility is. */
-vec4 detail_of(ivec2 texel, float z)
-{
-    if (!HAS_DETAIL)
-        return vec4(0.0);
-    float width = abs(VERTICAL ? params.unproject.y : params.unproject.x);
-    float d = local_detail(surface_z(load_view_z(texel - AXIS)), z,
-                           surface_z(load_view_z(texel + AXIS)), width);
-    return BENT_NORMALS ? vec4(0.0, 0.0, 0.0, d) : vec4(d);
-}
-
 vec4 blurred(ivec2 texel, float z)
 {
     float slope = local_slope(texel, z);
     float edge = edge_stop(z, params.sharpness, params.reference_z);
     vec4 normal = NORMAL_POWER > 0.0 ? stored_normal(texel << GRID_SHIFT) : vec4(0.0);
-    vec4 detail = detail_of(texel, z);
-    vec4 sum = load_noisy(texel) - ALL_OPEN - detail;
+    vec4 sum = load_noisy(texel) - ALL_OPEN;
     float weights = 1.0;
     int k = -RADIUS;
     for (;;) {
@@ -75,13 +62,13 @@ vec4 blurred(ivec2 texel, float z)
             float w = blur_weight(k, RADIUS) * max(0.0, 1.0 - edge * off);
             if (NORMAL_POWER > 0.0)
                 w *= normal_weight(normal, stored_normal(at << GRID_SHIFT), NORMAL_POWER);
-            sum += w * (load_noisy(at) - ALL_OPEN - detail_of(at, tap_z));
+            sum += w * (load_noisy(at) - ALL_OPEN);
             weights += w;
         }
         if (++k > RADIUS)
             break;
     }
-    return sum / weights + ALL_OPEN + detail;
+    return sum / weights + ALL_OPEN;
 }
 
 void main()

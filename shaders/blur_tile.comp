@@ -106,23 +106,13 @@ Texel read_texel(int at)
     return t;
 }
 
-float detail_of(Texel before, Texel center, Texel after, float width)
-{
-    return GRID_SHIFT > 0u
-               ? local_detail(before.z, center.z, after.z, width) * (1.0 / VISIBILITY_UNIT)
-               : 0.0;
-}
-
-/* What the window of a texel gives it; the first and the last are there for slopes. width: of a
- * texel along the window, at unit distance. */
-vec4 blurred(Texel window[2 * REACH + 3], float width)
+/* What the window of a texel gives it; the first and the last are there for slopes. */
+vec4 blurred(Texel window[2 * REACH + 3])
 {
     Texel center = window[LEFT];
     float slope = local_slope(window[LEFT - 1].z, center.z, window[LEFT + 1].z);
     float edge = edge_stop(center.z, params.sharpness, ORTHOGRAPHIC ? params.reference_z : 0.0);
     vec4 sum = center.v;
-    float detail = detail_of(window[LEFT - 1], center, window[LEFT + 1], width);
-    sum.w -= detail;
     float weights = 1.0;
     [[unroll]] for (int k = -REACH; k <= REACH; ++k) {
         if (k == 0 || abs(k) > RADIUS)
@@ -136,11 +126,9 @@ vec4 blurred(Texel window[2 * REACH + 3], float width)
         if (HAS_NORMALS)
             w *= normal_weight(center.normal, tap.normal, NORMAL_POWER);
         sum += w * tap.v;
-        sum.w -= w * detail_of(window[LEFT + k - 1], tap, window[LEFT + k + 1], width);
         weights += w;
     }
     sum /= weights;
-    sum.w += detail;
     /* an ao_noisy of the caller's may hold anything */
     if (!NOISY_CODES)
         sum.w = is_sane(sum.w) ? sum.w : 0.0;
@@ -164,7 +152,7 @@ void blur_rows(int lane)
             t[i] = read_texel(first + turn * TURN + i);
         [[unroll]] for (int i = 0; i < ALONG_X; ++i) {
             results[turn][i] = t[LEFT + i];
-            results[turn][i].v = blurred(WINDOW(t, i), abs(params.unproject.x));
+            results[turn][i].v = blurred(WINDOW(t, i));
         }
     }
     barrier();
@@ -198,7 +186,7 @@ void blur_columns(int lane, ivec2 origin)
     }
     [[unroll]] for (int i = 0; i < ALONG_Y; ++i) {
         ivec2 texel = origin + ivec2(x, y + i);
-        vec4 v = blurred(WINDOW(t, i), abs(params.unproject.y));
+        vec4 v = blurred(WINDOW(t, i));
         if (all(lessThan(texel, unpack_texel(here.rect.y))))
             store(texel, t[LEFT + i], v);
     }

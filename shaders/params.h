@@ -214,10 +214,6 @@
  * field of view. */
 #define VKAO_STEEPEST_FACET 1.0e9
 
-/* How much of the AO that half resolution loses the bend of depth tells: see local_detail. Fitted
- * to ray-traced truths. */
-#define VKAO_BLUR_DETAIL 0.025
-
 /* Members of vkao_params that shaders read as they are. The recording copies them by name. */
 #define VKAO_PLAIN_CONSTANTS(FLOAT, UINT)                                                          \
     FLOAT(blocking_scale); /* SPHERE */                                                            \
@@ -260,7 +256,6 @@ struct vkao_constants {
     VKAO_FLOAT(thickness_base);
     VKAO_FLOAT(thickness_slope);
     VKAO_FLOAT(power);
-    VKAO_FLOAT(detail); /* see VKAO_BLUR_DETAIL */
     VKAO_FLOAT(debug_distance);
     VKAO_UINT(slices);
     VKAO_UINT(steps);

@@ -27,28 +27,11 @@ float local_slope(float before, float z, float after)
 
 /* How far a tap k texels away lies off the surface that goes on from the centre by its slope. At
  * half resolution, where a blur spans twice as much and more lies between two texels, the centre
- * must also lie on the tap's surface, four times as far off at most: what only meets at an edge is
- * told apart without normals. Were that as strict, rough ground and outlines would keep their
- * noise, and flicker. */
+ * must also lie on the tap's surface: what only meets at an edge is told apart without normals. */
 float off_surface(float z, float slope, float tap_z, float tap_slope, float k)
 {
     float off = abs(tap_z - z - slope * k);
-    return GRID_SHIFT > 0u ? max(off, 0.25 * abs(tap_z - z - tap_slope * k)) : off;
-}
-
-/* What half resolution loses: how much more open a texel is than those about it as it stands out
- * from the line through its two neighbours along an axis, or less as it lies deeper. Bends within
- * the precision of depth are none, and what is farther away than the radius does not count. texel:
- * its width along the axis at unit distance. */
-float local_detail(float before, float z, float after, float texel)
-{
-    float scale = ORTHOGRAPHIC ? 1.0 : z, r = params.inverse_radius;
-    float error = 4.0 * r * scale * (params.depth_error.x + params.depth_error.y * z);
-    vec2 rise = clamp(r * (z - vec2(before, after)), vec2(-2.0), vec2(2.0));
-    float width = r * scale * texel, bend = rise.x + rise.y;
-    float span2 = dot(rise, rise) + width * width + 1.0e-30;
-    float beyond = bend - clamp(bend, -error, error);
-    return params.detail * max(0.0, 1.0 - span2) * inversesqrt(span2) * -beyond;
+    return GRID_SHIFT > 0u ? max(off, abs(tap_z - z - tap_slope * k)) : off;
 }
 
 /* 1 / the distance off the continued slope at which a tap counts nothing; never 0, so that

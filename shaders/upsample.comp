@@ -4,8 +4,7 @@
  * al. 2007). A texel takes from the one, two or four half-resolution texels that it coincides with
  * or lies between, by the depth and normal weights of the blur. Depth is continued by the slope at
  * the full-resolution texel. Where no neighbour lies on its surface, the least wrong one
- * decides. What stands out between its neighbours is more open than they, and what lies deeper less
- * (see local_detail). */
+ * decides. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -30,14 +29,6 @@ float slope_along(ivec2 texel, ivec2 axis, float z)
 {
     return local_slope(surface_z(full_view_z(texel - axis)), z,
                        surface_z(full_view_z(texel + axis)));
-}
-
-/* Of a texel between two of half resolution, along an axis. */
-float detail_along(ivec2 texel, ivec2 axis, float z)
-{
-    vec2 width = abs(params.image_unproject.xy);
-    return local_detail(surface_z(full_view_z(texel - axis)), z,
-                        surface_z(full_view_z(texel + axis)), dot(width, vec2(axis)));
 }
 
 vec4 upsampled(ivec2 texel, float z)
@@ -67,12 +58,7 @@ vec4 upsampled(ivec2 texel, float z)
         }
     }
     /* A lone texel before the sky: open, towards the eye. */
-    vec4 v = weights > 0.0 ? sum / weights : vec4(0.0, 0.0, -1.0, 1.0);
-    if (odd.x != 0)
-        v.w += detail_along(texel, ivec2(1, 0), z);
-    if (odd.y != 0)
-        v.w += detail_along(texel, ivec2(0, 1), z);
-    return v;
+    return weights > 0.0 ? sum / weights : vec4(0.0, 0.0, -1.0, 1.0);
 }
 
 void main()

@@ -57,9 +57,8 @@ void load_corners(ivec2 first, out Corner corners[2][2])
 }
 
 /* A texel in the middle of two corners. Its slope is that to the nearer one in depth, which so lies
- * on its surface; the other one is off it by as much as the two slopes differ.
- * width: of a texel along that line, at unit distance. */
-vec4 between_two(Corner a, Corner b, ivec2 texel, float z, float width)
+ * on its surface; the other one is off it by as much as the two slopes differ. */
+vec4 between_two(Corner a, Corner b, ivec2 texel, float z)
 {
     float edge = edge_stop(z, params.sharpness, params.reference_z);
     float to_a = z - a.z, to_b = b.z - z;
@@ -74,8 +73,7 @@ vec4 between_two(Corner a, Corner b, ivec2 texel, float z, float width)
                   normal_weight(normal, b.normal, NORMAL_POWER));
         w += on_a ? vec2(1.0e-6, least) : vec2(least, 1.0e-6);
     }
-    vec4 v = (w.x * a.v + w.y * b.v) / (w.x + w.y);
-    return vec4(v.xyz, v.w + local_detail(a.z, z, b.z, width));
+    return (w.x * a.v + w.y * b.v) / (w.x + w.y);
 }
 
 /* A texel in the middle of all. */
@@ -125,17 +123,11 @@ void main()
           far_x_z = in_rect(far_x, params.image_valid) ? view_z_of(far_x_depth, far_x) : 0.0,
           far_y_z = in_rect(far_y, params.image_valid) ? view_z_of(far_y_depth, far_y) : 0.0;
 
-    vec2 width = abs(params.image_unproject.xy);
     float first_z = corners[0][0].z;
     put(texel, first_z == BACKGROUND_Z ? 0.0 : first_z, corners[0][0].v);
-    put(right, right_z, between_two(corners[0][0], corners[0][1], right, right_z, width.x));
-    put(below, below_z, between_two(corners[0][0], corners[1][0], below, below_z, width.y));
-    vec2 before = vec2(surface_z(below_z), surface_z(right_z)),
-         after = vec2(surface_z(far_x_z), surface_z(far_y_z));
-    vec2 slopes = vec2(local_slope(before.x, last_z, after.x),
-                       local_slope(before.y, last_z, after.y));
-    vec4 v = between_four(corners, last, last_z, slopes);
-    v.w += local_detail(before.x, last_z, after.x, width.x) +
-           local_detail(before.y, last_z, after.y, width.y);
-    put(last, last_z, v);
+    put(right, right_z, between_two(corners[0][0], corners[0][1], right, right_z));
+    put(below, below_z, between_two(corners[0][0], corners[1][0], below, below_z));
+    vec2 slopes = vec2(local_slope(surface_z(below_z), last_z, surface_z(far_x_z)),
+                       local_slope(surface_z(right_z), last_z, surface_z(far_y_z)));
+    put(last, last_z, between_four(corners, last, last_z, slopes));
 }

@@ -21,10 +21,21 @@ layout(binding = VKAO_BINDING_HALFWAY_WORDS) writeonly buffer Halfway { uint hal
 const int REACH = (RADIUS + MARGIN + 3) & ~3; /* windows begin and end at whole words */
 const int WINDOW = VKAO_BLUR_X_WIDTH + 2 * REACH;
 
+float fetch_code(ivec2 texel)
+{
+    int i = buffer_row(texel.y) + texel.x;
+    return float(int(imageLoad(packed_ao, i >> 2).x >> ((i & 3) << 3)) & 255);
+}
+
+float slope_at(ivec2 texel)
+{
+    return local_slope(surface_z(load_view_z(texel - ivec2(1, 0))), surface_z(load_view_z(texel)),
+                       surface_z(load_view_z(texel + ivec2(1, 0))));
+}
+
 void blur(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
 {
-    float z[WINDOW], code[WINDOW], slope[WINDOW], detail[WINDOW];
-    float width = abs(params.unproject.x);
+    float z[WINDOW], code[WINDOW], slope[WINDOW];
     vec4 normal[WINDOW];
     bool use_normals = NORMAL_POWER > 0.0;
     int z_word = (z_row(texel.y) + texel.x - REACH) >> 2,
@@ -42,12 +53,6 @@ void blur(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
     /* Those that nothing uses cost nothing. */
     [[unroll]] for (int i = 1; i < WINDOW - 1; ++i)
         slope[i] = local_slope(z[i - 1], z[i], z[i + 1]);
-    if (GRID_SHIFT > 0u) {
-        [[unroll]] for (int i = 1; i < WINDOW - 1; ++i) {
-            detail[i] = local_detail(z[i - 1], z[i], z[i + 1], width) * VKAO_CODE_SCALE;
-            code[i] -= detail[i];
-        }
-    }
     [[unroll]] for (int i = 0; i < VKAO_BLUR_X_WIDTH; ++i) {
         int c = REACH + i;
         float edge = edge_stop(z[c], params.sharpness, params.reference_z);
@@ -63,8 +68,6 @@ void blur(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
             weights += w;
         }
         result[i] = sum / weights;
-        if (GRID_SHIFT > 0u)
-            result[i] = max(result[i] + detail[c], 0.0);
     }
 }
 

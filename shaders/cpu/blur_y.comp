@@ -46,13 +46,9 @@ vec4 slopes(vec4 before, vec4 z, vec4 after)
     return slope;
 }
 
-/* In fine codes. */
-vec4 details(vec4 before, vec4 z, vec4 after)
+vec4 slopes_at(ivec2 texel)
 {
-    vec4 detail;
-    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i)
-        detail[i] = local_detail(before[i], z[i], after[i], abs(params.unproject.y));
-    return detail * (VKAO_CODE_SCALE * VKAO_CODE_FINE);
+    return slopes(load_z(texel - ivec2(0, 1)), load_z(texel), load_z(texel + ivec2(0, 1)));
 }
 
 vec4 tap_weights(int k, int radius, vec4 z, vec4 slope, vec4 tap_z, vec4 tap_slope)
@@ -78,7 +74,7 @@ vec4 normal_weights(ivec2 texel, ivec2 tap)
 void put(ivec2 texel, vec4 z, vec4 fine)
 {
     if (GRID_SHIFT > 0u) {
-        ivec4 v = ivec4(max(fine + (float(VKAO_CODE_OPEN) + 0.5), vec4(0.0)));
+        ivec4 v = ivec4(fine + (float(VKAO_CODE_OPEN) + 0.5));
         if (texel.y < int(here.rect.y >> 16))
             blurred_ao[(buffer_row(texel.y) + texel.x) >> 2] = uvec2(v.xz | v.yw << 16);
         return;
@@ -89,8 +85,7 @@ void put(ivec2 texel, vec4 z, vec4 fine)
 
 void blur(ivec2 texel)
 {
-    vec4 z[WINDOW], slope[WINDOW], fine[WINDOW], detail[WINDOW];
-    vec4 normal[WINDOW * VKAO_BLUR_Y_WIDTH];
+    vec4 z[WINDOW], slope[WINDOW], fine[WINDOW], normal[WINDOW * VKAO_BLUR_Y_WIDTH];
     bool use_normals = NORMAL_POWER > 0.0;
     [[unroll]] for (int j = 0; j < WINDOW; ++j) {
         ivec2 at = texel + ivec2(0, j - RADIUS - MARGIN);
@@ -104,12 +99,6 @@ void blur(ivec2 texel)
     /* Those that nothing uses cost nothing. */
     [[unroll]] for (int j = 1; j < WINDOW - 1; ++j)
         slope[j] = slopes(z[j - 1], z[j], z[j + 1]);
-    if (GRID_SHIFT > 0u) {
-        [[unroll]] for (int j = MARGIN; j < WINDOW - MARGIN; ++j) {
-            detail[j] = details(z[j - 1], z[j], z[j + 1]);
-            fine[j] -= detail[j];
-        }
-    }
     [[unroll]] for (int row = 0; row < VKAO_BLUR_Y_HEIGHT; ++row) {
         int c = RADIUS + MARGIN + row;
         vec4 sum = fine[c], weights = vec4(1.0);
@@ -123,10 +112,7 @@ void blur(ivec2 texel)
             sum += w * fine[c + k];
             weights += w;
         }
-        vec4 result = sum / weights;
-        if (GRID_SHIFT > 0u)
-            result += detail[c];
-        put(texel + ivec2(0, row), z[c], result);
+        put(texel + ivec2(0, row), z[c], sum / weights);
     }
 }
 

@@ -102,12 +102,6 @@ float blend(int dx, int dy, float z, vec4 normal, vec2 slope, Neighbour n[4])
     return mean.weights > 0.0 ? mean.sum / mean.weights : 0.0;
 }
 
-/* In fine codes. */
-float detail(float before, float z, float after, float width)
-{
-    return local_detail(before, z, after, width) * (VKAO_CODE_SCALE * VKAO_CODE_FINE);
-}
-
 /* A row of the window. */
 void put(ivec2 texel, float z[VKAO_UPSAMPLE_WIDTH], float fine[VKAO_UPSAMPLE_WIDTH])
 {
@@ -140,7 +134,6 @@ void main()
             normal[row][i] = NORMAL_POWER > 0.0 ? full_normal(texel + ivec2(i, row)) : vec4(0.0);
         }
     }
-    vec2 width = abs(params.image_unproject.xy);
     float row_z[2][VKAO_UPSAMPLE_WIDTH], row[2][VKAO_UPSAMPLE_WIDTH];
     [[unroll]] for (int i = 0; i < VKAO_UPSAMPLE_WIDTH; ++i) {
         bool even = (i & 1) == 0;
@@ -152,17 +145,14 @@ void main()
                              normal[(k >> 1) * 2][column]);
         }
         vec2 slope = vec2(0.0, local_slope(z[0][i], z[1][i], z[2][i]));
-        float below = detail(z[0][i], z[1][i], z[2][i], width.y);
         if (even) {
             row[0][i] = fine[0][i / 2];
-            row[1][i] = blend(0, 1, z[1][i], normal[1][i], slope, n) + below;
+            row[1][i] = blend(0, 1, z[1][i], normal[1][i], slope, n);
         } else {
             slope.x = local_slope(z[1][i - 1], z[1][i], z[1][i + 1]);
             vec2 across = vec2(local_slope(z[0][i - 1], z[0][i], z[0][i + 1]), 0.0);
-            row[0][i] = blend(1, 0, z[0][i], normal[0][i], across, n) +
-                        detail(z[0][i - 1], z[0][i], z[0][i + 1], width.x);
-            row[1][i] = blend(1, 1, z[1][i], normal[1][i], slope, n) + below +
-                        detail(z[1][i - 1], z[1][i], z[1][i + 1], width.x);
+            row[0][i] = blend(1, 0, z[0][i], normal[0][i], across, n);
+            row[1][i] = blend(1, 1, z[1][i], normal[1][i], slope, n);
         }
         row_z[0][i] = z[0][i];
         row_z[1][i] = z[1][i];

@@ -43,11 +43,9 @@ static void reference(const struct picture *p, double *out)
     for (size_t c = 0; c < 4; ++c) {
         for (size_t i = 0; i < texels; ++i)
             channel[i] = c == 3 ? ao[i] : bent[i * 3 + c];
-        const double detail = c == 3 && p->blur.sharpness > 0.0f ? (double)p->ssao.radius : 0.0;
-        ref_blur_channel_half(&half, &p->blur, p->view.normal_encoding, stored, channel, detail,
-                              blurred);
+        ref_blur_channel_half(&half, &p->blur, p->view.normal_encoding, stored, channel, blurred);
         ref_upsample(&full, &half, &p->blur, p->view.normal_encoding, p->values[SLOT_NORMALS],
-                     c == 3 ? 1.0 : 0.0, blurred, detail, result);
+                     c == 3 ? 1.0 : 0.0, blurred, result);
         for (size_t i = 0; i < picture_texels(p); ++i)
             out[i * 4 + c] = c == 3 ? ref_blur_finish(&p->blur, result[i]) : result[i];
     }

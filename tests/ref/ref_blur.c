@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "ref_blur.h"
 
-#include "params.h"
 #include "ref_normal.h"
 
 #include <math.h>
@@ -15,7 +14,6 @@ struct blur {
     double ndc_width; /* scene units across the viewport, what sharpness is relative to without
                          perspective */
     bool half_resolution;
-    double detail_radius;
 };
 
 static size_t texel_index(const struct blur *blur, int x, int y)
@@ -57,24 +55,8 @@ static double flat_weight(int k, int radius)
     return (double)shared / box;
 }
 
-double ref_blur_detail(const struct ref_scene *scene, int x, int y, int dx, int dy, double radius)
-{
-    double z = ref_scene_z(scene, x, y), before = ref_scene_z(scene, x - dx, y - dy),
-           after = ref_scene_z(scene, x + dx, y + dy), here[3], beside[3];
-    if (!(radius > 0.0) || isnan(z) || isnan(before) || isnan(after))
-        return 0.0;
-    ref_view_position(&scene->view, x, y, z, here);
-    ref_view_position(&scene->view, x + dx, y + dy, z, beside);
-    double width = hypot(beside[0] - here[0], beside[1] - here[1]);
-    double span = hypot(width, hypot(z - before, z - after)), bend = 2.0 * z - before - after;
-    double error = 4.0 * ref_view_depth_error(&scene->view, z);
-    double beyond = bend - fmin(fmax(bend, -error), error);
-    return -VKAO_BLUR_DETAIL * fmax(0.0, 1.0 - span * span / (radius * radius)) * beyond / span;
-}
-
 /* flat_weight * max(0, 1 - sharpness |z_k - z - slope k| / z) * max(0, n.n_k)^normal_power;
- * at half resolution the larger of the distances by the centre's slope and of a quarter of that by
- * the tap's */
+ * at half resolution the larger of the distances by the centre's slope and by the tap's */
 static double blurred(const struct blur *blur, const double *ao, int x, int y, int dx, int dy)
 {
     double z = ref_scene_z(blur->scene, x, y), sum = 0.0, weights = 0.0;
@@ -92,16 +74,14 @@ static double blurred(const struct blur *blur, const double *ao, int x, int y, i
         double w = k ? flat_weight(k, radius) : 1.0;
         double off = fabs(tap_z - z - s * k);
         if (blur->half_resolution)
-            off =
-                fmax(off, 0.25 * fabs(tap_z - z - slope(blur, x + k * dx, y + k * dy, dx, dy) * k));
+            off = fmax(off, fabs(tap_z - z - slope(blur, x + k * dx, y + k * dy, dx, dy) * k));
         w *= fmax(0.0, 1.0 - scale * off);
         if (k != 0)
             w *= normal_weight(blur, texel_index(blur, x, y), tap);
-        sum += w * (ao[tap] - ref_blur_detail(blur->scene, x + k * dx, y + k * dy, dx, dy,
-                                              blur->detail_radius));
+        sum += w * ao[tap];
         weights += w;
     }
-    return sum / weights + ref_blur_detail(blur->scene, x, y, dx, dy, blur->detail_radius);
+    return sum / weights;
 }
 
 double ref_blur_finish(const struct ao_blur *params, double visibility)
@@ -112,14 +92,13 @@ double ref_blur_finish(const struct ao_blur *params, double visibility)
 
 static void blur_channel(const struct ref_scene *scene, const struct ao_blur *params,
                          vkao_normal_encoding encoding, const double *stored, const double *noisy,
-                         bool half_resolution, double detail_radius, double *out)
+                         bool half_resolution, double *out)
 {
     double left[3], right[3];
     const double *viewport = scene->view.viewport;
     ref_view_position(&scene->view, viewport[0] - 0.5, 0.0, 1.0, left);
     ref_view_position(&scene->view, viewport[0] + viewport[2] - 0.5, 0.0, 1.0, right);
-    struct blur blur = {scene,           params,       encoding, stored, fabs(right[0] - left[0]),
-                        half_resolution, detail_radius};
+    struct blur blur = {scene, params, encoding, stored, fabs(right[0] - left[0]), half_resolution};
     const VkRect2D *rect = &scene->view.rect, *valid = &scene->view.valid;
     double *halfway = malloc((size_t)scene->width * scene->height * sizeof *halfway);
     if (!halfway)
@@ -138,16 +117,16 @@ static void blur_channel(const struct ref_scene *scene, const struct ao_blur *pa
 
 void ref_blur_channel_half(const struct ref_scene *scene, const struct ao_blur *params,
                            vkao_normal_encoding encoding, const double *stored, const double *noisy,
-                           double detail_radius, double *out)
+                           double *out)
 {
-    blur_channel(scene, params, encoding, stored, noisy, true, detail_radius, out);
+    blur_channel(scene, params, encoding, stored, noisy, true, out);
 }
 
 void ref_blur(const struct ref_scene *scene, const struct ao_blur *params,
               vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao)
 {
     const VkRect2D *rect = &scene->view.rect;
-    blur_channel(scene, params, encoding, stored, noisy, false, 0.0, ao);
+    blur_channel(scene, params, encoding, stored, noisy, false, ao);
     for (int y = rect->offset.y; y < rect->offset.y + (int)rect->extent.height; ++y) {
         for (int x = rect->offset.x; x < rect->offset.x + (int)rect->extent.width; ++x) {
             size_t i = (size_t)y * scene->width + (size_t)x;

@@ -10,14 +10,10 @@
  * rect of ao. */
 void ref_blur(const struct ref_scene *scene, const struct ao_blur *params,
               vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao);
-/* One channel of a half-resolution scene, as it is passed on: before intensity and power.
- * detail_radius: of SSAO, if the channel is its visibility; else 0. */
+/* One channel of a half-resolution scene, as it is passed on: before intensity and power. */
 void ref_blur_channel_half(const struct ref_scene *scene, const struct ao_blur *params,
                            vkao_normal_encoding encoding, const double *stored, const double *noisy,
-                           double detail_radius, double *out);
-/* How much more open than the texels about it one is that stands out, or less as it lies deeper,
- * from the line through its neighbours along an axis. radius 0: not at all. */
-double ref_blur_detail(const struct ref_scene *scene, int x, int y, int dx, int dy, double radius);
+                           double *out);
 /* Intensity, then power. */
 double ref_blur_finish(const struct ao_blur *params, double visibility);
 

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "ref_upsample.h"
 
-#include "ref_blur.h"
 #include "ref_normal.h"
 
 #include <math.h>
@@ -55,7 +54,7 @@ struct upsample {
     const struct ao_blur *params;
     vkao_normal_encoding encoding;
     const double *stored;
-    double nothing, detail_radius;
+    double nothing;
     double width; /* of the viewport in scene units */
 };
 
@@ -104,30 +103,19 @@ static double upsampled(const struct upsample *u, const double *value, int x, in
             weights += w;
         }
     }
-    double detail = 0.0;
-    if (x % 2)
-        detail += ref_blur_detail(u->full, x, y, 1, 0, u->detail_radius);
-    if (y % 2)
-        detail += ref_blur_detail(u->full, x, y, 0, 1, u->detail_radius);
-    return weights > 0.0 ? sum / weights + detail : u->nothing;
+    return weights > 0.0 ? sum / weights : u->nothing;
 }
 
 void ref_upsample(const struct ref_scene *full, const struct ref_scene *half,
                   const struct ao_blur *params, vkao_normal_encoding encoding, const double *stored,
-                  double nothing, const double *value, double detail_radius, double *out)
+                  double nothing, const double *value, double *out)
 {
     double left[3], right[3];
     const double *viewport = full->view.viewport;
     ref_view_position(&full->view, viewport[0] - 0.5, 0.0, 1.0, left);
     ref_view_position(&full->view, viewport[0] + viewport[2] - 0.5, 0.0, 1.0, right);
-    struct upsample u = {full,
-                         half,
-                         params,
-                         encoding,
-                         encoding ? stored : NULL,
-                         nothing,
-                         detail_radius,
-                         fabs(right[0] - left[0])};
+    struct upsample u = {
+        full, half, params, encoding, encoding ? stored : NULL, nothing, fabs(right[0] - left[0])};
     const VkRect2D *rect = &full->view.rect;
     for (int y = rect->offset.y; y < rect->offset.y + (int)rect->extent.height; ++y) {
         for (int x = rect->offset.x; x < rect->offset.x + (int)rect->extent.width; ++x) {

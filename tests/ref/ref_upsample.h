@@ -12,10 +12,9 @@ void ref_scene_half(const struct ref_scene *full, const struct ao_view *view, co
                     struct ref_scene *half, double **half_stored);
 
 /* One channel of the half-resolution image to every texel of the view's rect, before intensity and
- * power; nothing is what background gets, and texels around which there is but background.
- * detail_radius: see ref_blur_channel_half. */
+ * power; nothing is what background gets, and texels around which there is but background. */
 void ref_upsample(const struct ref_scene *full, const struct ref_scene *half,
                   const struct ao_blur *params, vkao_normal_encoding encoding, const double *stored,
-                  double nothing, const double *value, double detail_radius, double *out);
+                  double nothing, const double *value, double *out);
 
 #endif
