@@ -273,14 +273,16 @@ static void undo_brings_back_what_was_and_forgets_what_was_undone(void **unused)
 
 /* --- The list of files --- */
 
+enum { ROOT_BYTES = 512 };
 static const char *const folders[] = {"b", "b/c", "b/.hidden"};
 static const char *const files[] = {"z.exr", "a 1.EXR",      "camera.json", "notes.txt",
                                     ".exr",  "b/c/shot.exr", "b/c/Shut.exr"};
 
-static void make_tree(char root[64])
+static void make_tree(char root[ROOT_BYTES])
 {
-    char path[128];
-    snprintf(root, 64, "/tmp/vkao-browse-XXXXXX");
+    char path[ROOT_BYTES + 32];
+    const char *base = getenv("TMPDIR");
+    snprintf(root, ROOT_BYTES, "%s/vkao-browse-XXXXXX", base && *base ? base : P_tmpdir);
     assert_non_null(mkdtemp(root));
     for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
         snprintf(path, sizeof path, "%s/%s", root, folders[i]);
@@ -296,7 +298,7 @@ static void make_tree(char root[64])
 
 static void remove_tree(const char *root)
 {
-    char path[128];
+    char path[ROOT_BYTES + 32];
     for (size_t i = sizeof files / sizeof *files; i-- > 0;) {
         snprintf(path, sizeof path, "%s/%s", root, files[i]);
         unlink(path);
@@ -321,7 +323,7 @@ static void assert_listed(const struct browser *b, const char *names)
 
 static void list_of_files_is_moved_through(void **unused)
 {
-    char root[64], path[128], chosen[128];
+    char root[ROOT_BYTES], path[ROOT_BYTES + 32], chosen[ROOT_BYTES + 32];
     struct browser b = {0};
     struct tool_error err = {0};
     (void)unused;
@@ -369,7 +371,7 @@ static void list_of_files_is_moved_through(void **unused)
 
 static void list_of_the_working_directory_goes_up_and_back(void **unused)
 {
-    char root[64], before[512], chosen[128];
+    char root[ROOT_BYTES], before[ROOT_BYTES + 32], chosen[ROOT_BYTES + 32];
     struct browser b = {0};
     struct tool_error err = {0};
     (void)unused;
