@@ -41,93 +41,6 @@ static bool check_role(const struct role *role, struct tool_error *err)
     return true;
 }
 
-static float *allocate(size_t texels, size_t components, const char *path, struct tool_error *err)
-{
-    size_t count, bytes;
-    float *values = NULL;
-    if (size_multiply(texels, components, &count) && size_multiply(count, sizeof *values, &bytes))
-        values = malloc(bytes);
-    if (!values)
-        fail(err, EXIT_MEMORY, "%s: out of memory for %zu texels", path, texels);
-    return values;
-}
-
-static bool same_box(const struct exr_box *a, const struct exr_box *b)
-{
-    return a->x_min == b->x_min && a->y_min == b->y_min && a->x_max == b->x_max &&
-           a->y_max == b->y_max;
-}
-
-/* Copies where the boxes overlap; the rest of dst stays. */
-static void copy_overlap(float *dst, const struct exr_box *dst_box, const float *src,
-                         const struct exr_box *src_box, size_t components)
-{
-    int64_t x0 = dst_box->x_min > src_box->x_min ? dst_box->x_min : src_box->x_min;
-    int64_t x1 = dst_box->x_max < src_box->x_max ? dst_box->x_max : src_box->x_max;
-    int64_t y0 = dst_box->y_min > src_box->y_min ? dst_box->y_min : src_box->y_min;
-    int64_t y1 = dst_box->y_max < src_box->y_max ? dst_box->y_max : src_box->y_max;
-    int64_t dst_width = (int64_t)dst_box->x_max - dst_box->x_min + 1;
-    int64_t src_width = (int64_t)src_box->x_max - src_box->x_min + 1;
-    for (int64_t y = y0; x0 <= x1 && y <= y1; y++) {
-        int64_t to = (y - dst_box->y_min) * dst_width + (x0 - dst_box->x_min);
-        int64_t from = (y - src_box->y_min) * src_width + (x0 - src_box->x_min);
-        memcpy(dst + (size_t)to * components, src + (size_t)from * components,
-               (size_t)(x1 - x0 + 1) * components * sizeof *dst);
-    }
-}
-
-static void fill(float *values, size_t count, float value)
-{
-    for (size_t i = 0; i < count; i++)
-        values[i] = value;
-}
-
-static size_t box_texels(const struct exr_box *box)
-{
-    const size_t width = (size_t)((int64_t)box->x_max - box->x_min + 1);
-    const size_t height = (size_t)((int64_t)box->y_max - box->y_min + 1);
-    size_t texels;
-    return size_multiply(width, height, &texels) ? texels : SIZE_MAX;
-}
-
-/* A role with so many floats per texel in the window of its own part; missing: a fourth component
- * that is not there. */
-static float *read_own_window(const struct role *role, size_t components, float missing,
-                              struct tool_error *err)
-{
-    const size_t texels = box_texels(&role->info->parts[role->part].data_window);
-    float *values = allocate(texels, components, role->info->path, err);
-    if (!values)
-        return NULL;
-    fill(values, texels * components, missing);
-    struct exr_read reads[4];
-    size_t count = 0;
-    for (size_t i = 0; i < components; i++)
-        if (role->channels[i])
-            reads[count++] = (struct exr_read){role->channels[i]->name, values + i, components};
-    if (exr_read_channels(role->info, role->part, reads, count, err))
-        return values;
-    free(values);
-    return NULL;
-}
-
-/* The same in the window of the depth; missing: also what its own window lacks. */
-static float *read_role(const struct gbuffer *g, const struct role *role, size_t components,
-                        float missing, struct tool_error *err)
-{
-    const struct exr_box *box = &role->info->parts[role->part].data_window;
-    float *values = read_own_window(role, components, missing, err);
-    if (!values || same_box(box, &g->data_window))
-        return values;
-    float *aligned = allocate(gbuffer_texels(g), components, role->info->path, err);
-    if (aligned) {
-        fill(aligned, gbuffer_texels(g) * components, missing);
-        copy_overlap(aligned, &g->data_window, values, box, components);
-    }
-    free(values);
-    return aligned;
-}
-
 /* Of a depth that is none, and where anything is left to be told. */
 static bool wants_positions(const struct gbuffer *g, const struct gbuffer_options *options)
 {
@@ -143,7 +56,7 @@ static bool use_positions(struct gbuffer *g, const struct gbuffer_options *optio
         &g->roles.kind[g->depth_type == DEPTH_POSITION ? ROLE_DEPTH : ROLE_POSITION];
     if (!wants_positions(g, options))
         return true;
-    float *positions = read_role(g, role, 4, 0.0f, err);
+    float *positions = gbuffer_read_role(g, role, 4, 0.0f, err);
     const bool ok =
         positions && gbuffer_use_positions(g, options, positions, role->info->path, report, err);
     free(positions);
@@ -162,11 +75,11 @@ static bool read_depth(struct gbuffer *g, struct tool_error *err)
     const struct role *role = &g->roles.kind[ROLE_DEPTH], *color = &g->roles.kind[ROLE_COLOR];
     const bool has_alpha = alpha_channel(g) && color->info == role->info &&
                            color->part == role->part && g->depth_type != DEPTH_POSITION;
-    g->depth = allocate(gbuffer_texels(g), 1, role->info->path, err);
+    g->depth = gbuffer_allocate(gbuffer_texels(g), 1, role->info->path, err);
     if (g->depth && g->depth_type == DEPTH_POSITION)
         return true; /* filled when the camera is known */
     if (g->depth && has_alpha)
-        g->alpha = allocate(gbuffer_texels(g), 1, role->info->path, err);
+        g->alpha = gbuffer_allocate(gbuffer_texels(g), 1, role->info->path, err);
     struct exr_read reads[2] = {{role->channels[0]->name, g->depth, 1}};
     if (has_alpha)
         reads[1] = (struct exr_read){alpha_channel(g)->name, g->alpha, 1};
@@ -189,7 +102,7 @@ static bool check_grey(const struct gbuffer *g, struct report *report, struct to
                     "taken (--depth NAME says another)",
                     depth->info->path, depth->channels[0]->name);
     const struct role role = {.info = depth->info, .part = depth->part, .channels = {depth->twin}};
-    float *twin = read_role(g, &role, 1, 0.0f, err);
+    float *twin = gbuffer_read_role(g, &role, 1, 0.0f, err);
     for (size_t i = 0; twin && i < texels; i++) {
         const float a = g->depth[i], b = twin[i];
         colored += fabsf(a - b) > 0.01f * fmaxf(fabsf(a), fabsf(b));
@@ -215,7 +128,7 @@ static bool read_alpha(struct gbuffer *g, struct tool_error *err)
     if (is_known)
         return true;
     const struct role role = {.info = color->info, .part = color->part, .channels = {alpha}};
-    g->alpha = read_role(g, &role, 1, 1.0f, err);
+    g->alpha = gbuffer_read_role(g, &role, 1, 1.0f, err);
     return g->alpha != NULL;
 }
 
@@ -226,15 +139,8 @@ static bool read_behind(struct gbuffer *g, enum role_kind kind, float **values,
     const struct role *role = &g->roles.kind[kind];
     if (!role->found)
         return true;
-    *values = read_role(g, role, 1, NAN, err);
+    *values = gbuffer_read_role(g, role, 1, NAN, err);
     return *values != NULL;
-}
-
-/* Alpha is 1 where there is none. */
-static void complete_alpha(const struct gbuffer *g, float *color, size_t texels)
-{
-    for (size_t i = 0; !g->color_has_alpha && i < texels; i++)
-        color[i * 4 + 3] = 1.0f;
 }
 
 /* How much of each texel named objects cover. */
@@ -247,14 +153,14 @@ static float *read_objects(const struct exr_info *info, const struct gbuffer *g,
     const char *view = options->roles.view ? options->roles.view : "";
     if (!cryptomatte_find(info, view, names, &matte, err))
         return NULL;
-    float *covered = allocate(texels, 1, info->path, err), sum = 0.0f;
+    float *covered = gbuffer_allocate(texels, 1, info->path, err), sum = 0.0f;
     if (covered)
-        fill(covered, texels, 0.0f);
+        memset(covered, 0, texels * sizeof *covered);
     for (size_t r = 0; covered && r < matte.rank_count; r++) {
         const struct cryptomatte_rank *rank = &matte.ranks[r];
         const struct role role = {
             .info = info, .part = rank->part, .channels = {rank->id, rank->coverage}};
-        float *pairs = read_role(g, &role, 2, 0.0f, err);
+        float *pairs = gbuffer_read_role(g, &role, 2, 0.0f, err);
         for (size_t i = 0; pairs && i < texels; i++)
             if (cryptomatte_has(&matte, pairs[i * 2]))
                 covered[i] += pairs[i * 2 + 1];
@@ -282,7 +188,7 @@ static bool read_matte(const struct exr_info *info, const struct gbuffer *g,
     if (!role->label[0])
         return true;
     *mask = role->found
-                ? read_role(g, role, 1, 0.0f, err)
+                ? gbuffer_read_role(g, role, 1, 0.0f, err)
                 : read_objects(info, g, options, options->roles.name[kind] + prefix, report, err);
     return *mask != NULL;
 }
@@ -317,11 +223,11 @@ static bool read_holdout(const struct exr_info *info, struct gbuffer *g,
 static bool read_color(struct gbuffer *g, struct tool_error *err)
 {
     const struct role *role = &g->roles.kind[ROLE_COLOR];
-    g->color = read_role(g, role, 4, 0.0f, err);
+    g->color = gbuffer_read_role(g, role, 4, 0.0f, err);
     if (!g->color)
         return false;
     g->color_has_alpha = role->channels[ROLE_MAX_COMPONENTS] != NULL;
-    complete_alpha(g, g->color, gbuffer_texels(g));
+    gbuffer_complete_alpha(g, g->color, gbuffer_texels(g));
     return true;
 }
 
@@ -333,17 +239,17 @@ static bool read_light(struct gbuffer *g, struct tool_error *err)
     float *indirect = NULL, *roughness = NULL;
     bool ok = read_color(g, err);
     if (ok && roles[ROLE_INDIRECT].found)
-        ok = (indirect = read_role(g, &roles[ROLE_INDIRECT], 4, 0.0f, err)) != NULL;
+        ok = (indirect = gbuffer_read_role(g, &roles[ROLE_INDIRECT], 4, 0.0f, err)) != NULL;
     if (ok && roles[ROLE_ALBEDO].found)
-        ok = (g->albedo = read_role(g, &roles[ROLE_ALBEDO], 4, 0.0f, err)) != NULL;
+        ok = (g->albedo = gbuffer_read_role(g, &roles[ROLE_ALBEDO], 4, 0.0f, err)) != NULL;
     if (ok && roles[ROLE_SPECULAR].found)
-        ok = (g->specular = read_role(g, &roles[ROLE_SPECULAR], 4, 0.0f, err)) != NULL;
+        ok = (g->specular = gbuffer_read_role(g, &roles[ROLE_SPECULAR], 4, 0.0f, err)) != NULL;
     if (ok && roles[ROLE_ROUGHNESS].found)
-        ok = (roughness = read_role(g, &roles[ROLE_ROUGHNESS], 1, 0.5f, err)) != NULL;
+        ok = (roughness = gbuffer_read_role(g, &roles[ROLE_ROUGHNESS], 1, 0.5f, err)) != NULL;
     for (size_t i = 0; ok && g->specular && i < texels; i++)
         g->specular[i * 4 + 3] = roughness ? roughness[i] : 0.5f;
     if (ok && (indirect || g->specular))
-        ok = (g->kept = allocate(texels, 4, roles[ROLE_COLOR].info->path, err)) != NULL;
+        ok = (g->kept = gbuffer_allocate(texels, 4, roles[ROLE_COLOR].info->path, err)) != NULL;
     for (size_t i = 0; ok && g->kept && i < texels * 4; i++) {
         const float specular = g->specular ? g->specular[i] : 0.0f;
         const float darkened = indirect ? indirect[i] : g->color[i] - specular;
@@ -357,27 +263,17 @@ static bool read_light(struct gbuffer *g, struct tool_error *err)
     return ok;
 }
 
-float *gbuffer_read_color(const struct gbuffer *gbuffer, struct exr_box *window,
-                          struct tool_error *err)
-{
-    const struct role *role = &gbuffer->roles.kind[ROLE_COLOR];
-    *window = role->info->parts[role->part].data_window;
-    float *color = read_own_window(role, 4, 0.0f, err);
-    if (color)
-        complete_alpha(gbuffer, color, box_texels(window));
-    return color;
-}
-
 /* Bytes per texel of a role with so many components, and what reading it takes for a while: the
  * decoder and, if its window is another, an image of that. */
 static void add_role(const struct gbuffer *g, const struct role *role, uint64_t components,
                      uint64_t *texel_bytes, uint64_t *for_a_while)
 {
     const struct exr_part *part = &role->info->parts[role->part];
-    const bool same = same_box(&part->data_window, &g->data_window);
+    const bool same = gbuffer_same_box(&part->data_window, &g->data_window);
     const uint64_t role_bytes = components * sizeof(float);
     const uint64_t bytes =
-        part->decode_bytes + (same ? 0 : (uint64_t)box_texels(&part->data_window) * role_bytes);
+        part->decode_bytes +
+        (same ? 0 : (uint64_t)gbuffer_box_texels(&part->data_window) * role_bytes);
     *texel_bytes += role_bytes;
     *for_a_while = bytes > *for_a_while ? bytes : *for_a_while;
 }
@@ -404,8 +300,8 @@ static bool check_budget(const struct exr_info *info, const struct gbuffer_optio
         add_role(g, color, 4, &texel_bytes, &for_a_while);
     const struct exr_box *window = color_part ? &color_part->data_window : &g->data_window;
     /* Colour and composite once more, see placement_widen. */
-    const uint64_t wide = options->want_color && !same_box(window, &g->data_window)
-                              ? (uint64_t)box_texels(window) * 8 * sizeof(float)
+    const uint64_t wide = options->want_color && !gbuffer_same_box(window, &g->data_window)
+                              ? (uint64_t)gbuffer_box_texels(window) * 8 * sizeof(float)
                               : 0;
     if (alpha_channel(g))
         add_role(g, color, 1, &texel_bytes, &for_a_while);
@@ -431,7 +327,7 @@ static bool check_file(const struct exr_info *info, size_t part, const struct gb
 {
     const struct exr_box *is = &info->parts[part].display_window, *want = &g->display_window;
     const char *depth = g->roles.kind[ROLE_DEPTH].info->path;
-    if (same_box(is, want))
+    if (gbuffer_same_box(is, want))
         return true;
     fail_hint(err, "give files of one frame and size, rendered by one camera");
     return fail(err, EXIT_INPUT,
@@ -565,7 +461,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     if (!read_depth(g, err) || !check_grey(g, report, err))
         goto failed;
     if (normal->found) {
-        g->normals = read_role(g, normal, 4, 0.0f, err);
+        g->normals = gbuffer_read_role(g, normal, 4, 0.0f, err);
         if (!g->normals)
             goto failed;
     }

@@ -48,6 +48,18 @@ static inline bool gbuffer_is_camera_rotation(const double r[9])
     return r[0] > 0.9999 && r[4] > 0.9999 && fabs(r[8]) > 0.9999;
 }
 
+bool gbuffer_same_box(const struct exr_box *a, const struct exr_box *b);
+/* SIZE_MAX if they are too many to count. */
+size_t gbuffer_box_texels(const struct exr_box *box);
+/* malloc'ed; NULL and EXIT_MEMORY, which names the path, if memory ran out. */
+float *gbuffer_allocate(size_t texels, size_t components, const char *path, struct tool_error *err);
+/* A role with so many floats per texel in the window of the depth; missing: a fourth component that
+ * is not there, and what the role's own window lacks. malloc'ed; NULL on error. */
+float *gbuffer_read_role(const struct gbuffer *g, const struct role *role, size_t components,
+                         float missing, struct tool_error *err);
+/* Alpha is 1 where there is none. */
+void gbuffer_complete_alpha(const struct gbuffer *g, float *color, size_t texels);
+
 /* The camera by positions, width * height * 4, and depth from them if it is DEPTH_POSITION, which
  * it is no longer then. Errors: EXIT_CHANNELS, EXIT_MEMORY. */
 bool gbuffer_use_positions(struct gbuffer *g, const struct gbuffer_options *options,

@@ -131,36 +131,6 @@ static void record_probe(struct viewer *v, uint32_t frame, VkCommandBuffer cmd)
     probe_record(&v->probe, frame, cmd, &inputs, ao, texel.x + offset.x, texel.y + offset.y);
 }
 
-static uint32_t display_mode(const struct viewer *v, enum side side)
-{
-    static const uint32_t modes[VIEW_KINDS] = {[VIEW_RAW] = DISPLAY_AO,
-                                               [VIEW_AO] = DISPLAY_AO,
-                                               [VIEW_COMPOSITE] = DISPLAY_SRGB,
-                                               [VIEW_DEPTH] = DISPLAY_DEPTH,
-                                               [VIEW_NORMALS] = DISPLAY_PLAIN,
-                                               [VIEW_BENT] = DISPLAY_PLAIN,
-                                               [VIEW_DIFFERENCE] = DISPLAY_DIFFERENCE};
-    const struct computation *c = viewer_result(v, side);
-    if (v->view == VIEW_BENT && !method_has_bent(v->settings[side].effect.method))
-        return DISPLAY_NOTHING;
-    if (v->view == VIEW_DIFFERENCE && (v->live || !v->source.now.reference.image))
-        return DISPLAY_NOTHING;
-    if (v->view == VIEW_COMPOSITE && c->shape.effect.composite_mode == VKAO_COMPOSITE_MULTIPLY)
-        return DISPLAY_LIT;
-    return modes[v->view];
-}
-
-struct tone viewer_tone(const struct viewer *viewer, enum side side)
-{
-    const struct viewer *v = viewer;
-    const double unit = (double)v->settings[side].params.debug_distance;
-    return (struct tone){.mode = display_mode(v, side),
-                         .gain = v->gain,
-                         .low = v->depth_shown.near / unit,
-                         .high = v->depth_shown.far / unit,
-                         .exposure = exp2(v->exposure)};
-}
-
 /* Both sides but for the mode. */
 static struct display_block picture_block(const struct viewer *v)
 {
