@@ -147,6 +147,31 @@ def wall_seen_straight_on_is_no_background(scratch):
         check(abs(found - share) < 0.1, f'--background {option}: {found}')
 
 
+@cases([('perspective', 50), ('to the horizon', 45), ('parallel', 20)])
+def rows_of_a_level_floor_are_no_background(scratch, kind, first_row):
+    # All along a row a floor is as far, and the last row is the farthest of all.
+    row, column = np.mgrid[:90, :160]
+    if kind == 'parallel':
+        camera, slopes = ('--ortho', 5), (-1.6, 3.0)  # per scene unit, of a ramp and of the floor
+        floor = 11 - slopes[1] * row / 32
+        z = floor + slopes[0] * np.maximum(column - 140, 0) / 32
+        normal = np.where(column > 140, slopes[0], 0), slopes[1] + 0 * row, 1 + 0 * row
+    else:
+        camera, texel = ('--fov', FOV), np.tan(np.radians(FOV / 2)) / 80
+        with np.errstate(divide='ignore'):
+            floor, wall = 1 / (row - 44.5) / texel, 2 / (column - 79.5) / texel
+        is_wall = (wall > 0) & (wall < floor)
+        normal = np.where(is_wall, -1, 0), np.where(is_wall, 0, 1), 0 * row
+        z = np.where(is_wall, wall, floor)
+    sky, length = row < first_row, np.sqrt(sum(n * n for n in normal))
+    depth = np.where(sky, np.inf, z).astype(np.float32)
+    normals = {f'N.{c}': np.where(sky, 0, n / length).astype(np.float32)
+               for c, n in zip('XYZ', normal)}
+    write_exr(scratch.path('in.exr'), {'Z': depth, **normals})
+    view = inspect(scratch, *camera)
+    equal(round(view['conventions']['background_share'], 4), round(sky.mean(), 4), 'background')
+
+
 @case
 def far_plane_of_the_camera_is_background(scratch):
     scene = hidden(0.6)

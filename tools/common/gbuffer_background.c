@@ -4,7 +4,7 @@
  * clip range or the largest half where there is nothing; compression and units change the number.
  * What it has in common is that it is far away from all else and always the same. So is a wall seen
  * straight on: what tells them apart is that floors meet walls, and that walls have normals and
- * alpha. */
+ * alpha. So is the last row of a floor that a level camera sees: it goes on from the rows before. */
 #include "gbuffer_internal.h"
 #include "median.h"
 
@@ -37,6 +37,7 @@ struct surroundings {
     size_t texels;
     size_t normals, transparent; /* of these, with a normal, and with alpha 0 */
     size_t borders, touching;    /* borders to something else, and those without a jump */
+    size_t continued;            /* those from which it goes on as it came */
     double mean[3];              /* normal */
 };
 
@@ -121,6 +122,15 @@ static void find_mean_normal(const struct gbuffer *g, double low, double high,
     }
 }
 
+/* Are these depths of three texels of a plane, each farther than the one before? Without perspective
+ * the middle is their arithmetic mean, with it the harmonic one. */
+static bool is_slope(double near, double middle, double far)
+{
+    const double slack = 0.1 * (far - near), harmonic = 2.0 * near * far / (near + far);
+    return near > 0 && near < middle && middle < far && middle > harmonic - slack &&
+           middle < 0.5 * (near + far) + slack;
+}
+
 static struct surroundings look_around(const struct gbuffer *g, const struct cluster *c)
 {
     struct surroundings s = {0};
@@ -132,15 +142,23 @@ static struct surroundings look_around(const struct gbuffer *g, const struct clu
         s.normals += g->normals && has_normal(g, i);
         s.transparent += g->alpha && !(g->alpha[i] > 0);
         const size_t x = i % g->width, y = i / g->width;
-        const size_t neighbours[4] = {x > 0 ? i - 1 : i, x + 1 < g->width ? i + 1 : i,
-                                      y > 0 ? i - g->width : i,
-                                      y + 1 < g->height ? i + g->width : i};
+        const struct {
+            bool there, one_more;
+            ptrdiff_t step;
+        } ways[4] = {{x > 0, x > 1, -1},
+                     {x + 1 < g->width, x + 2 < g->width, 1},
+                     {y > 0, y > 1, -(ptrdiff_t)g->width},
+                     {y + 1 < g->height, y + 2 < g->height, (ptrdiff_t)g->width}};
         for (int k = 0; k < 4; k++) {
-            const double other = gbuffer_distance(g, g->depth[neighbours[k]]);
-            if (neighbours[k] == i || (other >= low && other <= high))
+            const float *depth = g->depth + i;
+            const ptrdiff_t step = ways[k].step;
+            const double other = ways[k].there ? gbuffer_distance(g, depth[step]) : c->value;
+            if (other >= low && other <= high)
                 continue;
             s.borders++;
             s.touching += other > c->value * 0.93;
+            s.continued += ways[k].one_more && is_slope(gbuffer_distance(g, depth[2 * step]), other,
+                                                        gbuffer_distance(g, *depth));
         }
     }
     if (g->normals)
@@ -180,6 +198,9 @@ static enum background_reason judge(const struct gbuffer *g, const struct cluste
         return c->gap > 1.0 ? BACKGROUND_NO_NORMALS : BACKGROUND_NONE;
     if (c->gap >= clear_gap)
         return BACKGROUND_FAR;
+    /* The other side of a row of a floor may be background. */
+    if ((double)s.continued > 0.25 * (double)s.borders)
+        return BACKGROUND_NONE;
     if (has_normals && g->depth_type != DEPTH_RADIAL && !has_normal_of_wall(g, &s))
         return c->gap > 1.0 ? BACKGROUND_NO_NORMALS : BACKGROUND_NONE;
     /* Colours of normals have some where there is nothing. */
