@@ -120,6 +120,25 @@ def surfaces_without_alpha_are_surfaces(scratch):
     color = {c: np.where(floor | scene.sky, 0, 1).astype(np.float32) for c in 'RGBA'}
     ao, _ = run(scratch, {'Z': depth_of(scene, 1e10), **color}, '--fov', FOV)
     check_same(ao, wanted, 'a shadow catcher')
+    # Sky that depth tells by itself is no reason to take what stands before it for sky.
+    scene = hidden(0.6)
+    wanted, _ = clean(scratch, scene, normals=False)
+    floor = scene.normal[..., 1] > 0.99
+    color = {c: np.where(floor | scene.sky, 0, 1).astype(np.float32) for c in 'RGBA'}
+    ao, _ = run(scratch, {'Z': depth_of(scene, 1000), **color}, '--fov', FOV)
+    check_same(ao, wanted, 'a shadow catcher before much sky')
+
+
+@case
+def sky_behind_things_that_are_near_is_no_slope(scratch):
+    # Bumps end in a jump to ten times their depth, as round things do: no floor goes on so.
+    x, y = np.meshgrid(np.arange(160) % 20 - 9.5, np.arange(90) % 18 - 8.5)
+    bumps = 2.0 + 0.01 * (x ** 2 + y ** 2)
+    sky = bumps > 2.6
+    depth = np.where(sky, 24.0, bumps).astype(np.float32)
+    normals = {'N.X': 0 * depth, 'N.Y': 0 * depth, 'N.Z': 0 * depth + 1}
+    write_exr(scratch.path('in.exr'), {'Z': depth, **normals})
+    matches('of the depth are at 24', str(inspect(scratch, '--fov', FOV)['warnings']), 'the sky')
 
 
 @case

@@ -123,12 +123,13 @@ static void find_mean_normal(const struct gbuffer *g, double low, double high,
 }
 
 /* Are these depths of three texels of a plane, each farther than the one before? Without perspective
- * the middle is their arithmetic mean, with it the harmonic one. */
+ * the steps between them are equal, with it those of 1/z. A jump takes nearly all of both in the
+ * second step. */
 static bool is_slope(double near, double middle, double far)
 {
-    const double slack = 0.1 * (far - near), harmonic = 2.0 * near * far / (near + far);
-    return near > 0 && near < middle && middle < far && middle > harmonic - slack &&
-           middle < 0.5 * (near + far) + slack;
+    return near > 0 && near < middle && middle < far &&
+           1.0 / near - 1.0 / middle > 0.4 * (1.0 / near - 1.0 / far) &&
+           middle - near < 0.6 * (far - near);
 }
 
 static struct surroundings look_around(const struct gbuffer *g, const struct cluster *c)
@@ -230,13 +231,14 @@ static double *sorted_distances(const struct gbuffer *g, size_t *count)
 }
 
 /* Where alpha is 0 and depth always says the same, or says nothing that could be a surface, there
- * is nothing. Shadow catchers and holdouts are surfaces in spite of their alpha. */
+ * is nothing. Shadow catchers and holdouts are surfaces in spite of their alpha, however much sky
+ * is known to be behind them. */
 static bool transparent_is_background(const struct gbuffer *g)
 {
     size_t transparent = 0, surface = 0;
     for (size_t i = g->width; i + g->width < gbuffer_texels(g); i++) {
         const double d = gbuffer_distance(g, g->depth[i]);
-        if (g->alpha[i] > 0 || !gbuffer_is_measurable(d))
+        if (g->alpha[i] > 0 || !gbuffer_is_measurable(d) || d >= g->background.limit)
             continue;
         const size_t steps[2] = {1, g->width};
         bool is_smooth = true, varies = false;
