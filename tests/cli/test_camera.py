@@ -454,13 +454,38 @@ def noisy_normals():
             **{f'N.{c}': noise[..., i].astype(np.float32) for i, c in enumerate('XYZ')}}
 
 
-@cases([('one plane', one_plane), ('normals of something else', noisy_normals)])
+def corridor():
+    """Seen along its axis: floor and walls look the same through any lens."""
+    scene = Scene()
+    ways = [(1 / np.abs(scene.x), 0), (0.7 / np.abs(scene.y), 1), (np.full_like(scene.x, 9.0), 2)]
+    z = np.min([w for w, _ in ways], axis=0)
+    normal = np.zeros((*z.shape, 3))
+    for way, axis in ways:
+        towards = [-np.sign(scene.x), -np.sign(scene.y), np.ones_like(z)][axis]
+        normal[..., axis] = np.where(way <= z, towards, 0)
+    return {'Z': z.astype(np.float32),
+            **{f'N.{c}': normal[..., i].astype(np.float32) for i, c in enumerate('XYZ')}}
+
+
+@cases([('one plane', one_plane), ('normals of something else', noisy_normals),
+        ('a corridor seen straight on', corridor)])
 def cannot_tell_is_said(scratch, _, make):
     write_exr(scratch.path('in.exr'), make())
     view, said = inspect(scratch)
     equal((view['camera']['source'], view['camera']['fov_x_deg']), ('assumed', 40), 'the camera')
     matches(r'no camera in the header, and the image does not tell it: .+; assuming 40 degrees.*'
             r'--fov or --camera', said, 'the warning')
+
+
+@case
+def what_normals_do_not_check_is_said(scratch):
+    for fov, make, wants in ((90, corridor, True), (FOV, lambda: {
+            'Z': Scene().depth(), **Scene().normals()}, False)):
+        write_exr(scratch.path('in.exr'), make(), attributes=[('cameraFov', float(fov))])
+        said = inspect(scratch)[1]
+        equal('nothing checks that of cameraFov' in said, wants, said)
+        said = inspect(scratch, '--fov', fov)[1]
+        equal('nothing checks' in said, False, said)
 
 
 @case

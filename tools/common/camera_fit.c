@@ -497,6 +497,9 @@ static struct shares find_shares(const struct fit_samples *s, const struct fit_s
     return shares;
 }
 
+/* Relative error of a field of view that is sure. */
+static const double sure_bound = 0.02;
+
 /* Of the crops of renders whose field of view was uncertain, these were nearer to the truth than 40
  * degrees; not so what ends where the search does. */
 static bool is_likely(const struct fit *fit)
@@ -506,6 +509,13 @@ static bool is_likely(const struct fit *fit)
         return fit->bound < 0.02;
     return fit->model <= FIT_RADIAL_NEAR && fit->bound < 0.25 && fit->half_width > narrowest &&
            fit->half_width < widest;
+}
+
+/* Relative change of half_width that turns normals by less than any are true. Of faces that are
+ * square to the view none turns at all. */
+static double unseen_change(const struct fit_samples *s, const struct fit_solution *at)
+{
+    return sharpest_sigma / fmax(fit_sensitivity(s, at), 1e-9);
 }
 
 static bool judge(const struct fit_samples *s, const struct found *f, double sigma,
@@ -518,13 +528,16 @@ static bool judge(const struct fit_samples *s, const struct found *f, double sig
     fit->bound = fmax(2.5 * best->deviation[FIT_LN_K] + best->doubt +
                           (best->sigma > least_sigma ? 0.15 * best->sigma : 0),
                       0.005);
+    fit->bound = fmax(fit->bound, unseen_change(s, best));
     if (shares.near < 0.4)
         snprintf(fit->why, sizeof fit->why, "normals do not follow the depth: %.0f %% do",
                  shares.near * 100.0);
     else if (shares.flat > 0.2 && shares.flat_near < 0.7)
         snprintf(fit->why, sizeof fit->why, "flat faces contradict each other: %.0f %% agree",
                  shares.flat_near * 100.0);
-    else if (fit->bound > 0.02)
+    else if (fit->bound > 1.0)
+        snprintf(fit->why, sizeof fit->why, "the normals are the same in any field of view");
+    else if (fit->bound > sure_bound)
         snprintf(fit->why, sizeof fit->why, "the field of view is uncertain by %.2g %%",
                  fit->bound * 100.0);
     else if (best->shifted && fmax(best->deviation[FIT_CX], best->deviation[FIT_CY]) > 0.02)
@@ -533,7 +546,7 @@ static bool judge(const struct fit_samples *s, const struct found *f, double sig
         return false;
     fit_directions(s, best, values, &weakest);
     const bool has_directions = values[1] > 0.035;
-    const bool is_vague = shares.near < 0.4 || fit->bound > 0.02;
+    const bool is_vague = shares.near < 0.4 || fit->bound > sure_bound;
     fit->rotation_known = has_directions && best->rotation_deviation < 1.0;
     if (!fit->rotation_known && !fit->why[0])
         snprintf(fit->why, sizeof fit->why, "nearly all normals are parallel");
@@ -597,6 +610,7 @@ static bool attempt(const struct fit_input *input, unsigned blur, struct attempt
             a->near_share = find_shares(&s, &a->best).near;
             describe(&s, input, &a->best, &a->fit);
             a->fit.agreement = 1.0 - fit_cost(&s, &a->best, half_agreement);
+            a->fit.tells_view = unseen_change(&s, &a->best) < sure_bound;
             ok = judge(&s, &f, sigma, &a->best, &a->fit);
             *tried = true;
         }
@@ -613,6 +627,18 @@ static bool contradict(const struct attempt *a, const struct attempt *b)
                3.0 * (spread + a->best.deviation[FIT_LN_K]) + 0.02;
 }
 
+static bool is_settled(const struct attempt *a)
+{
+    return a->fit.is_sure && a->fit.bound < 0.008;
+}
+
+/* Normals that are those of the depth in any field of view: patches mix those of faces, and would
+ * only make one up. */
+static bool tells_nothing(const struct attempt *a)
+{
+    return !a->fit.tells_view && a->near_share > 0.9 && a->best.sigma <= least_sigma;
+}
+
 bool camera_fit(const struct fit_input *input, struct fit *fit, struct tool_error *err)
 {
     /* The sure one of the least error counts; bump maps need patches. */
@@ -626,7 +652,7 @@ bool camera_fit(const struct fit_input *input, struct fit *fit, struct tool_erro
         if (!attempt(input, blurs[i], &attempts[count], &tried))
             return fail(err, EXIT_MEMORY, "out of memory for the estimate of the camera");
         count += tried;
-        if (tried && attempts[count - 1].fit.is_sure && attempts[count - 1].fit.bound < 0.008)
+        if (tried && (is_settled(&attempts[count - 1]) || tells_nothing(&attempts[count - 1])))
             break;
     }
     for (size_t i = 0; i < count; i++) {

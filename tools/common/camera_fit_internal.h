@@ -88,6 +88,9 @@ double fit_error(const struct fit_samples *s, const struct fit_sample *sample,
                  const struct fit_solution *at, double *cosine);
 /* Gauss-Newton at one robust scale; fills cost and p alone. */
 void fit_descend(const struct fit_samples *s, struct fit_solution *at, double sigma, int rounds);
+/* By how much the normals turn with ln k, as a sine, where the rotation and all that is free follow
+ * it: 0 if any field of view fits, as faces do that are square to the view. */
+double fit_sensitivity(const struct fit_samples *s, const struct fit_solution *at);
 /* The same, and everything else of the solution. */
 void fit_refine(const struct fit_samples *s, struct fit_solution *at, double sigma);
 

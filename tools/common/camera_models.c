@@ -260,7 +260,8 @@ struct equations {
     int parameter[4]; /* which of p */
     double matrix[FIT_PARAMETERS][FIT_PARAMETERS], gradient[FIT_PARAMETERS];
     double by_tile[FIT_TILES][FIT_PARAMETERS], by_cell[FIT_CELLS][FIT_PARAMETERS];
-    double curvature; /* of the robust cost, against that of least squares: (0,1] */
+    double weight, error; /* of all samples: sums, the second of squares */
+    double curvature;     /* of the robust cost, against that of least squares: (0,1] */
 };
 
 /* de of one sample for each unknown. A turn by w: d(n x q) = n x (w x q) = w (n.q) - q (n.w). */
@@ -301,6 +302,7 @@ static void linearise(const struct fit_samples *s, const struct fit_solution *at
         const struct vec3 e = cross(n, q);
         const double e2 = dot(e, e), weight = sample->weight * robust_weight(e2, sigma);
         slope += weight;
+        eq->error += weight * e2;
         bend += weight * (s2 - 3.0 * e2) / (e2 + s2);
         differentiate(s, sample, at, eq, n, q, de);
         for (int a = 0; a < eq->count; a++) {
@@ -315,6 +317,7 @@ static void linearise(const struct fit_samples *s, const struct fit_solution *at
     for (int a = 0; a < eq->count; a++)
         for (int b = 0; b < a; b++)
             eq->matrix[b][a] = eq->matrix[a][b];
+    eq->weight = slope;
     eq->curvature = fmin(fmax(bend / fmax(slope, 1e-300), 0.2), 1.0);
 }
 
@@ -448,6 +451,22 @@ static void find_deviations(const struct fit_samples *s, struct fit_solution *at
     for (int i = 3; i < eq.count; i++)
         at->deviation[eq.parameter[i - 3]] = sqrt(variance[i]);
     at->rotation_deviation = sqrt(variance[0] + variance[1] + variance[2]) * 180.0 / PI;
+}
+
+double fit_sensitivity(const struct fit_samples *s, const struct fit_solution *at)
+{
+    enum { LN_K = 3 }; /* behind the rotation */
+    struct fit_solution t = *at;
+    struct equations eq;
+    double l[FIT_PARAMETERS][FIT_PARAMETERS], moved[FIT_PARAMETERS] = {0};
+    t.free[FIT_LN_K] = true;
+    linearise(s, &t, fmax(t.sigma, 1e-3), &eq);
+    factorise(&eq, 1.0, 0, l);
+    moved[LN_K] = 1.0;
+    substitute(eq.count, l, moved);
+    /* A normal of depth that is square to the view but for its error turns by as much. */
+    const double turn2 = 1.0 / fmax(moved[LN_K], 1e-30) - eq.error;
+    return sqrt(fmax(turn2 / fmax(eq.weight, 1e-300), 0));
 }
 
 void fit_refine(const struct fit_samples *s, struct fit_solution *at, double sigma)

@@ -358,6 +358,12 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
     }
     const bool lacks_near = options->depth_type == DEPTH_AUTO &&
                             depth->depth_type == DEPTH_RADIAL_NEAR && !(g->camera.near_plane > 0);
+    if (told.half_width > 0 && !told.tells_view && !is_exact && !was_asked &&
+        !gbuffer_camera_is_explicit(&g->camera))
+        report_warn(report, "unchecked camera",
+                    "%s: the normals are nearly the same in any field of view: nothing checks that "
+                    "of %s",
+                    path, g->camera.source);
     if (told.is_sure && g->depth_source == DEPTH_ASSUMED && (is_auto(g, options) || lacks_near))
         take_depth_type(g, &told);
     if (told.is_sure) {
