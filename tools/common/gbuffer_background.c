@@ -4,7 +4,8 @@
  * clip range or the largest half where there is nothing; compression and units change the number.
  * What it has in common is that it is far away from all else and always the same. So is a wall seen
  * straight on: what tells them apart is that floors meet walls, and that walls have normals and
- * alpha. So is the last row of a floor that a level camera sees: it goes on from the rows before. */
+ * alpha. So is the last row of a floor that a level camera sees, but it goes on from the rows
+ * before. */
 #include "gbuffer_internal.h"
 #include "median.h"
 
