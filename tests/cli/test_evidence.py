@@ -313,6 +313,23 @@ def depth_from_a_near_plane_is_said(scratch, _, share, is_said):
 
 
 @case
+def steps_of_a_wall_are_no_offset(scratch):
+    # Every edge of a relief in two depths bends as much: not as planes do.
+    rows, columns = np.mgrid[:90, :160]
+    depth = np.where((rows % 24 < 12) & (columns % 30 < 15), 6.2, 7.0).astype(np.float32)
+    write_exr(scratch.path('in.exr'), {'Z': depth}, attributes=[('cameraFov', 50.0)])
+    said = str(inspect(scratch)['warnings'])
+    check('only if' not in said, said)
+    # Nor does a bend tell of depth that is more than the distance, or counted down in some units.
+    plane = 2 / (1 + rows / 90 + columns / 300)
+    for depth in (plane + 6, 9 - plane):
+        write_exr(scratch.path('in.exr'), {'Z': depth.astype(np.float32)},
+                  attributes=[('cameraFov', 50.0)])
+        said = str(inspect(scratch)['warnings'])
+        check('only if' not in said, said)
+
+
+@case
 def positions_come_before_parts_of_a_range(scratch):
     scene = Scene()
     wanted, _ = clean(scratch, scene)

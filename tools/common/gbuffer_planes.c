@@ -27,13 +27,14 @@ struct triple {
     double depth;
 };
 
-/* Where the middle stands between the arithmetic (0) and the harmonic mean (1). */
+/* Where the middle stands between the arithmetic (0) and the harmonic mean (1). On planes neither
+ * neighbour is much nearer to it than the other: that is so across a step. */
 static bool place_between(double a, double m, double b, double noise, double *place)
 {
     const double arithmetic = (a + b) / 2.0, harmonic = 2.0 * a * b / (a + b);
     const double between = arithmetic - harmonic;
     *place = (arithmetic - m) / between;
-    return between > 0 && m * noise < 0.02 * between;
+    return between > 0 && m * noise < 0.02 * between && fabs(arithmetic - m) < 0.3 * fabs(b - a);
 }
 
 /* Relative size of the steps in which depth is stored: half values, or 24 bits of noise. */
@@ -104,6 +105,7 @@ static double share_with_offset(const struct triple *triples, size_t count, doub
     return (double)near_it / (double)count;
 }
 
+/* Depth that lacks something, or counts down from 1. None is longer than the distance. */
 static double best_offset(const struct triple *triples, size_t count, double *offset)
 {
     double best = 0;
@@ -111,7 +113,9 @@ static double best_offset(const struct triple *triples, size_t count, double *of
     for (size_t k = 0; k < OFFSETS; k++) {
         const struct triple *t = &triples[k * count / OFFSETS];
         const double c = t->depth * (1.0 / t->planar - 1.0);
-        const double share = isfinite(c) ? share_with_offset(triples, count, c) : 0;
+        const bool counts_down = t->depth <= 1.0 && t->depth + c < 0;
+        const bool is_likely = isfinite(c) && (c > 0 || counts_down);
+        const double share = is_likely ? share_with_offset(triples, count, c) : 0;
         if (share > best) {
             best = share;
             *offset = c;
