@@ -123,9 +123,9 @@ static void find_mean_normal(const struct gbuffer *g, double low, double high,
     }
 }
 
-/* Are these depths of three texels of a plane, each farther than the one before? Without perspective
- * the steps between them are equal, with it those of 1/z. A jump takes nearly all of both in the
- * second step. */
+/* Are these depths of three texels of a plane, each farther than the one before? Without
+ * perspective the steps between them are equal, with it those of 1/z. A jump takes nearly all of
+ * both in the second step. */
 static bool is_slope(double near, double middle, double far)
 {
     return near > 0 && near < middle && middle < far &&
