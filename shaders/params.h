@@ -103,8 +103,9 @@
  * small. */
 #define VKAO_MOST_UNROLLED 64u
 /* Of vbao, whose steps are long: more than the first in all slices leave a CPU's instruction cache,
- * and are looped over instead, slice by slice and at most the second at once. */
-#define VKAO_VBAO_MOST_UNROLLED 20u
+ * and are looped over instead, slice by slice and at most the second at once. GPUs, whose caches
+ * are no larger, get the same. */
+#define VKAO_VBAO_MOST_UNROLLED 16u
 #define VKAO_VBAO_MOST_AT_ONCE 8u
 
 /* View z outside this range is background: what squares of lengths, in radii and at any field of
