@@ -10,6 +10,8 @@
 #include <math.h>
 
 #define READS_SURFACE VKAO_READS_VIEW_Z, VKAO_READS(NORMALS, NORMALS)
+#define READS_NOISY VKAO_READS(SOURCE, AO_NOISY), VKAO_READS(BENT_SOURCE, BENT_CODES)
+#define READS_HALFWAY VKAO_READS(SOURCE, HALFWAY), VKAO_READS(BENT_SOURCE, BENT_CODES)
 #define WRITES_RESULT VKAO_WRITES(AO_WRITE, AO), VKAO_WRITES(BENT_WRITE, BENT_NORMALS)
 
 static const struct vkao_pass horizontal = {
@@ -17,7 +19,7 @@ static const struct vkao_pass horizontal = {
     .label = "blur",
     .stage = VKAO_STAGE_BLUR,
     VKAO_CODE(vkao_blur),
-    .uses = {READS_SURFACE, VKAO_READS(SOURCE, AO_NOISY), VKAO_WRITES(TARGET, HALFWAY)},
+    .uses = {READS_SURFACE, READS_NOISY, VKAO_WRITES(TARGET, HALFWAY)},
     .area = VKAO_AREA_ABOVE_BELOW,
     VKAO_ONE_TEXEL,
     .forms = 1,
@@ -28,7 +30,7 @@ static const struct vkao_pass vertical = {
     .label = "blur",
     .stage = VKAO_STAGE_BLUR,
     VKAO_CODE(vkao_blur_last),
-    .uses = {READS_SURFACE, VKAO_READS(SOURCE, HALFWAY), WRITES_RESULT},
+    .uses = {READS_SURFACE, READS_HALFWAY, WRITES_RESULT},
     .area = VKAO_AREA_RECT,
     VKAO_ONE_TEXEL,
     .vertical = true,
@@ -40,7 +42,7 @@ static const struct vkao_pass vertical_at_half = {
     .label = "blur",
     .stage = VKAO_STAGE_BLUR,
     VKAO_CODE(vkao_blur),
-    .uses = {READS_SURFACE, VKAO_READS(SOURCE, HALFWAY), VKAO_WRITES(TARGET, BLURRED)},
+    .uses = {READS_SURFACE, READS_HALFWAY, VKAO_WRITES(TARGET, BLURRED)},
     .area = VKAO_AREA_RECT,
     VKAO_ONE_TEXEL,
     .vertical = true,
@@ -51,8 +53,7 @@ static const struct vkao_pass vertical_at_half = {
 #define TILES(is_half, code, rows, ...)                                                            \
     {                                                                                              \
         .name = "vkao blur", .label = "blur", .stage = VKAO_STAGE_BLUR, VKAO_CODE(code),           \
-        .uses = {READS_SURFACE, VKAO_READS(SOURCE, AO_NOISY), __VA_ARGS__},                        \
-        .area = VKAO_AREA_RECT,                                                                    \
+        .uses = {READS_SURFACE, READS_NOISY, __VA_ARGS__}, .area = VKAO_AREA_RECT,                 \
         .texels = {1, ((rows)-2 * (VKAO_BLUR_TILE_RADIUS + (is_half))) / ROWS_AT_ONCE},            \
         .group = {VKAO_BLUR_TILE_WIDTH, ROWS_AT_ONCE}, .forms = (is_half) ? 1 : 2,                 \
     }

@@ -74,6 +74,7 @@ static uint32_t needs_of(const struct vkao_program *program)
         {lit, VKAO_RESOURCE_COLOR},
         {lit && e->composite_mode == VKAO_COMPOSITE_INDIRECT, VKAO_RESOURCE_DIRECT},
         {composite, VKAO_RESOURCE_OUTPUT},
+        {e->bent_normals, VKAO_RESOURCE_BENT_CODES},
         {e->bent_normals || reads_bent, VKAO_RESOURCE_BENT_NORMALS},
         {composite && e->composite_mode <= VKAO_COMPOSITE_AO_ONLY && e->multi_bounce,
          VKAO_RESOURCE_ALBEDO},

@@ -20,22 +20,25 @@ static void plan_images(const vkao_frame *frame, struct vkao_scratch_plan *plan)
 {
     const struct vkao_program *program = frame->program;
     const VkFormat ao = ao_scratch_format(frame->ctx),
-                   noisy = program->settings.bent_normals ? VK_FORMAT_R16G16B16A16_SFLOAT : ao;
+                   blurred = program->settings.bent_normals ? VK_FORMAT_R16G16B16A16_SFLOAT : ao;
     const uint32_t shift = program->settings.half_resolution, border = 2 * VKAO_VIEW_Z_BORDER;
     const VkExtent2D grid = {(frame->extent.width + shift) >> shift,
                              (frame->extent.height + shift) >> shift};
+    const uint32_t halfway_rows =
+        program->is_cpu ? vkao_cpu_halfway_rows(grid.height) : grid.height;
     const struct {
         enum vkao_resource resource;
         VkFormat format;
         VkExtent2D extent;
     } rows[] = {
-        {VKAO_RESOURCE_AO_NOISY, noisy, grid},
+        {VKAO_RESOURCE_AO_NOISY, ao, grid},
         {VKAO_RESOURCE_CODES, VKAO_CODES_FORMAT, grid},
+        {VKAO_RESOURCE_BENT_CODES, VKAO_BENT_CODES_FORMAT, grid},
         {VKAO_RESOURCE_AO, ao, frame->extent},
         {VKAO_RESOURCE_VIEW_Z, VK_FORMAT_R32_SFLOAT, {grid.width + border, grid.height + border}},
         {VKAO_RESOURCE_SECOND_Z, VK_FORMAT_R32_SFLOAT, {grid.width + border, grid.height + border}},
-        {VKAO_RESOURCE_HALFWAY, noisy, grid},
-        {VKAO_RESOURCE_BLURRED, noisy, grid},
+        {VKAO_RESOURCE_HALFWAY, blurred, {grid.width, halfway_rows}},
+        {VKAO_RESOURCE_BLURRED, blurred, grid},
         {VKAO_RESOURCE_BREAKS_X, VK_FORMAT_R32_UINT, {(grid.width + 31) / 32, grid.height}},
         {VKAO_RESOURCE_BREAKS_Y, VK_FORMAT_R32_UINT, {grid.width, (grid.height + 31) / 32}},
     };
@@ -95,15 +98,29 @@ static vkao_result bind_scratch(vkao_frame *frame, const vkao_frame_info *info,
 
 /* --- Descriptors --- */
 
-/* What a use is of this frame: the caller's image or scratch. What a shader names but does not
- * touch is some other image of the same kind. */
-static vkao_image resolve(const vkao_frame *frame, const struct vkao_use *use)
+/* For what a shader names but does not touch: some other image of the same kind. It has to be in
+ * its layout when the pass runs, as are those that the pass writes. */
+static enum vkao_resource stand_in(const struct vkao_program *program, const struct vkao_step *step,
+                                   const struct vkao_use *use)
+{
+    if (!use->writes)
+        return vkao_makes_ao(&program->settings) ? VKAO_RESOURCE_DEPTH : VKAO_RESOURCE_AO;
+    for (uint32_t k = 0; k < step->use_count; ++k) {
+        const enum vkao_resource r = step->uses[k].resource;
+        if (step->uses[k].writes && r < VKAO_IMAGE_COUNT && program->needs & VKAO_BIT(r))
+            return r;
+    }
+    return VKAO_RESOURCE_AO;
+}
+
+/* What a use is of this frame: the caller's image or scratch. */
+static vkao_image resolve(const vkao_frame *frame, const struct vkao_step *step,
+                          const struct vkao_use *use)
 {
     const struct vkao_program *program = frame->program;
     enum vkao_resource r = use->resource;
     if (!(program->needs & VKAO_BIT(r)))
-        r = use->writes || !vkao_makes_ao(&program->settings) ? VKAO_RESOURCE_AO
-                                                              : VKAO_RESOURCE_DEPTH;
+        r = stand_in(program, step, use);
     if (r < VKAO_SLOT_COUNT && vkao_slot_image(&frame->images, r)->format)
         return *vkao_slot_image(&frame->images, r);
     return (vkao_image){.view = frame->scratch.images[r].view, .layout = VK_IMAGE_LAYOUT_GENERAL};
@@ -139,7 +156,7 @@ static void write_set(const vkao_frame *frame, uint32_t i)
             buffers[k] = (VkDescriptorBufferInfo){scratch->buffer, part->offset, part->size};
             writes[count].pBufferInfo = &buffers[k];
         } else {
-            const vkao_image image = resolve(frame, use);
+            const vkao_image image = resolve(frame, step, use);
             images[k] =
                 (VkDescriptorImageInfo){.imageView = image.view, .imageLayout = image.layout};
             writes[count].pImageInfo = &images[k];

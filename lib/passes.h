@@ -33,11 +33,12 @@ enum vkao_resource {
     VKAO_SLOTS(VKAO_SLOT_RESOURCE) VKAO_SLOT_COUNT,
     /* Scratch images. */
     VKAO_RESOURCE_VIEW_Z = VKAO_SLOT_COUNT,
-    VKAO_RESOURCE_SECOND_Z, /* view z of the second layer */
-    VKAO_RESOURCE_CODES,    /* AO that SSAO hands to the blur, in place of AO_NOISY */
-    VKAO_RESOURCE_HALFWAY,  /* AO between the two directions of the blur */
-    VKAO_RESOURCE_BLURRED,  /* at half resolution, for upsampling */
-    VKAO_RESOURCE_BREAKS_X, /* words of where depth breaks along rows, and along columns */
+    VKAO_RESOURCE_SECOND_Z,   /* view z of the second layer */
+    VKAO_RESOURCE_CODES,      /* AO that SSAO hands to the blur, in place of AO_NOISY */
+    VKAO_RESOURCE_BENT_CODES, /* the same of bent normals */
+    VKAO_RESOURCE_HALFWAY,    /* AO between the two directions of the blur */
+    VKAO_RESOURCE_BLURRED,    /* at half resolution, for upsampling */
+    VKAO_RESOURCE_BREAKS_X,   /* words of where depth breaks along rows, and along columns */
     VKAO_RESOURCE_BREAKS_Y,
     VKAO_IMAGE_COUNT,
     /* Parts of the scratch buffer: the constants, and those of the CPU's passes (cpu/cpu.h). */
@@ -50,6 +51,7 @@ enum vkao_resource {
 #define VKAO_BIT(resource) (1u << (resource))
 
 #define VKAO_CODES_FORMAT VK_FORMAT_R8_UNORM /* of VKAO_RESOURCE_CODES */
+#define VKAO_BENT_CODES_FORMAT VK_FORMAT_R8G8B8A8_UNORM
 
 /* A binding of a shader. */
 struct vkao_use {

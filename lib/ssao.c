@@ -15,7 +15,7 @@
         .name = "vkao ssao " #method, .label = "ssao", .stage = VKAO_STAGE_SSAO,                   \
         VKAO_CODE(vkao_ssao_##method),                                                             \
         .uses = {VKAO_READS_VIEW_Z, VKAO_READS(NORMALS, NORMALS), VKAO_READS(SECOND_Z, SECOND_Z),  \
-                 VKAO_WRITES(TARGET, AO_NOISY)},                                                   \
+                 VKAO_WRITES(TARGET, AO_NOISY), VKAO_WRITES(BENT_TARGET, BENT_CODES)},             \
         .area = VKAO_AREA_AROUND, VKAO_ONE_TEXEL, .forms = 1,                                      \
     }
 static const struct vkao_pass methods[] = {

@@ -13,11 +13,13 @@
 #include "params.h"
 
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
-layout(push_constant) uniform Block { vkao_dispatch here; };
+#include "halfway.glsl"
 #include "settings.glsl"
 layout(binding = VKAO_BINDING_SOURCE) uniform texture2D source_image;
+layout(binding = VKAO_BINDING_BENT_SOURCE) uniform texture2D bent_image;
 #include "view.glsl"
 #include "surface.glsl"
+#include "bent_code.glsl"
 #include "visibility_code.glsl"
 #ifdef VKAO_LAST
 #include "finish.glsl"
@@ -32,12 +34,15 @@ const ivec2 AXIS = VERTICAL ? ivec2(0, 1) : ivec2(1, 0);
  * them. */
 const vec4 ALL_OPEN = vec4(0.0, 0.0, 0.0, 1.0);
 
-vec4 load_noisy(ivec2 texel)
+vec4 load_source(ivec2 texel)
 {
-    vec4 v = texelFetch(source_image, texel, 0);
+    vec4 v = texelFetch(source_image, VERTICAL ? halfway_texel(texel) : texel, 0);
+    if (VERTICAL)
+        return BENT_NORMALS ? v : v.xxxx;
+    vec3 bent = vec3(0.0);
     if (BENT_NORMALS)
-        return v;
-    return vec4(VERTICAL ? v.x : decode_visibility(v.x));
+        bent = decode_bent(texelFetch(bent_image, texel, 0));
+    return vec4(bent, decode_visibility(v.x));
 }
 
 float local_slope(ivec2 texel, float z)
@@ -51,7 +56,7 @@ vec4 blurred(ivec2 texel, float z)
     float slope = local_slope(texel, z);
     float edge = edge_stop(z, params.sharpness, params.reference_z);
     vec4 normal = NORMAL_POWER > 0.0 ? stored_normal(texel << GRID_SHIFT) : vec4(0.0);
-    vec4 sum = load_noisy(texel) - ALL_OPEN;
+    vec4 sum = load_source(texel) - ALL_OPEN;
     float weights = 1.0;
     int k = -RADIUS;
     for (;;) {
@@ -62,7 +67,7 @@ vec4 blurred(ivec2 texel, float z)
             float w = blur_weight(k, RADIUS) * max(0.0, 1.0 - edge * off);
             if (NORMAL_POWER > 0.0)
                 w *= normal_weight(normal, stored_normal(at << GRID_SHIFT), NORMAL_POWER);
-            sum += w * (load_noisy(at) - ALL_OPEN);
+            sum += w * (load_source(at) - ALL_OPEN);
             weights += w;
         }
         if (++k > RADIUS)
@@ -83,6 +88,7 @@ void main()
 #ifdef VKAO_LAST
     finish(texel, result, z == 0.0);
 #else
-    imageStore(target_image, texel, nearest_half(BENT_NORMALS ? result : result.wwww));
+    imageStore(target_image, VERTICAL ? texel : halfway_texel(texel),
+               nearest_half(BENT_NORMALS ? result : result.wwww));
 #endif
 }

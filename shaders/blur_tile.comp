@@ -15,8 +15,10 @@ layout(local_size_x = VKAO_BLUR_TILE_THREADS) in;
 layout(push_constant) uniform Block { vkao_dispatch here; };
 #include "settings.glsl"
 layout(binding = VKAO_BINDING_SOURCE) uniform texture2D source_image;
+layout(binding = VKAO_BINDING_BENT_SOURCE) uniform texture2D bent_image;
 #include "view.glsl"
 #include "surface.glsl"
+#include "bent_code.glsl"
 #include "visibility_code.glsl"
 #ifdef VKAO_LAST
 #include "finish.glsl"
@@ -50,9 +52,10 @@ Texel load_texel(ivec2 at)
 {
     Texel t;
     t.z = surface_z(load_view_z(at));
-    vec4 v = textureLod(sampler2D(source_image, nearest), vec2(at) + 0.5, 0.0);
-    t.v = BENT_NORMALS ? v : v.xxxx;
-    t.v.w = decode_hidden(t.v.w);
+    vec2 middle = vec2(at) + 0.5;
+    t.v = vec4(decode_hidden(textureLod(sampler2D(source_image, nearest), middle, 0.0).x));
+    if (BENT_NORMALS)
+        t.v.xyz = decode_bent(textureLod(sampler2D(bent_image, nearest), middle, 0.0));
     if (!NOISY_CODES && t.z == BACKGROUND_Z)
         t.v = vec4(0.0);
     t.normal = vec4(0.0);

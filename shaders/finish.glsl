@@ -7,19 +7,12 @@
 #define VKAO_FINISH_GLSL_
 
 #include "half.glsl"
+#include "octahedral.glsl"
 
 layout(binding = VKAO_BINDING_AO_WRITE) uniform writeonly image2D ao_out;
 #ifndef VKAO_NO_BENT_NORMALS
 layout(binding = VKAO_BINDING_BENT_WRITE) uniform writeonly image2D bent_out;
 #endif
-
-vec2 encode_octahedral(vec3 n)
-{
-    /* The zero vector has no code: it becomes that of +z. */
-    vec2 e = n.xy / max(abs(n.x) + abs(n.y) + abs(n.z), 1.0e-30);
-    vec2 side = vec2(e.x >= 0.0 ? 1.0 : -1.0, e.y >= 0.0 ? 1.0 : -1.0);
-    return n.z >= 0.0 ? e : (1.0 - abs(e.yx)) * side;
-}
 
 vec4 encode_normal(vec3 n, uint encoding)
 {

@@ -48,8 +48,10 @@
 #define VKAO_BINDING_BREAKS_Y_WRITE 20
 #define VKAO_BINDING_THICKNESS 18
 #define VKAO_BINDING_SECOND_Z 19
-#define VKAO_BINDING_NEAREST 21 /* the sampler of texels by their number */
-#define VKAO_BINDING_CPU 32     /* the first of the CPU's */
+#define VKAO_BINDING_NEAREST 21     /* the sampler of texels by their number */
+#define VKAO_BINDING_BENT_SOURCE 22 /* bent normals of the pass before, as codes */
+#define VKAO_BINDING_BENT_TARGET 23
+#define VKAO_BINDING_CPU 32 /* the first of the CPU's */
 
 /* What a pass is compiled for: specialization constants, the same for all passes of an effect but
  * for the last three. shaders/settings.glsl declares them. */

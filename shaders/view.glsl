@@ -4,20 +4,12 @@
 #ifndef VKAO_VIEW_GLSL_
 #define VKAO_VIEW_GLSL_
 
+#include "octahedral.glsl"
 #include "settings.glsl"
 
 #include "view_z.glsl"
 
 layout(binding = VKAO_BINDING_NORMALS) uniform texture2D normals_image;
-
-vec3 decode_octahedral(vec2 e)
-{
-    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
-    float fold = max(-n.z, 0.0);
-    n.x += n.x >= 0.0 ? -fold : fold;
-    n.y += n.y >= 0.0 ? -fold : fold;
-    return n;
-}
 
 /* A stored direction in its own space, unit length; zero if there is none to trust: none given, not
  * finite, or shorter than 0.5, which is what averaging over an edge leaves. */

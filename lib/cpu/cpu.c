@@ -59,6 +59,8 @@ static_assert(VKAO_BINDING_Z == VKAO_BINDING_CPU, "the CPU's bindings come last"
 #define READS_Z READS_TEXELS(Z, Z, R32_SFLOAT)
 #define READS_Z4 READS_TEXELS(Z4, Z, R32G32B32A32_SFLOAT)
 #define READS_NORMALS VKAO_READS(NORMALS, NORMALS)
+#define READS_BENT_CODES VKAO_READS(BENT_SOURCE, BENT_CODES)
+#define WRITES_NOISY VKAO_WRITES(TARGET, AO_NOISY), VKAO_WRITES(BENT_TARGET, BENT_CODES)
 
 /* --- Recording --- */
 
@@ -250,7 +252,7 @@ static const struct vkao_pass tiles = {
     .stage = VKAO_STAGE_SSAO,
     VKAO_CODE(vkao_packed_tiles_cpu),
     .uses = {READS_Z4, WRITES_WORDS(PACKED_WORDS, PACKED), WRITES_WORDS(TILES, TILES),
-             VKAO_WRITES(TARGET, AO_NOISY)},
+             WRITES_NOISY},
     .texels = {1, 1},
     ROW_GROUP,
     .forms = 1,
@@ -263,7 +265,7 @@ static const struct vkao_pass tiles = {
         .uses = {READS_Z,                                                                          \
                  READS_NORMALS,                                                                    \
                  VKAO_READS(SECOND_Z, SECOND_Z),                                                   \
-                 VKAO_WRITES(TARGET, AO_NOISY),                                                    \
+                 WRITES_NOISY,                                                                     \
                  READS_WORDS(TILES, TILES),                                                        \
                  WRITES_TEXELS(PACKED_WRITE, PACKED, codes)},                                      \
         .area = VKAO_AREA_AROUND, .texels = {width, 1}, ROW_GROUP, .forms = 1,                     \
@@ -285,7 +287,7 @@ static const struct vkao_pass methods[] = {
     {                                                                                              \
         .name = "vkao ssao " #method, .label = "ssao", .stage = VKAO_STAGE_SSAO,                   \
         VKAO_CODE(vkao_packed_ssao_##method##_16bit_cpu),                                          \
-        .uses = {READS_Z, READS_NORMALS, VKAO_WRITES(TARGET, AO_NOISY), READS_WORDS(TILES, TILES), \
+        .uses = {READS_Z, READS_NORMALS, WRITES_NOISY, READS_WORDS(TILES, TILES),                  \
                  WRITES_WORDS(PACKED_WORDS, PACKED)},                                              \
         .area = VKAO_AREA_AROUND, .texels = {VKAO_SSAO_TEXELS, 1}, ROW_GROUP, .forms = 1,          \
         .record = record_ssao,                                                                     \
@@ -346,10 +348,12 @@ static const struct vkao_pass blur_x = {
     .label = "blur",
     .stage = VKAO_STAGE_BLUR,
     VKAO_CODE(vkao_blur_cpu),
-    .uses = {READS_Z, READS_NORMALS, VKAO_READS(SOURCE, AO_NOISY), VKAO_WRITES(TARGET, HALFWAY)},
-    .area = VKAO_AREA_ABOVE_BELOW,
+    .uses = {READS_Z, READS_NORMALS, READS_BENT_CODES, VKAO_READS(SOURCE, AO_NOISY),
+             VKAO_WRITES(TARGET, HALFWAY)},
     VKAO_ONE_TEXEL,
+    .with_next = true,
     .forms = 1,
+    .record = record_blur,
 };
 
 static const struct vkao_pass blur_y = {
@@ -357,12 +361,12 @@ static const struct vkao_pass blur_y = {
     .label = "blur",
     .stage = VKAO_STAGE_BLUR,
     VKAO_CODE(vkao_blur_last_cpu),
-    .uses = {READS_Z, READS_NORMALS, VKAO_READS(SOURCE, HALFWAY), VKAO_WRITES(AO_WRITE, AO),
-             VKAO_WRITES(BENT_WRITE, BENT_NORMALS)},
-    .area = VKAO_AREA_RECT,
+    .uses = {READS_Z, READS_NORMALS, READS_BENT_CODES, VKAO_READS(SOURCE, HALFWAY),
+             VKAO_WRITES(AO_WRITE, AO), VKAO_WRITES(BENT_WRITE, BENT_NORMALS)},
     VKAO_ONE_TEXEL,
     .vertical = true,
     .forms = 2,
+    .record = record_nothing,
 };
 
 static const struct vkao_pass blur_y_at_half = {
@@ -370,11 +374,12 @@ static const struct vkao_pass blur_y_at_half = {
     .label = "blur",
     .stage = VKAO_STAGE_BLUR,
     VKAO_CODE(vkao_blur_cpu),
-    .uses = {READS_Z, READS_NORMALS, VKAO_READS(SOURCE, HALFWAY), VKAO_WRITES(TARGET, BLURRED)},
-    .area = VKAO_AREA_RECT,
+    .uses = {READS_Z, READS_NORMALS, READS_BENT_CODES, VKAO_READS(SOURCE, HALFWAY),
+             VKAO_WRITES(TARGET, BLURRED)},
     VKAO_ONE_TEXEL,
     .vertical = true,
     .forms = 1,
+    .record = record_nothing,
 };
 
 static const struct vkao_pass upsample = {
@@ -485,6 +490,11 @@ uint32_t vkao_cpu_setting(const struct vkao_program *program)
 {
     return (program->is_packed ? VKAO_PATH_PACKED : 0u) |
            find_format(program->settings.ao_format)->code;
+}
+
+uint32_t vkao_cpu_halfway_rows(uint32_t height)
+{
+    return height < VKAO_RING_ROWS ? height : VKAO_RING_ROWS;
 }
 
 void vkao_cpu_parts(const struct vkao_program *program, VkExtent2D extent, bool copies,

@@ -14,6 +14,8 @@ bool vkao_cpu_has(const vkao_effect_info *settings);
 /* Adds its passes of a stage. False where the stage has none of its own: those of the image path
  * touch nothing of the CPU's. */
 bool vkao_cpu_plan(struct vkao_program *program, vkao_stage_flags stage);
+/* Rows of the image between the two directions of the blur, on a grid of so many. */
+uint32_t vkao_cpu_halfway_rows(uint32_t height);
 /* VKAO_SETTING_PATH. */
 uint32_t vkao_cpu_setting(const struct vkao_program *program);
 

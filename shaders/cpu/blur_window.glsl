@@ -5,6 +5,7 @@
 #ifndef VKAO_BLUR_WINDOW_GLSL_
 #define VKAO_BLUR_WINDOW_GLSL_
 
+#include "ring.glsl"
 #include "surface.glsl"
 
 /* Texels beyond the radius whose depths tell slopes: see off_surface. */
@@ -14,13 +15,6 @@ vec4 window_normal(ivec2 texel)
 {
     ivec2 low = unpack_texel(params.valid.x), high = unpack_texel(params.valid.y);
     return stored_normal(clamp(texel, low, high - 1) << GRID_SHIFT);
-}
-
-/* Row of the ring that holds the image's row y. */
-int ring_row(int y)
-{
-    int row = y - int(here.ring_row);
-    return row >= VKAO_RING_ROWS ? row - VKAO_RING_ROWS : row;
 }
 
 #endif

@@ -5,7 +5,7 @@
 layout(local_size_x = VKAO_ROW_GROUP_WIDTH) in;
 #define VKAO_CODES 1
 #include "codes.glsl"
-layout(binding = VKAO_BINDING_TARGET) uniform writeonly image2D noisy_image;
+#include "noisy_images.glsl"
 
 void main()
 {
@@ -16,5 +16,5 @@ void main()
     if ((PATH & VKAO_PATH_PACKED) != 0u)
         store_codes(texel, code_of(v.open));
     else if (in_rect(texel, here.rect))
-        imageStore(noisy_image, texel, BENT_NORMALS ? vec4(v.bent, v.open) : vec4(v.open));
+        store_images(texel, v.bent, v.open);
 }

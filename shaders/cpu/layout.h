@@ -55,8 +55,8 @@
 #define VKAO_CODE_FINE 256.0
 /* Fine code of 1; numbers are relative to it, so that what is open stays exactly 1. */
 #define VKAO_CODE_OPEN 39680
-#define VKAO_RING_ROWS 176
-#define VKAO_STRIP_ROWS 128 /* a ring holds a strip and the largest radius on both sides of it */
+#define VKAO_RING_ROWS 144
+#define VKAO_STRIP_ROWS 96 /* a ring holds a strip and the largest radius on both sides of it */
 
 /* Texels per invocation. */
 #define VKAO_PREPARE_WIDTH 4

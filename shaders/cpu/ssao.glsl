@@ -19,8 +19,7 @@ layout(push_constant) uniform Block { vkao_dispatch here; };
 #include "falloff.glsl"
 #define VKAO_CODES TEXELS
 #include "codes.glsl"
-
-layout(binding = VKAO_BINDING_TARGET) uniform writeonly image2D noisy_image;
+#include "noisy_images.glsl"
 
 struct Visibility {
     Real3 bent; /* if BENT_NORMALS: mean visible direction, of any length */
@@ -132,9 +131,8 @@ void store_noisy(ivec2 texel, Visibility v)
     }
     [[unroll]] for (int i = 0; i < TEXELS; ++i) {
         ivec2 at = texel + ivec2(i, 0);
-        vec4 result = vec4(lane3(v.bent, i), lane(v.open, i));
         if (in_rect(at, here.rect))
-            imageStore(noisy_image, at, BENT_NORMALS ? result : result.wwww);
+            store_images(at, lane3(v.bent, i), lane(v.open, i));
     }
 }
 

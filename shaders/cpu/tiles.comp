@@ -17,8 +17,8 @@ layout(constant_id = VKAO_SETTING_PATH) const uint PATH = 0u;
 layout(binding = VKAO_BINDING_Z4, rgba32f) uniform readonly imageBuffer view_z4;
 layout(binding = VKAO_BINDING_PACKED_WORDS) writeonly buffer Packed { uint packed_ao[]; };
 layout(binding = VKAO_BINDING_TILES) buffer Tiles { vkao_tiles_head head; uint tiles[]; };
-layout(binding = VKAO_BINDING_TARGET) uniform writeonly image2D noisy_image;
 #include "buffers.glsl"
+#include "noisy_images.glsl"
 
 /* All that VKAO_CODE_* make of 1. */
 const uint OPEN_WORD = uint(VKAO_CODE_OPEN / VKAO_CODE_FINE) * 0x01010101u;
@@ -32,8 +32,7 @@ void store_open(ivec2 low, ivec2 high)
                 continue;
             }
             for (int i = max(x, int(here.rect.x & 0xffffu)); i < min(x + 4, high.x); ++i)
-                imageStore(noisy_image, ivec2(i, y),
-                           BENT_NORMALS ? vec4(0.0, 0.0, 0.0, 1.0) : vec4(1.0));
+                store_images(ivec2(i, y), vec3(0.0), 1.0);
         }
     }
 }
