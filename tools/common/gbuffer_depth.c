@@ -285,9 +285,26 @@ static void warn_about_depth(const struct gbuffer *g, const char *path, struct r
     text_percent(share, g->filtered_share);
     if (g->filtered_share > 0.3)
         report_warn(report, "filtered depth",
-                    "%s: depth is filtered over edges (antialiased): %s of them have a texel in "
-                    "between, where AO is wrong; render it unfiltered",
+                    "%s: depth is filtered over edges (antialiased) or blurred: %s of them have "
+                    "texels in between, where AO is wrong; render it unfiltered",
                     path, share);
+}
+
+/* A quarter of a texel's width is more than roundness makes, and less than AO shows. */
+static const double most_noise = 0.25;
+
+static void warn_about_grain(const struct gbuffer *g, const char *path, struct report *report)
+{
+    if (g->block_size > 1)
+        report_warn(report, "enlarged depth",
+                    "%s: depth is enlarged %u times without interpolation: AO shows its blocks; "
+                    "render it at full size",
+                    path, g->block_size);
+    else if (g->noise > most_noise)
+        report_warn(report, "noisy depth",
+                    "%s: depth is noisy: where normals say that it is flat it bends by %.2g widths "
+                    "of a texel; AO shows that; take one sample, in the centre of the pixel",
+                    path, g->noise);
 }
 
 /* A pass without any shape is no depth, unless somebody says that it is. */
@@ -357,6 +374,7 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
     const struct role *role = &g->roles.kind[ROLE_DEPTH];
     g->depth_is_half = role->channels[0]->type == EXR_HALF;
     g->filtered_share = gbuffer_filtered_share(g);
+    g->block_size = gbuffer_block_size(g);
     const struct stored_range stored = look_at_range(g);
     if (!gbuffer_resolve_depth_type(g, info, options, report, err) || !check_range(g, path, err) ||
         !check_planes(g, path, err))
@@ -390,7 +408,10 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
                              g->view.depth_encoding == VKAO_DEPTH_DISTANCE;
     if (!g->depth_is_half && is_distance && !find_steps(g, &g->depth_step))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    if (g->normals && !(g->depth_step > 0) && !gbuffer_measure_noise(g, &g->noise))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     warn_about_compression(g, &info->parts[role->part], path, report);
     warn_about_depth(g, path, report);
+    warn_about_grain(g, path, report);
     return true;
 }

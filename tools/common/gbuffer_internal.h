@@ -87,6 +87,13 @@ bool gbuffer_find_background(struct gbuffer *g, const struct gbuffer_options *op
 bool gbuffer_read_planes(const struct gbuffer *g, struct depth_planes *planes);
 /* Share of edges of the depth, as stored, that have a texel in between, as filters make them. */
 double gbuffer_filtered_share(const struct gbuffer *g);
+/* The step of depth, as stored, that all of it is multiples of, or 0. False if memory ran out. */
+bool gbuffer_find_step(const struct gbuffer *g, double *step);
+/* Of depth as stored: 1, or what it was enlarged by without interpolation. */
+unsigned gbuffer_block_size(const struct gbuffer *g);
+/* By how many widths of a texel depth, as prepared, bends where stored normals are alike: a median,
+ * 0 where there are few of them. False if memory ran out. */
+bool gbuffer_measure_noise(const struct gbuffer *g, double *noise);
 
 /* Turns negative z round. */
 void gbuffer_turn_depth(struct gbuffer *g, const struct gbuffer_options *options,

@@ -27,20 +27,28 @@ struct triple {
     double depth;
 };
 
-/* Where the middle stands between the arithmetic (0) and the harmonic mean (1). On planes neither
- * neighbour is much nearer to it than the other: that is so across a step. */
+/* Where the middle stands between the arithmetic (0) and the harmonic mean (1), unless it is stored
+ * too coarsely to tell. On planes neither neighbour is much nearer to it than the other: that is so
+ * across a step. */
 static bool place_between(double a, double m, double b, double noise, double *place)
 {
     const double arithmetic = (a + b) / 2.0, harmonic = 2.0 * a * b / (a + b);
     const double between = arithmetic - harmonic;
     *place = (arithmetic - m) / between;
-    return between > 0 && m * noise < 0.02 * between && fabs(arithmetic - m) < 0.3 * fabs(b - a);
+    return between > 0 && noise < 0.02 * between && fabs(arithmetic - m) < 0.3 * fabs(b - a);
 }
 
-/* Relative size of the steps in which depth is stored: half values, or 24 bits of noise. */
-static double storage_noise(const struct gbuffer *g)
+/* Sizes of the steps in which depth is stored, relative and absolute: half values, or 24 bits of
+ * noise; 8 or 16 bits. */
+struct storage {
+    double relative, step;
+};
+
+static bool find_storage(const struct gbuffer *g, struct storage *s)
 {
-    return g->depth_is_half ? ldexp(1.0, -11) : 2e-6;
+    s->relative = g->depth_is_half ? ldexp(1.0, -11) : 2e-6;
+    s->step = 0;
+    return g->depth_is_half || gbuffer_find_step(g, &s->step);
 }
 
 /* Parts of a range are no distances, but what they stand for. */
@@ -50,11 +58,12 @@ static double as_measured(const struct gbuffer *g, size_t texel)
                                              : (double)g->depth[texel];
 }
 
-static size_t collect(const struct gbuffer *g, struct triple *triples)
+static size_t collect(const struct gbuffer *g, const struct storage *storage,
+                      struct triple *triples)
 {
-    const size_t reach = g->depth_is_half ? 10 : 4, width = g->width, texels = gbuffer_texels(g);
+    const bool is_coarse = g->depth_is_half || storage->step > 0;
+    const size_t reach = is_coarse ? 10 : 4, width = g->width, texels = gbuffer_texels(g);
     const size_t step = texels * 2 / MOST_TRIPLES + 1;
-    const double noise = storage_noise(g);
     size_t count = 0;
     for (size_t i = 0; i < texels && count + 2 <= MOST_TRIPLES; i += step) {
         const size_t x = i % width, y = i / width;
@@ -75,6 +84,7 @@ static size_t collect(const struct gbuffer *g, struct triple *triples)
             if (!ok || d[0] > 2.0 * d[2] || d[2] > 2.0 * d[0])
                 continue;
             struct triple *t = &triples[count];
+            const double noise = fmax(d[1] * storage->relative, storage->step);
             t->depth = d[1];
             if (!place_between(d[0], d[1], d[2], noise, &t->planar))
                 continue;
@@ -127,10 +137,13 @@ static double best_offset(const struct triple *triples, size_t count, double *of
 bool gbuffer_read_planes(const struct gbuffer *g, struct depth_planes *planes)
 {
     struct triple *triples = malloc(MOST_TRIPLES * sizeof *triples);
+    struct storage storage;
     *planes = (struct depth_planes){0};
-    if (!triples)
+    if (!triples || !find_storage(g, &storage)) {
+        free(triples);
         return false;
-    const size_t count = collect(g, triples);
+    }
+    const size_t count = collect(g, &storage, triples);
     if (count >= FEW_TRIPLES) {
         planes->planar = share_near(triples, count, 1.0, false);
         planes->linear = share_near(triples, count, 0.0, false);

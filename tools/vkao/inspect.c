@@ -121,6 +121,8 @@ static void add_depth_facts(cJSON *entry, const struct gbuffer *g)
     cJSON_AddNumberToObject(entry, "background_share", g->background_share);
     cJSON_AddNumberToObject(entry, "invalid_share", g->invalid_share);
     cJSON_AddNumberToObject(entry, "filtered_share", g->filtered_share);
+    cJSON_AddNumberToObject(entry, "block_size", g->block_size);
+    cJSON_AddNumberToObject(entry, "noise", g->noise);
     const struct background *b = &g->background;
     cJSON *background = cJSON_AddObjectToObject(entry, "background");
     cJSON_AddStringToObject(background, "why", reason_names[b->reason]);

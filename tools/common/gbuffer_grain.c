@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * How fine a depth really is: whether it was rounded to steps, enlarged from a smaller image, or
+ * sampled somewhere in each texel. AO sees ridges in all of these. */
+#include "gbuffer_internal.h"
+#include "median.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int compare(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* --- Steps --- */
+
+/* Whether the gaps between sorted values are multiples of the least, as those of 8 or 16 bits are
+ * and those of surfaces are not. */
+static double step_of(const float *values, size_t count)
+{
+    /* Of larger multiples the rounding of the least tells nothing. */
+    static const double largest = 20.0, tolerance = 0.05, finest = 1e-5;
+    enum { FEW = 24 };
+    double least = INFINITY;
+    size_t gaps = 0, multiples = 0;
+    for (size_t i = 1; i < count; i++) {
+        const double gap = (double)values[i] - (double)values[i - 1];
+        least = gap > 0 ? fmin(least, gap) : least;
+    }
+    if (count == 0 || !isfinite(least) || least < finest * (double)values[count / 2])
+        return 0;
+    for (size_t i = 1; i < count; i++) {
+        const double times = ((double)values[i] - (double)values[i - 1]) / least;
+        if (!(times > 0) || times > largest)
+            continue;
+        gaps++;
+        multiples += fabs(times - round(times)) < tolerance;
+    }
+    return gaps >= FEW && multiples * 50 > gaps * 49 ? least : 0;
+}
+
+bool gbuffer_find_step(const struct gbuffer *g, double *step)
+{
+    enum { MOST = 1 << 14 };
+    const size_t stride = gbuffer_texels(g) / MOST + 1;
+    float *values = malloc((gbuffer_texels(g) / stride + 1) * sizeof *values);
+    size_t count = 0;
+    if (!values)
+        return false;
+    for (size_t i = 0; i < gbuffer_texels(g); i += stride)
+        if (gbuffer_is_measurable((double)g->depth[i]))
+            values[count++] = g->depth[i];
+    qsort(values, count, sizeof *values, compare);
+    *step = step_of(values, count);
+    free(values);
+    return true;
+}
+
+/* --- Blocks --- */
+
+enum { MOST_BLOCK = 8, FEW_CHANGES = 200 };
+
+/* Where along an axis neighbours on a surface differ, by the rest of their place. */
+static size_t count_changes(const struct gbuffer *g, int axis, unsigned block, size_t counts[])
+{
+    const size_t step = axis ? g->width : 1, size = axis ? g->height : g->width;
+    size_t sum = 0;
+    memset(counts, 0, MOST_BLOCK * sizeof *counts);
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        const size_t at = axis ? i / g->width : i % g->width;
+        if (at + 1 >= size)
+            continue;
+        const double a = (double)g->depth[i], b = (double)g->depth[i + step];
+        /* Edges of things may lie in a pattern, slopes of surfaces do not. */
+        if (!(fabs(a - b) > 0) || !(fabs(a - b) < 0.05 * fabs(a)))
+            continue;
+        counts[at % block]++;
+        sum++;
+    }
+    return sum;
+}
+
+static bool has_blocks(const struct gbuffer *g, unsigned block)
+{
+    for (int axis = 0; axis < 2; axis++) {
+        size_t counts[MOST_BLOCK], most = 0;
+        const size_t sum = count_changes(g, axis, block, counts);
+        for (unsigned i = 0; i < block; i++)
+            most = counts[i] > most ? counts[i] : most;
+        if (sum < FEW_CHANGES || most * 50 < sum * 49)
+            return false;
+    }
+    return true;
+}
+
+unsigned gbuffer_block_size(const struct gbuffer *g)
+{
+    for (unsigned block = MOST_BLOCK; block > 1; block--)
+        if (has_blocks(g, block))
+            return block;
+    return 1;
+}
+
+/* --- Noise --- */
+
+static bool is_flat(const struct gbuffer *g, const size_t at[5])
+{
+    static const double least_cosine = 0.9995; /* 1.8 degrees */
+    const float *n = g->normals + at[0] * 4;
+    const double x = (double)n[0], y = (double)n[1], z = (double)n[2];
+    if (!(fabs(x * x + y * y + z * z - 1.0) < 0.02))
+        return false;
+    for (int i = 0; i < 5; i++) {
+        const float *m = g->normals + at[i] * 4;
+        const double a = (double)m[0], b = (double)m[1], c = (double)m[2];
+        if (!gbuffer_is_foreground(g, at[i]) ||
+            !(x * a + y * b + z * c > least_cosine * sqrt(a * a + b * b + c * c)))
+            return false;
+    }
+    return true;
+}
+
+/* What is linear in the image on a plane bends by so much, in widths of a texel. */
+static double bend_at(const struct gbuffer *g, const size_t at[5])
+{
+    double w[5], x[2], y[2];
+    const bool is_parallel = g->camera.type == CAMERA_ORTHOGRAPHIC;
+    const double column = (double)(at[0] % g->width), row = (double)(at[0] / g->width);
+    for (int i = 0; i < 5; i++) {
+        const double z = gbuffer_view_z(g, g->depth[at[i]], at[i]);
+        w[i] = is_parallel ? z : 1.0 / z;
+    }
+    camera_ray(&g->camera, &g->display_window, &g->data_window, column, row, &x[0], &y[0]);
+    camera_ray(&g->camera, &g->display_window, &g->data_window, column + 1.0, row, &x[1], &y[1]);
+    const double bend = fabs(w[1] + w[2] - 2.0 * w[0]) + fabs(w[3] + w[4] - 2.0 * w[0]);
+    return bend / fabs(x[1] - x[0]) / (is_parallel ? 1.0 : w[0]);
+}
+
+bool gbuffer_measure_noise(const struct gbuffer *g, double *noise)
+{
+    enum { MOST = 1 << 16, FEW = 200 };
+    const size_t stride = gbuffer_texels(g) / MOST + 1;
+    double *bends = malloc((gbuffer_texels(g) / stride + 1) * sizeof *bends);
+    size_t count = 0;
+    *noise = 0;
+    if (!bends)
+        return false;
+    for (size_t i = g->width; i + g->width < gbuffer_texels(g); i += stride) {
+        const size_t at[5] = {i, i - 1, i + 1, i - g->width, i + g->width};
+        if (i % g->width > 0 && i % g->width + 1 < g->width && is_flat(g, at))
+            bends[count++] = bend_at(g, at);
+    }
+    if (count >= FEW)
+        *noise = median_of(bends, count);
+    free(bends);
+    return true;
+}
