@@ -521,7 +521,134 @@ def lossy_compression_is_named(scratch, compression, name, kind, is_lossy):
     equal(f'compressed with {compression}, which is lossy' in said, is_lossy, 'warned')
 
 
+UINTS = [('32 bits', 2 ** 32 - 1, 'uint32'), ('24 bits', 2 ** 24 - 1, 'uint32')]
+
+
+@cases(UINTS)
+def whole_numbers_of_a_range_are_refused(scratch, _, most, kind):
+    scene, near, far = Scene(), 1.5, 9.0
+    options = ('--fov', FOV, '--radius', 0.5)
+    wanted, _ = clean(scratch, scene, *options, normals=False)
+    depth = np.where(scene.sky, 1, (scene.z - near) / (far - near)) * most
+    write_exr(scratch.path('in.exr'), {'Z': depth.astype(kind)})
+    scratch.fails(CHANNELS, "in.exr: depth 'Z' is whole numbers up to .*: parts of a range",
+                  'in.exr', '-o', 'x.exr', '--fov', FOV, hint='--depth-type normalized')
+    ao, _ = run(scratch, {'Z': depth.astype(kind)}, '--depth-type', 'normalized', '--depth-range',
+                f'{near},{far}', *options)
+    check_same(ao, wanted, 'with its range')
+    device = (scene.depth('device').astype(np.float64) * most).astype(kind)
+    ao, _ = run(scratch, {'Z': device}, '--depth-type', 'device', '--near', NEAR, '--far', FAR,
+                *options)
+    check_same(ao, wanted, 'a depth buffer')
+
+
+@case
+def whole_millimetres_are_distances(scratch):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene, unit=1000, normals=False)
+    depth = np.where(scene.sky, 0, np.round(scene.z * 1000)).astype('uint32')
+    ao, said = run(scratch, {'Z': depth}, '--fov', FOV)
+    check_same(ao, wanted, 'millimetres')
+    matches("depth 'Z' is whole numbers up to .*, taken for scene units", said, 'stderr')
+
+
+# --- Pictures without a view plane ---
+
+def all_directions(width, height, fisheye):
+    """Distances to the floor and the walls of a room from a point in it, infinite outside."""
+    x, y = np.meshgrid((np.arange(width) + 0.5) / width * 2 - 1,
+                       1 - (np.arange(height) + 0.5) / height * 2)
+    if fisheye:
+        r = np.hypot(x, y)
+        ray = np.stack([np.sin(r * np.pi / 2) * x / r, np.sin(r * np.pi / 2) * y / r,
+                        -np.cos(r * np.pi / 2)], -1)
+    else:
+        lon, lat = x * np.pi, y * np.pi / 2
+        ray = np.stack([np.sin(lon) * np.cos(lat), np.sin(lat), -np.cos(lon) * np.cos(lat)], -1)
+    low, high = np.array([-2.0, -1.2, -3.0]), np.array([3.0, 1.4, 2.0])
+    with np.errstate(divide='ignore'):
+        z = np.min(np.where(ray > 0, high / ray, low / ray), axis=-1)
+    return np.where(r <= 1, z, np.inf).astype(np.float32) if fisheye else z.astype(np.float32)
+
+
+@cases([('latlong', (160, 80), False, 'looks like a panorama'),
+        ('fisheye', (120, 120), True, 'looks like a fisheye')])
+def pictures_of_all_directions_are_said(scratch, _, size, is_fisheye, message):
+    write_exr(scratch.path('in.exr'), {'Z': all_directions(*size, is_fisheye)})
+    for header in ([], [('cameraFov', 'float', 50.0)]):
+        write_exr(scratch.path('in.exr'), {'Z': all_directions(*size, is_fisheye)},
+                  attributes=header)
+        matches(message, str(inspect(scratch)['warnings']), 'warnings')
+    # Not of a perspective of this shape, even one that is the same on both sides.
+    scene = Scene(*size, fov=90)
+    x, z = scene.x, np.where(scene.sky, np.inf, scene.z)
+    with np.errstate(divide='ignore'):
+        corridor = np.minimum(np.minimum(1 / np.abs(scene.y), 1.5 / np.abs(x)), 9)
+    wall = np.where(np.hypot(x, scene.y) < 0.3, 2 + x, 5)
+    for depth in (z, corridor, wall):
+        write_exr(scratch.path('in.exr'), {'Z': depth.astype(np.float32)})
+        said = str(inspect(scratch)['warnings'])
+        check('looks like a' not in said, said)
+
+
 # --- Normals ---
+
+def no_normals_at_all(scene):
+    n = scene.normal
+    middle = np.zeros_like(n) + np.array([0, 0, 1])
+    octahedral = n / np.maximum(np.abs(n).sum(axis=-1, keepdims=True), 1e-9) * np.array([1, 1, 0])
+    return [('empty', 0 * n, 'are zero or no numbers'), ('nan', n * np.nan, 'are zero or no numb'),
+            ('octahedral', octahedral, 'have two components and a third that is 0'),
+            ('without z', n * np.array([1, 1, 0]), 'have two components and a third that is 0'),
+            ('of tangent space', middle, 'are the same everywhere, and the depth is of no plane')]
+
+
+@cases([('empty',), ('nan',), ('octahedral',), ('without z',), ('of tangent space',)])
+def what_is_no_normal_is_left_out(scratch, name):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene, normals=False)
+    values, message = {n: (v, m) for n, v, m in no_normals_at_all(scene)}[name]
+    channels = {'Z': scene.depth(),
+                **{f'N.{c}': values[..., i].astype(np.float32) for i, c in enumerate('XYZ')}}
+    for attributes in ([], rotation_header()):
+        ao, said = run(scratch, channels, '--fov', FOV, attributes=attributes)
+        check_same(ao, wanted, f'{name}, header with {len(attributes)} matrices')
+        matches(f"normals 'N' {message}", said, 'stderr')
+
+
+@case
+def a_wall_has_one_normal(scratch):
+    scene = Scene()
+    wall = {'Z': np.full_like(scene.x, 5) / (1 - 0.2 * scene.x), 'N.X': 0 * scene.x,
+            'N.Y': 0 * scene.x, 'N.Z': 0 * scene.x}
+    wall['N.X'] += -0.2 / np.hypot(0.2, 1)
+    wall['N.Z'] += 1 / np.hypot(0.2, 1)
+    write_exr(scratch.path('in.exr'), {n: v.astype(np.float32) for n, v in wall.items()})
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    check('everywhere' not in said, said)
+
+
+@case
+def normals_without_signs_are_said(scratch):
+    scene = Scene()
+    turned = scene.normals(space='world')
+    for name, change in (('lost', np.abs), ('clamped', lambda n: np.maximum(n, 0))):
+        write_exr(scratch.path('in.exr'), {'Z': scene.depth(),
+                                           **{n: change(v) for n, v in turned.items()}})
+        matches("normals 'N' have no negative component anywhere",
+                str(inspect(scratch, '--fov', FOV)['warnings']), name)
+
+
+@case
+def normals_that_were_made_linear_are_refused(scratch):
+    scene = Scene()
+    colors = {n: ((v * 0.5 + 0.5) ** 2.2).astype(np.float32)
+              for n, v in scene.normals('normal', letters='RGB').items()}
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **colors})
+    scratch.fails(CHANNELS, "normals 'normal' look like a picture .* made linear", 'in.exr', '-o',
+                  'x.exr', '--fov', FOV, hint='as data')
+    scratch.render('in.exr', '-o', 'x.exr', '--fov', FOV, '--normal', 'none')
+
 
 def rotation_header():
     """worldToCamera for row vectors, looking along +z."""

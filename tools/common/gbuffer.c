@@ -117,6 +117,49 @@ static bool check_grey(const struct gbuffer *g, struct report *report, struct to
                 depth->info->path, depth->channels[0]->name, depth->twin->name);
 }
 
+/* Whole numbers are units, millimetres say, or parts of the largest that fits into 8, 16, 24 or 32
+ * bits. Of a depth buffer or a range that somebody names they are the latter, and become 0 to 1. */
+static bool settle_whole_numbers(struct gbuffer *g, const struct gbuffer_options *options,
+                                 struct report *report, struct tool_error *err)
+{
+    static const float full[] = {255.0f, 65535.0f, 16777215.0f, 4294967295.0f};
+    static const float far_off = 1048576.0f; /* a kilometre in millimetres */
+    const struct role *role = &g->roles.kind[ROLE_DEPTH];
+    const bool is_part =
+        options->depth_type == DEPTH_DEVICE || options->depth_type == DEPTH_NORMALIZED;
+    float most = 0;
+    size_t seen = 0, far = 0, k = 0;
+    if (g->depth_type == DEPTH_POSITION || role->channels[0]->type != EXR_UINT)
+        return true;
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        const float d = g->depth[i];
+        most = fmaxf(most, d);
+        seen += d > 0 && d < full[3];
+        far += d > far_off && d < full[3];
+    }
+    while (most > full[k] && k < 3)
+        k++;
+    for (size_t i = 0; is_part && i < gbuffer_texels(g); i++)
+        g->depth[i] /= full[k];
+    if (options->depth_type != DEPTH_AUTO)
+        return true;
+    if (far * 2 > seen) {
+        fail_hint(err, "--depth-type normalized --depth-range NEAR,FAR[,inverted], or device with "
+                       "--near and --far, take the largest of its bits for 1; planar if these are "
+                       "scene units");
+        return fail(err, EXIT_CHANNELS,
+                    "%s: depth '%s' is whole numbers up to %.6g: parts of a range or a depth "
+                    "buffer, not in scene units?",
+                    role->info->path, role->label, (double)most);
+    }
+    report_warn(report, "whole depth",
+                "%s: depth '%s' is whole numbers up to %.6g, taken for scene units (--depth-type "
+                "normalized --depth-range NEAR,FAR, or device with --near and --far, if they are "
+                "parts)",
+                role->info->path, role->label, (double)most);
+    return true;
+}
+
 /* Alpha of another part is only read if depth does not say by itself where there is nothing. */
 static bool read_alpha(struct gbuffer *g, struct tool_error *err)
 {
@@ -458,7 +501,8 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     const struct exr_info *normals = normal->found ? normal->info : info;
     if (g->camera.remark[0])
         report_warn(report, "camera remark", "%s: %s", info->path, g->camera.remark);
-    if (!read_depth(g, err) || !check_grey(g, report, err))
+    if (!read_depth(g, err) || !check_grey(g, report, err) ||
+        !settle_whole_numbers(g, options, report, err))
         goto failed;
     if (normal->found) {
         g->normals = gbuffer_read_role(g, normal, 4, 0.0f, err);

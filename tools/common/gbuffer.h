@@ -129,6 +129,7 @@ struct gbuffer {
     double filtered_share; /* [0,1] of edges with texels in between, as filters and blur do */
     enum normal_space normal_space; /* AUTO if there are no normals */
     enum normal_encoding normal_encoding;
+    bool normals_lack_negative; /* though they are signed */
     /* Of the normals to view space, by the image, whatever header or file say. */
     bool has_seen_rotation;
     double seen_rotation[9]; /* m[row * 3 + column] */

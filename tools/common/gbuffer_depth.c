@@ -413,5 +413,6 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
     warn_about_compression(g, &info->parts[role->part], path, report);
     warn_about_depth(g, path, report);
     warn_about_grain(g, path, report);
+    gbuffer_warn_of_panorama(g, path, report);
     return true;
 }

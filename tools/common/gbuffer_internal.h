@@ -91,6 +91,8 @@ double gbuffer_filtered_share(const struct gbuffer *g);
 bool gbuffer_find_step(const struct gbuffer *g, double *step);
 /* Of depth as stored: 1, or what it was enlarged by without interpolation. */
 unsigned gbuffer_block_size(const struct gbuffer *g);
+/* Of depth as prepared, unless a camera is given by hand. */
+void gbuffer_warn_of_panorama(const struct gbuffer *g, const char *path, struct report *report);
 /* By how many widths of a texel depth, as prepared, bends where stored normals are alike: a median,
  * 0 where there are few of them. False if memory ran out. */
 bool gbuffer_measure_noise(const struct gbuffer *g, double *noise);

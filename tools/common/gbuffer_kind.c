@@ -179,8 +179,8 @@ static void take_seen(struct gbuffer *g, const struct value_facts *f, enum plane
         if (is_perspective && g->camera.source[0]) {
             take(g, DEPTH_INVERSE, DEPTH_BY_PLANES);
             report_warn(report, "inverse depth",
-                        "%s: depth '%s' is taken as 1/z: flat things are flat only then "
-                        "(--depth-type overrides)",
+                        "%s: depth '%s' is taken as 1/z: flat things are flat only then, or if "
+                        "the camera is orthographic (--depth-type or --ortho WIDTH overrides)",
                         path, label);
             return;
         }

@@ -31,7 +31,19 @@ struct encoding_facts {
     double negative;                       /* share with a component clearly below zero */
     double signed_share, unsigned_share;   /* of |n| and of |2n - 1| that are 1 */
     double signed_length, unsigned_length; /* medians of the same */
+    double linear_share;                   /* of those that are 1 once colours are no more linear */
+    float low[3], high[3];
 };
+
+/* A picture of normals that was read as colours, whose curve was taken off. */
+static double length_of_linear(const float *n)
+{
+    static const float curve = 1.0f / 2.2f;
+    float decoded[3];
+    for (int c = 0; c < 3; c++)
+        decoded[c] = 2.0f * powf(fmaxf(n[c], 0.0f), curve) - 1.0f;
+    return length3(decoded);
+}
 
 static bool is_one(double length)
 {
@@ -44,24 +56,32 @@ static bool measure_encoding(const struct gbuffer *g, struct encoding_facts *fac
     double *as_signed = malloc(room * sizeof *as_signed),
            *as_unsigned = malloc(room * sizeof *as_unsigned);
     const bool ok = as_signed && as_unsigned;
-    size_t negative = 0, signed_ones = 0, unsigned_ones = 0;
-    *facts = (struct encoding_facts){0};
+    size_t negative = 0, signed_ones = 0, unsigned_ones = 0, linear_ones = 0;
+    *facts = (struct encoding_facts){.low = {INFINITY, INFINITY, INFINITY},
+                                     .high = {-INFINITY, -INFINITY, -INFINITY}};
     for (size_t i = 0; ok && i < gbuffer_texels(g); i += step) {
         const float *n = g->normals + i * 4;
         const float decoded[3] = {2.0f * n[0] - 1.0f, 2.0f * n[1] - 1.0f, 2.0f * n[2] - 1.0f};
-        if (!finite3(n) || !(length3(n) > 0) || length3(decoded) < 0.02)
+        if (!finite3(n) || !(length3(n) > 0) || length3(decoded) < 0.02 ||
+            length_of_linear(n) < 0.02)
             continue;
         negative += n[0] < -0.02f || n[1] < -0.02f || n[2] < -0.02f;
         as_signed[facts->count] = length3(n);
         as_unsigned[facts->count] = length3(decoded);
         signed_ones += is_one(as_signed[facts->count]);
         unsigned_ones += is_one(as_unsigned[facts->count++]);
+        linear_ones += is_one(length_of_linear(n));
+        for (int c = 0; c < 3; c++) {
+            facts->low[c] = fminf(facts->low[c], n[c]);
+            facts->high[c] = fmaxf(facts->high[c], n[c]);
+        }
     }
     if (ok && facts->count > 0) {
         const double count = (double)facts->count;
         facts->negative = (double)negative / count;
         facts->signed_share = (double)signed_ones / count;
         facts->unsigned_share = (double)unsigned_ones / count;
+        facts->linear_share = (double)linear_ones / count;
         facts->signed_length = median_of(as_signed, facts->count);
         facts->unsigned_length = median_of(as_unsigned, facts->count);
     }
@@ -87,6 +107,58 @@ static enum normal_encoding encoding_of(const struct encoding_facts *f)
                                              : NORMAL_ENCODING_AUTO;
 }
 
+/* One component says nothing, and the other two are no normals without it. */
+static bool has_two_components(const struct encoding_facts *f)
+{
+    static const float varies = 0.2f;
+    int constant = 0, varying = 0;
+    for (int c = 0; c < 3; c++) {
+        constant += f->high[c] - f->low[c] < 1e-3f;
+        varying += f->high[c] - f->low[c] > varies;
+    }
+    return constant == 1 && varying == 2 && fmax(f->signed_share, f->unsigned_share) < 0.9;
+}
+
+static void drop_normals(struct gbuffer *g)
+{
+    free(g->normals);
+    g->normals = NULL;
+    g->normal_space = NORMAL_SPACE_AUTO;
+    g->view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
+}
+
+/* What cannot be normals in any encoding is left out. */
+static void drop_what_is_none(struct gbuffer *g, const struct encoding_facts *f, const char *path,
+                              struct report *report)
+{
+    const char *label = g->roles.kind[ROLE_NORMAL].label;
+    if (f->count == 0)
+        report_warn(report, "empty normals",
+                    "%s: normals '%s' are zero or no numbers wherever one looks: deriving them "
+                    "from depth",
+                    path, label);
+    else if (has_two_components(f))
+        report_warn(report, "packed normals",
+                    "%s: normals '%s' have two components and a third that is %.3g everywhere: "
+                    "octahedral, or without z; they cannot be read: deriving them from depth",
+                    path, label,
+                    f->high[0] - f->low[0] < 1e-3f   ? (double)f->low[0]
+                    : f->high[1] - f->low[1] < 1e-3f ? (double)f->low[1]
+                                                     : (double)f->low[2]);
+    else
+        return;
+    drop_normals(g);
+}
+
+static bool fail_linear(const struct gbuffer *g, const char *path, struct tool_error *err)
+{
+    fail_hint(err, "write them as data (raw, non-colour); or --normal none");
+    return fail(err, EXIT_CHANNELS,
+                "%s: normals '%s' look like a picture of normals that was made linear, as colours "
+                "are: they are 0..1 encoded only with the curve put back",
+                path, g->roles.kind[ROLE_NORMAL].label);
+}
+
 static bool resolve_encoding(struct gbuffer *g, enum normal_encoding wanted, const char *path,
                              struct report *report, struct tool_error *err)
 {
@@ -96,7 +168,14 @@ static bool resolve_encoding(struct gbuffer *g, enum normal_encoding wanted, con
         return true;
     if (!measure_encoding(g, &facts))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    drop_what_is_none(g, &facts, path, report);
+    if (!g->normals)
+        return true;
     g->normal_encoding = encoding_of(&facts);
+    if (facts.linear_share > fmax(facts.signed_share, facts.unsigned_share) + 0.2)
+        return fail_linear(g, path, err);
+    g->normals_lack_negative =
+        g->normal_encoding == NORMAL_ENCODING_SIGNED && !(facts.negative > 0);
     if (g->normal_encoding == NORMAL_ENCODING_AUTO) {
         fail_hint(err, "add --normal-encoding signed or unsigned, or --normal none");
         return fail(
@@ -197,14 +276,6 @@ static bool world_matrix(const struct gbuffer *g, float matrix[9], struct facing
         *facing = other;
     }
     return true;
-}
-
-static void drop_normals(struct gbuffer *g)
-{
-    free(g->normals);
-    g->normals = NULL;
-    g->normal_space = NORMAL_SPACE_AUTO;
-    g->view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
 }
 
 static bool fail_without_rotation(const char *path, struct tool_error *err)
@@ -361,6 +432,38 @@ static bool choose_space(struct gbuffer *g, enum normal_space wanted, float worl
     return true;
 }
 
+/* One normal everywhere is that of a plane, or of none: tangent space has it. */
+static bool are_alike(const struct normal_pairs *pairs)
+{
+    static const double same = 0.9999;
+    for (size_t i = 1; i < pairs->count; i++) {
+        const double *a = pairs->pair[0].stored, *b = pairs->pair[i].stored;
+        if (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] < same)
+            return false;
+    }
+    return pairs->count >= FEW_PAIRS;
+}
+
+/* Planes agree nearly all over, and so do normals that are as they should be. */
+static const double least_of_planes = 0.8, least_of_positive = 0.98;
+
+static void check_values(struct gbuffer *g, bool alike, const char *path, struct report *report)
+{
+    const char *label = g->roles.kind[ROLE_NORMAL].label;
+    if (alike && g->normal_agreement < least_of_planes) {
+        report_warn(report, "constant normals",
+                    "%s: normals '%s' are the same everywhere, and the depth is of no plane: "
+                    "tangent space? deriving them from depth",
+                    path, label);
+        drop_normals(g);
+    } else if (g->normals_lack_negative && g->normal_agreement < least_of_positive) {
+        report_warn(report, "positive normals",
+                    "%s: normals '%s' have no negative component anywhere, and %.0f %% agree with "
+                    "the depth: was it clamped, or its sign lost? (--normal none)",
+                    path, label, g->normal_agreement * 100.0);
+    }
+}
+
 /* Normals that cannot be used, or that fit nothing. */
 static bool check_normals(struct gbuffer *g, enum normal_space wanted, size_t pairs,
                           const char *path, struct report *report, struct tool_error *err)
@@ -419,8 +522,11 @@ static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const cha
     judge_ways(ways, &pairs, g, world);
     ask_depth(g, ways, &pairs, wanted, path, report);
     const size_t count = pairs.count;
+    const bool alike = are_alike(&pairs);
     gbuffer_free_pairs(&pairs);
-    return check_normals(g, wanted, count, path, report, err);
+    if (count >= FEW_PAIRS && wanted == NORMAL_SPACE_AUTO && g->normal_space != NORMAL_SPACE_AUTO)
+        check_values(g, alike, path, report);
+    return !g->normals || check_normals(g, wanted, count, path, report, err);
 }
 
 bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, const char *path,
@@ -430,6 +536,8 @@ bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, cons
         return true;
     if (!resolve_encoding(g, wanted, path, report, err))
         return false;
+    if (!g->normals)
+        return true;
     decode(g);
     g->view.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
     return true;
