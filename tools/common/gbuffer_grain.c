@@ -61,7 +61,8 @@ bool gbuffer_find_step(const struct gbuffer *g, double *step)
 
 /* --- Blocks --- */
 
-enum { MOST_BLOCK = 8, FEW_CHANGES = 200 };
+/* Of changes, so many tell enough. */
+enum { MOST_BLOCK = 8, FEW_CHANGES = 200, ENOUGH_CHANGES = 1 << 16 };
 
 /* Where along an axis neighbours on a surface differ, by the rest of their place. */
 static size_t count_changes(const struct gbuffer *g, int axis, unsigned block, size_t counts[])
@@ -69,7 +70,7 @@ static size_t count_changes(const struct gbuffer *g, int axis, unsigned block, s
     const size_t step = axis ? g->width : 1, size = axis ? g->height : g->width;
     size_t sum = 0;
     memset(counts, 0, MOST_BLOCK * sizeof *counts);
-    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+    for (size_t i = 0; i < gbuffer_texels(g) && sum < ENOUGH_CHANGES; i++) {
         const size_t at = axis ? i / g->width : i % g->width;
         if (at + 1 >= size)
             continue;
