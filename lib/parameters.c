@@ -237,7 +237,7 @@ struct preset {
 static const struct preset presets[] = {
     [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f},
     [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f},
-    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 8, 3, 2.0f},
+    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 3, 2.0f},
     [VKAO_QUALITY_BEST] = {VK_FALSE, 4, 18, 1, 2.0f},
 };
 

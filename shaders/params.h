@@ -105,9 +105,8 @@
  * small. */
 #define VKAO_MOST_UNROLLED 64u
 /* Of vbao, whose steps are long: more than the first in all slices leave a CPU's instruction cache,
- * and are looped over instead, slice by slice and at most the second at once. GPUs, whose caches
- * are no larger, get the same. */
-#define VKAO_VBAO_MOST_UNROLLED 16u
+ * and are looped over instead, slice by slice and at most the second at once. */
+#define VKAO_VBAO_MOST_UNROLLED 20u
 #define VKAO_VBAO_MOST_AT_ONCE 8u
 
 /* View z outside this range is background: what squares of lengths, in radii and at any field of
@@ -173,7 +172,7 @@
  * is most of the view, and what is seen a sliver of it, that says little. */
 #define VKAO_VBAO_THICKNESS_WIDE 0.75
 #define VKAO_VBAO_THICKNESS_WIDER 10.0
-#define VKAO_VBAO_THICKNESS_GAP 2.5
+#define VKAO_VBAO_THICKNESS_GAP 2.35
 #define VKAO_VBAO_THICKNESS_GIVEN_GAP 0.5 /* where thickness is an input, which has no cap */
 #define VKAO_VBAO_THICKNESS_BASE 0.40
 #define VKAO_VBAO_THICKNESS_SLOPE 0.80
