@@ -1,0 +1,163 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Normals, their space and their encoding are known by their agreement with depth, and what is none
+is left out."""
+import numpy as np
+
+from cli import CHANNELS, case, cases, check, equal, main, matches, write_exr
+from evidence import check_same, clean, depth_of, hidden, inspect, rotation_header, run
+from scene import FOV, TURN, Scene
+
+
+def no_normals_at_all(scene):
+    n = scene.normal
+    middle = np.zeros_like(n) + np.array([0, 0, 1])
+    octahedral = n / np.maximum(np.abs(n).sum(axis=-1, keepdims=True), 1e-9) * np.array([1, 1, 0])
+    return [('empty', 0 * n, 'are zero or no numbers'), ('nan', n * np.nan, 'are zero or no numb'),
+            ('octahedral', octahedral, 'have two components and a third that is 0'),
+            ('without z', n * np.array([1, 1, 0]), 'have two components and a third that is 0'),
+            ('of tangent space', middle, 'are the same everywhere, and the depth is of no plane')]
+
+
+@cases([('empty',), ('nan',), ('octahedral',), ('without z',), ('of tangent space',)])
+def what_is_no_normal_is_left_out(scratch, name):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene, normals=False)
+    values, message = {n: (v, m) for n, v, m in no_normals_at_all(scene)}[name]
+    channels = {'Z': scene.depth(),
+                **{f'N.{c}': values[..., i].astype(np.float32) for i, c in enumerate('XYZ')}}
+    for attributes in ([], rotation_header()):
+        ao, said = run(scratch, channels, '--fov', FOV, attributes=attributes)
+        check_same(ao, wanted, f'{name}, header with {len(attributes)} matrices')
+        matches(f"normals 'N' {message}", said, 'stderr')
+
+
+@case
+def a_wall_has_one_normal(scratch):
+    scene = Scene()
+    wall = {'Z': np.full_like(scene.x, 5) / (1 - 0.2 * scene.x), 'N.X': 0 * scene.x,
+            'N.Y': 0 * scene.x, 'N.Z': 0 * scene.x}
+    wall['N.X'] += -0.2 / np.hypot(0.2, 1)
+    wall['N.Z'] += 1 / np.hypot(0.2, 1)
+    write_exr(scratch.path('in.exr'), {n: v.astype(np.float32) for n, v in wall.items()})
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    check('everywhere' not in said, said)
+
+
+@case
+def normals_without_signs_are_said(scratch):
+    scene = Scene()
+    turned = scene.normals(space='world')
+    for name, change in (('lost', np.abs), ('clamped', lambda n: np.maximum(n, 0))):
+        write_exr(scratch.path('in.exr'), {'Z': scene.depth(),
+                                           **{n: change(v) for n, v in turned.items()}})
+        matches("normals 'N' have no negative component anywhere",
+                str(inspect(scratch, '--fov', FOV)['warnings']), name)
+
+
+@case
+def normals_that_were_made_linear_are_refused(scratch):
+    scene = Scene()
+    colors = {n: ((v * 0.5 + 0.5) ** 2.2).astype(np.float32)
+              for n, v in scene.normals('normal', letters='RGB').items()}
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **colors})
+    scratch.fails(CHANNELS, "normals 'normal' look like a picture .* made linear", 'in.exr', '-o',
+                  'x.exr', '--fov', FOV, hint='as data')
+    scratch.render('in.exr', '-o', 'x.exr', '--fov', FOV, '--normal', 'none')
+
+
+@cases([('+x+y+z', (1, 1, 1)), ('+x+y-z', (1, 1, -1)), ('+x-y+z', (1, -1, 1)),
+        ('-x+y+z', (-1, 1, 1)), ('-x-y-z', (-1, -1, -1))])
+def camera_normals_are_known_by_agreement(scratch, _, flip):
+    scene = Scene(fov=75)
+    wanted, _ = clean(scratch, scene, fov=75)
+    planes = scene.normals()
+    normals = {n: (planes[n] * f).astype(np.float32) for n, f in zip(sorted(planes), flip)}
+    for encoded in (False, True):
+        if encoded:
+            normals = {n: (v * 0.5 + 0.5).astype(np.float32) for n, v in normals.items()}
+        for attributes in (rotation_header(), []):
+            ao, said = run(scratch, {'Z': scene.depth(), **normals}, '--fov', 75,
+                           attributes=attributes)
+            check_same(ao, wanted, f'camera normals, header with {len(attributes)} matrices')
+            if attributes:
+                matches(r"normals 'N' are in camera space .* by agreement", said, 'stderr')
+
+
+@case
+def world_normals_are_known_by_agreement(scratch):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene)
+    for name in ('N', 'CameraNormal'):
+        channels = {'Z': scene.depth(), **scene.normals(name, space='world')}
+        ao, _ = run(scratch, channels, '--fov', FOV, attributes=rotation_header())
+        check_same(ao, wanted, f'world normals called {name}')
+
+
+@case
+def normals_that_agree_with_nothing_are_left_out(scratch):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene, normals=False)
+    blocks = np.random.default_rng(2).normal(size=(9, 16, 3)).repeat(10, axis=0).repeat(10, axis=1)
+    blocks /= np.linalg.norm(blocks, axis=-1, keepdims=True)
+    odd = {f'N.{c}': blocks[..., i].astype(np.float32) for i, c in enumerate('XYZ')}
+    ao, said = run(scratch, {'Z': scene.depth(), **odd}, '--fov', FOV,
+                   attributes=rotation_header())
+    check_same(ao, wanted, 'normals of another scene')
+    matches('do not agree with the depth in any space: deriving', said, 'stderr')
+
+
+@cases([('its own', 0, False), ('a little off', 15, True), ('of another camera', 40, True)])
+def rotation_that_depth_contradicts_is_said(scratch, _, degrees, is_said):
+    # Turned round the upright of the floor, whose normals stay; the ball and the wall disagree.
+    scene = Scene()
+    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
+    n = scene.normal @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ TURN
+    normals = {f'N.{k}': n[..., i].astype(np.float32) for i, k in enumerate('XYZ')}
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **normals},
+              attributes=[('cameraFov', 'float', FOV), *rotation_header()])
+    said = str(inspect(scratch)['warnings'])
+    equal('hardly agree with the depth' in said, is_said, f'whether it is doubted in {said}')
+
+
+@case
+def axes_of_another_world_are_found(scratch):
+    # z up where the header has y up: the rotation that the image shows is taken.
+    scene = Scene()
+    wanted, _ = clean(scratch, scene)
+    n = scene.normals(space='world')
+    turned = {'N.X': n['N.X'], 'N.Y': -n['N.Z'], 'N.Z': n['N.Y']}
+    ao, said = run(scratch, {'Z': scene.depth(), **turned}, '--fov', FOV,
+                   attributes=rotation_header())
+    check_same(ao, wanted, 'with other axes')
+    matches('by the rotation of worldToCamera: that of the image is taken', said, 'stderr')
+
+
+@cases([('40', 40), ('8', 8)])
+def background_with_normals_is_doubted(scratch, _, value):
+    # Colours of normals are (.5, .5, 1) where there is nothing, which faces the camera.
+    scene = hidden(0.6)
+    normals = scene.normals()
+    normals['N.Z'] = np.where(scene.sky, 1, normals['N.Z']).astype(np.float32)
+    write_exr(scratch.path('in.exr'), {'Z': depth_of(scene, value), **normals})
+    matches(f'taken for a wall .*--background {value}',
+            str(inspect(scratch, '--fov', FOV)['warnings']), 'the warnings')
+
+
+@cases([('noise', None), ('sideways', (1, 0, 0))])
+def no_wall_has_such_normals(scratch, _, normal):
+    # Behind all else by a little, always as far, and normals that no wall has.
+    scene = hidden(0.6)
+    planes = scene.normal.copy()
+    noise = np.random.default_rng(4).normal(size=planes.shape)
+    noise /= np.linalg.norm(noise, axis=-1, keepdims=True)
+    planes[scene.sky] = noise[scene.sky] if normal is None else normal
+    normals = {f'N.{c}': planes[..., i].astype(np.float32) for i, c in enumerate('XYZ')}
+    wanted, _ = clean(scratch, scene)
+    ao, _ = run(scratch, {'Z': depth_of(scene, 7), **normals}, '--fov', FOV)
+    check_same(ao, wanted, 'a near background')
+    check((ao[scene.sky] == 1).all(), 'the sky is not 1')
+
+
+if __name__ == '__main__':
+    main()

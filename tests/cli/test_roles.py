@@ -1,0 +1,120 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""Channels are found by all the names that programs give them, by rule where several might be
+meant."""
+import numpy as np
+
+from cli import CHANNELS, case, cases, check, equal, main, matches, read_ao, write_exr
+from evidence import OPTIONS, check_same, clean, inspect, run
+from scene import FOV, Scene
+
+NORMAL_NAMES = [
+    ('N.red', ('N.red', 'N.green', 'N.blue')), ('NX', ('NX', 'NY', 'NZ')),
+    ('Nx', ('Nx', 'Ny', 'Nz')), ('Nsx', ('Nsx', 'Nsy', 'Nsz')),
+    ('bumpNormals', ('bumpNormals.R', 'bumpNormals.G', 'bumpNormals.B')),
+    ('NormalWS', ('NormalWS.X', 'NormalWS.Y', 'NormalWS.Z')),
+    ('CameraNormal', ('FinalImageCameraNormal.R', 'FinalImageCameraNormal.G',
+                      'FinalImageCameraNormal.B')),
+    ('normal_x', ('normal_x', 'normal_y', 'normal_z')),
+    ('shadingNormals', ('shadingNormals.x', 'shadingNormals.y', 'shadingNormals.z'))]
+
+
+@cases(NORMAL_NAMES)
+def normals_are_found_by_all_their_names(scratch, _, names):
+    scene = Scene(48, 27)
+    planes = dict(zip(names, scene.normals().values()))
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **planes})
+    view = inspect(scratch, '--fov', FOV)
+    equal(view['roles']['normal'] and view['roles']['normal']['channels'], list(names), 'normals')
+
+
+@cases([('Octane', ('Normal (geometric)', 'Normal (shading)', 'Normal (tangent)'), 1),
+        ('Corona', ('Normals - Geometric', 'Normals - Shading'), 1),
+        ('without shading', ('Geo Normal', 'My Normal'), 1)])
+def one_of_several_normals_is_taken_by_rule(scratch, _, layers, wanted):
+    scene = Scene(48, 27)
+    channels = {'Z': scene.depth()}
+    for layer in layers:
+        channels.update(scene.normals(layer, letters='RGB'))
+    write_exr(scratch.path('in.exr'), channels)
+    view = inspect(scratch, '--fov', FOV)
+    equal(view['roles']['normal']['name'], layers[wanted], 'normals')
+    check({'role': 'normal', 'name': layers[0], 'why': f"'{layers[wanted]}' comes first"} in
+          view['passed_over'], str(view['passed_over']))
+
+
+@cases([('hitPz',), ('ImageDepth.R',), ('Z-depth.R',), ('dd.y',), ('Depth.V',), ('Depth',),
+        ('SceneDepthCm.R',), ('linear_depth',), ('Distance.R',)])
+def depth_is_found_by_all_its_names(scratch, name):
+    scene = Scene(48, 27)
+    write_exr(scratch.path('in.exr'), {name: scene.depth(), 'Mist.Z': scene.depth()})
+    view = inspect(scratch, '--fov', FOV)
+    equal(view['roles']['depth'] and view['roles']['depth']['channels'], [name], 'depth')
+    check({'role': 'depth', 'name': 'Mist.Z', 'why': 'no distance by its name'} in
+          view['passed_over'], str(view['passed_over']))
+    if name in ('dd.y', 'Distance.R'):
+        equal(view['conventions']['depth_type'], 'radial', 'type')
+
+
+@case
+def component_stands_for_its_layer(scratch):
+    scene = Scene(48, 27)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **scene.normals('A'),
+                                       **scene.normals('B')})
+    for name in ('A', 'A.X', 'A.Y'):
+        view = inspect(scratch, '--normal', name, '--fov', FOV)
+        equal(view['roles']['normal']['channels'], ['A.X', 'A.Y', 'A.Z'], f'--normal {name}')
+    scratch.fails(CHANNELS, "no channel or layer 'Z'; channels: A.X", 'in.exr', '-o', 'x.exr',
+                  '--normal', 'Z', hint='takes a layer with three components')
+
+
+@case
+def colours_that_might_be_meant_are_listed(scratch):
+    scene = Scene(48, 27)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(),
+                                       **scene.normals('diffuse', letters='RGB'),
+                                       **scene.normals('glow', letters='RGB')})
+    scratch.fails(CHANNELS, "no colour found.*; layers with colours: 'diffuse', 'glow'", 'in.exr',
+                  '-o', 'x.exr', '--mode', 'comp', hint='--color NAME')
+    scratch.render('in.exr', '-o', 'x.exr', '--mode', 'comp', '--color', 'glow.R')
+
+
+@case
+def grey_images_are_hinted_at(scratch):
+    depth = Scene(48, 27).depth()
+    for channels, hint in (({c: depth for c in 'RGB'}, '--depth R if'),
+                           ({'Y': depth}, '--depth Y')):
+        write_exr(scratch.path('in.exr'), channels)
+        scratch.fails(CHANNELS, 'no depth channel found', 'in.exr', '-o', 'x.exr', hint=hint)
+
+
+@case
+def grey_files_called_depth_are_depth(scratch):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene, normals=False)
+    write_exr(scratch.path('shot_depth.0001.exr'), {c: scene.depth() for c in 'RGB'})
+    options = ('-o', 'ao.exr', *OPTIONS, '--fov', FOV)
+    said = scratch.render('shot_depth.0001.exr', *options).stderr
+    check_same(read_ao(scratch.path('ao.exr')), wanted, 'a grey image')
+    matches("no channel is called depth, but the file is: 'R' of its grey image", said, 'stderr')
+    write_exr(scratch.path('depth.exr'), {c: v for c, v in scene.color().items()})
+    scratch.fails(CHANNELS, "'R' and 'G' differ: a picture in colours", 'depth.exr', *options,
+                  hint='--depth R')
+    write_exr(scratch.path('depth_of_field.exr'), {c: scene.depth() for c in 'RGB'})
+    scratch.fails(CHANNELS, 'no depth channel found', 'depth_of_field.exr', *options)
+
+
+@case
+def colours_in_a_layer_called_depth_are_refused(scratch):
+    scene = Scene()
+    colors = {f'depth.{c}': v for c, v in scene.color(alpha=False).items()}
+    write_exr(scratch.path('in.exr'), colors)
+    scratch.fails(CHANNELS, "'depth.R' and 'depth.G' differ: a picture in colours", 'in.exr', '-o',
+                  'x.exr', '--fov', FOV)
+    nothing = np.zeros_like(scene.depth())
+    channels = {'depth.R': scene.depth(), 'depth.G': nothing, 'depth.B': nothing}
+    run(scratch, channels, '--fov', FOV)
+
+
+if __name__ == '__main__':
+    main()
