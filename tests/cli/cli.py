@@ -127,6 +127,9 @@ def main():
     arguments = parser.parse_args()
     _settings.vkao = os.path.abspath(arguments.vkao)
     _settings.corpus = find_corpus()
+    for word in arguments.case:
+        if not any(word in c[0] for c in _cases):
+            parser.error(f'no case is called {word}')
     chosen = [c for c in _cases if not arguments.case or any(w in c[0] for w in arguments.case)]
     start = time.monotonic()
     results = [run_case(name, function) for name, function in chosen]
