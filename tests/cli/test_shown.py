@@ -78,7 +78,9 @@ def write_ao(scratch, *options):
 @case
 def imagemagick_shows_ao_alone(scratch):
     wanted = write_ao(scratch)
-    tool = shutil.which('magick') or shutil.which('convert') or 'convert'
+    # By Debian's own name first: 'convert' may be of another program.
+    names = ('magick', 'convert-im6.q16', 'convert')
+    tool = next(filter(shutil.which, names), names[-1])
     if 'EXR' not in run_tool(tool, '-list', 'format'):
         skip('ImageMagick is not installed, or was built without OpenEXR')
     run_tool(tool, 'ao.exr', '-set', 'colorspace', 'sRGB', '-depth', '16', 'gray:ao.raw',
