@@ -530,7 +530,9 @@ const struct option_row option_table[] = {
      .words = depth_types,
      .more = "radial-near needs the near plane; device needs both planes, and holds values "
              "from 0 to 1; normalized needs --depth-range. What auto cannot tell from 0..1 is "
-             "refused, as is a depth that is the same everywhere."},
+             "refused, as is a depth that is the same everywhere. Whole numbers are scene units; "
+             "of device and normalized they are parts of the largest of 8, 16, 24 or 32 bits that "
+             "holds them all."},
     {.name = "depth-range", .argument = "NEAR,FAR[,inverted]",
      .help = "distances that 0 and 1 stand for, with --depth-type normalized; inverted: 1 and 0",
      .commands = RENDER | INSPECT, .apply = apply_depth_range, .offset = AT(gbuffer.depth_range),
