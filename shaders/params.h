@@ -153,7 +153,8 @@
 /* What vbao guesses of the scene between its samples and behind them, and where it samples. Lengths
  * are fractions of the radius, cosines those of the angle to the eye. Found by coordinate search,
  * as tools/bench/fit-vbao does it, on solid and thin scenes together; but THICKNESS_GIVEN_GAP on
- * the scenes of tests/gpu/test_layers.c, THICKNESS_WIDER on those of test_radius.c. */
+ * the scenes of tests/gpu/test_layers.c, THICKNESS_WIDER on those of test_radius.c. These moved
+ * THICKNESS_GAP as well, from the 2.5 of the search, which could not tell the two apart. */
 #define VKAO_VBAO_REACH_SMOOTH 0.82    /* end of the last step: the smooth falloff hides the rest */
 #define VKAO_VBAO_REACH_THRESHOLD 1.08 /* samples beyond stand for what lies before them */
 /* Rise over the surface's plane, per run, up to which two samples join. */

@@ -93,11 +93,11 @@ void gbuffer_warn_of_panorama(const struct gbuffer *g, const char *path, struct 
     if (is_panorama(g))
         report_warn(report, "panorama",
                     "%s: this looks like a panorama over all directions (latlong): no perspective "
-                    "and no orthographic camera took it, and AO is wrong",
+                    "and no orthographic camera took it, and AO is wrong; render a perspective",
                     path);
     else if (is_fisheye(g))
         report_warn(report, "fisheye",
                     "%s: this looks like a fisheye: all there is lies in the circle that fills the "
-                    "image; AO of a perspective is wrong in it",
+                    "image; AO of a perspective is wrong in it, so render one",
                     path);
 }
