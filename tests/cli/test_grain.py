@@ -9,6 +9,40 @@ from evidence import depth_of, inspect
 from scene import FOV, Scene
 
 
+def texels_of(fine, size, pick):
+    """Of each square of samples what pick makes of it."""
+    height, width = fine.shape[0] // size, fine.shape[1] // size
+    squares = fine.reshape(height, size, width, size).transpose(0, 2, 1, 3)
+    return pick(squares.reshape(height, width, size * size)).astype(np.float32)
+
+
+def centres_of(fine, size):
+    return np.ascontiguousarray(fine[size // 2::size, size // 2::size].astype(np.float32))
+
+
+def neighbours(depth, pick):
+    padded = np.pad(depth, 1, mode='edge')
+    height, width = depth.shape
+    return pick(np.stack([padded[y:y + height, x:x + width] for y in range(3) for x in range(3)],
+                         axis=-1))
+
+
+def corridor(fov=100, width=320, height=180):
+    """Pillars along both walls of a corridor: narrow things between near and far ones."""
+    scene = Scene(width, height, fov=fov)
+    x, y = np.abs(scene.x), scene.y
+    with np.errstate(divide='ignore'):
+        z = np.minimum.reduce([1.5 / x, 1.4 / np.maximum(-y, 1e-9), 1.3 / np.maximum(y, 1e-9),
+                               np.full_like(x, 26.0)])
+        for k in range(10):
+            begin, end = 1.8 + 2.5 * k, 2.2 + 2.5 * k
+            is_face, side = x * begin > 1.18, 1.18 / x
+            z = np.where(is_face, np.minimum(z, begin), z)
+            is_side = ~is_face & (side > begin) & (side < end)
+            z = np.where(is_side, np.minimum(z, side), z)
+    return z.astype(np.float32)
+
+
 @cases([('whole numbers', 1 / 16, True), ('floats', 0, False)])
 def depth_in_steps_is_said(scratch, _, step, is_said):
     scene = Scene()
@@ -39,6 +73,86 @@ def blurred(depth, weights, axes):
         depth = sum(w * np.roll(depth, k, axis) for i, w in enumerate(weights)
                     for k in {i, -i}) / (weights[0] + 2 * sum(weights[1:]))
     return depth.astype(np.float32)
+
+
+def cards(width=320, height=180):
+    """Squares of all tilts, standing before a wall: depth and normals, in camera space."""
+    scene, random = Scene(width, height), np.random.default_rng(5)
+    z, normal = np.full(scene.x.shape, np.inf), np.zeros(scene.x.shape + (3,))
+    ray = np.stack([scene.x, scene.y, -np.ones_like(scene.x)], axis=-1)
+    for k in range(25):
+        n = np.append(random.uniform(-0.5, 0.5, 2), 1) if k else np.array([0.2, 0.1, 1])
+        n /= np.linalg.norm(n)
+        x, y, turn = *random.uniform(-0.5, 0.5, 2) * (1, 0.56), random.uniform(0, np.pi)
+        distance = random.uniform(3, 6) if k else 9
+        u = (scene.x - x) * np.cos(turn) + (scene.y - y) * np.sin(turn)
+        v = (scene.y - y) * np.cos(turn) - (scene.x - x) * np.sin(turn)
+        at = n @ np.array([x, y, -1]) * distance / (ray @ n)
+        inside = ((np.maximum(np.abs(u), np.abs(v)) < 0.08) | (k == 0)) & (at < z)
+        z, normal = np.where(inside, at, z), np.where(inside[..., None], n, normal)
+    return z.astype(np.float32), {f'N.{c}': normal[..., i].astype(np.float32)
+                                  for i, c in enumerate('XYZ')}
+
+
+@case
+def depth_of_a_corridor_is_not_filtered(scratch):
+    for fov in (100, 70, 50):
+        write_exr(scratch.path('in.exr'), {'Z': corridor(fov)})
+        said = str(inspect(scratch, '--fov', fov)['warnings'])
+        check('filtered' not in said, f'{fov} degrees: {said}')
+    fine, _ = cards(1600, 900)
+    write_exr(scratch.path('in.exr'), {'Z': texels_of(fine, 5, lambda s: s.mean(axis=-1))})
+    matches('depth is filtered', str(inspect(scratch, '--fov', FOV)['warnings']), 'a mean')
+
+
+PICKS = [('nearest', lambda s: s.min(axis=-1)), ('farthest', lambda s: s.max(axis=-1))]
+
+
+@cases(PICKS)
+def nearest_and_farthest_samples_are_said(scratch, which, pick):
+    # Of a pixel's own samples, borders of depth are not those of normals.
+    depth, normals = cards(1600, 900)
+    normals = {n: centres_of(v, 5) for n, v in normals.items()}
+    write_exr(scratch.path('in.exr'), {'Z': texels_of(depth, 5, pick), **normals})
+    matches(f"that of the {which} of a pixel's samples", str(inspect(scratch)['warnings']), 'said')
+    # Of neighbours too; and no ridge of a surface is a texel wide then.
+    x, y = np.meshgrid(np.arange(320), np.arange(180))
+    waves = (6 + 0.2 * np.sin(x / 7 + y / 31) * np.cos(y / 9)).astype(np.float32)
+    for channels, depth in ((normals, centres_of(depth, 5)), ({}, waves)):
+        write_exr(scratch.path('in.exr'), {'Z': neighbours(depth, pick), **channels})
+        matches("depth is that of the nearest or the farthest of 3 x 3 pixels|of a pixel's samples",
+                str(inspect(scratch, '--fov', FOV)['warnings']), 'neighbours')
+        write_exr(scratch.path('in.exr'), {'Z': depth, **channels})
+        said = str(inspect(scratch, '--fov', FOV)['warnings'])
+        check('nearest' not in said and 'bend' not in said, said)
+
+
+@cases([('right', 0, 1), ('left', 0, -1), ('below', 1, 0), ('above', -1, 0)])
+def depth_and_normals_of_different_places_are_said(scratch, where, down, right):
+    depth, normals = cards()
+    write_exr(scratch.path('in.exr'), {'Z': np.roll(depth, (down, right), (0, 1)), **normals})
+    matches(f'of different places: depth lies about a texel [^;]*{where};',
+            str(inspect(scratch, '--fov', FOV)['warnings']), 'said')
+
+
+@cases([('5', 5), ('9', 9), ('20', 20)])
+def depth_of_moving_things_is_said(scratch, _, length):
+    # A shutter that is open evenly makes even ramps, as slanted faces are in 1/z.
+    depth, normals = cards()
+    mean = sum(np.roll(depth, k, 1) for k in range(length)) / np.float32(length)
+    for channels in ({}, normals):
+        write_exr(scratch.path('in.exr'), {'Z': mean.astype(np.float32), **channels})
+        matches('depth is filtered|depth is blurred',
+                str(inspect(scratch, '--fov', FOV)['warnings']), 'said')
+
+
+@case
+def wide_blur_is_seen_beside_borders_of_normals(scratch):
+    depth, normals = cards()
+    weights = np.exp(-np.arange(40) ** 2 / 200.0)
+    write_exr(scratch.path('in.exr'), {'Z': blurred(depth, weights, (0, 1)), **normals})
+    matches('depth is blurred, or filtered: flat things bend|depth is filtered',
+            str(inspect(scratch, '--fov', FOV)['warnings']), 'said')
 
 
 BLURS = [('of a lens', [1.0, 0.7, 0.25, 0.04], (0, 1)), ('wide', np.exp(-np.arange(9) ** 2 / 18.0),

@@ -522,6 +522,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         !gbuffer_prepare_normals(g, options, normals->path, report, err))
         goto failed;
     warn_about_assumption(g, report);
+    gbuffer_warn_of_borders(g, depth->info->path, report);
     free(g->alpha);
     g->alpha = NULL;
     if ((options->want_color && !read_light(g, err)) ||

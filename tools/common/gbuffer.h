@@ -124,8 +124,9 @@ struct gbuffer {
     bool depth_is_half, depth_is_negated; /* as stored; -z, as view space has it */
     struct depth_planes planes;           /* if they were asked */
     struct background background;
-    unsigned block_size; /* of texels that are the same, as enlarging without interpolation does */
-    double noise;        /* widths of a texel that depth bends by where normals do not */
+    unsigned block_size;  /* of texels that are the same, as enlarging without interpolation does */
+    unsigned ridge_width; /* of texels whose nearest or farthest value each has, likewise */
+    double noise;         /* widths of a texel that depth bends by where normals do not */
     double filtered_share; /* [0,1] of edges with texels in between, as filters and blur do */
     enum normal_space normal_space; /* AUTO if there are no normals */
     enum normal_encoding normal_encoding;

@@ -283,7 +283,7 @@ static void warn_about_depth(const struct gbuffer *g, const char *path, struct r
                     "%s: depth is %s; at the median distance %.4g the step is %.2g: expect banding",
                     path, g->depth_is_half ? "HALF" : "in steps", g->median_z, g->depth_step);
     text_percent(share, g->filtered_share);
-    if (g->filtered_share > 0.3)
+    if (g->filtered_share > GBUFFER_MOST_FILTERED)
         report_warn(report, "filtered depth",
                     "%s: depth is filtered over edges (antialiased) or blurred: %s of them have "
                     "texels in between, where AO is wrong; render it unfiltered",
@@ -295,11 +295,17 @@ static const double most_noise = 0.25;
 
 static void warn_about_grain(const struct gbuffer *g, const char *path, struct report *report)
 {
+    const unsigned width = g->ridge_width;
     if (g->block_size > 1)
         report_warn(report, "enlarged depth",
                     "%s: depth is enlarged %u times without interpolation: AO shows its blocks; "
                     "render it at full size",
                     path, g->block_size);
+    else if (width > 1 && !(g->depth_step > 0))
+        report_warn(report, "nearest depth",
+                    "%s: depth is that of the nearest or the farthest of %u x %u pixels: nothing "
+                    "is narrower than that; AO is wrong at borders; render it unfiltered",
+                    path, width, width);
     else if (g->noise > most_noise)
         report_warn(report, "noisy depth",
                     "%s: depth is noisy: where normals say that it is flat it bends by %.2g widths "
@@ -373,12 +379,13 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
     const char *path = info->path;
     const struct role *role = &g->roles.kind[ROLE_DEPTH];
     g->depth_is_half = role->channels[0]->type == EXR_HALF;
-    g->filtered_share = gbuffer_filtered_share(g);
     g->block_size = gbuffer_block_size(g);
+    g->ridge_width = gbuffer_ridge_width(g);
     const struct stored_range stored = look_at_range(g);
     if (!gbuffer_resolve_depth_type(g, info, options, report, err) || !check_range(g, path, err) ||
         !check_planes(g, path, err))
         return false;
+    g->filtered_share = gbuffer_filtered_share(g);
     struct camera_planes planes = {g->camera.near_plane, g->camera.far_plane};
     g->view.depth_encoding = g->depth_type == DEPTH_INVERSE  ? VKAO_DEPTH_INVERSE_Z
                              : g->depth_type == DEPTH_DEVICE ? VKAO_DEPTH_PROJECTED

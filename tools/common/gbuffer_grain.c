@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * How fine a depth really is: whether it was rounded to steps, enlarged from a smaller image, or
- * sampled somewhere in each texel. AO sees ridges in all of these. */
+ * How fine a depth really is: whether it was rounded to steps, enlarged from a smaller image, made
+ * of the nearest or the farthest of neighbours, or sampled somewhere in each texel. AO sees ridges
+ * in all of these. */
 #include "gbuffer_internal.h"
 #include "median.h"
 
@@ -103,6 +104,81 @@ unsigned gbuffer_block_size(const struct gbuffer *g)
         if (has_blocks(g, block))
             return block;
     return 1;
+}
+
+/* --- Ridges --- */
+
+enum { MOST_RIDGE = 16, RIDGE_TEXELS = 1 << 20 };
+
+/* Widths of what is nearer or farther than both of its neighbours in a line, in texels. */
+struct ridges {
+    size_t count[MOST_RIDGE + 1], sum;
+};
+
+/* Texels in a row that are the same. */
+struct stretch {
+    float depth;
+    size_t length;
+};
+
+/* Slopes only: steps between things may lie in a pattern, and things that are flat are wide. */
+static bool is_slope(const struct stretch *top, const struct stretch *beside)
+{
+    return beside->length <= 2 &&
+           fabs((double)beside->depth - (double)top->depth) < 0.05 * fabs((double)top->depth);
+}
+
+static void count_ridge(const struct stretch s[3], struct ridges ridges[2])
+{
+    const bool is_low = s[1].depth < s[0].depth && s[1].depth < s[2].depth;
+    const bool is_high = s[1].depth > s[0].depth && s[1].depth > s[2].depth;
+    if ((!is_low && !is_high) || !is_slope(&s[1], &s[0]) || !is_slope(&s[1], &s[2]))
+        return;
+    ridges[is_high].count[s[1].length < MOST_RIDGE ? s[1].length : MOST_RIDGE]++;
+    ridges[is_high].sum++;
+}
+
+static void look_for_ridges(const float *line, size_t step, size_t count, struct ridges ridges[2])
+{
+    struct stretch s[3] = {{0}};
+    for (size_t i = 0; i < count; i++) {
+        const float d = line[i * step];
+        if (i > 0 && d <= s[2].depth && d >= s[2].depth) {
+            s[2].length++;
+            continue;
+        }
+        if (s[0].length > 0)
+            count_ridge(s, ridges);
+        s[0] = s[1];
+        s[1] = s[2];
+        s[2] = (struct stretch){d, 1};
+    }
+}
+
+/* The least width, if hardly any ridge is narrower and many are just as wide: 2 or more is what a
+ * filter of minima or maxima makes of surfaces, which have ridges of a texel. */
+static unsigned least_width(const struct ridges *r)
+{
+    enum { FEW_RIDGES = 50 };
+    size_t narrower = 0;
+    for (unsigned width = 1; r->sum >= FEW_RIDGES && width < MOST_RIDGE; width++) {
+        if (r->count[width] * 100 > r->sum)
+            return narrower * 100 <= r->sum && r->count[width] * 5 > r->sum * 2 ? width : 1;
+        narrower += r->count[width];
+    }
+    return 1;
+}
+
+unsigned gbuffer_ridge_width(const struct gbuffer *g)
+{
+    struct ridges ridges[2] = {{{0}}};
+    const size_t skip = gbuffer_texels(g) / RIDGE_TEXELS + 1;
+    for (size_t y = 0; y < g->height; y += skip)
+        look_for_ridges(g->depth + y * g->width, 1, g->width, ridges);
+    for (size_t x = 0; x < g->width; x += skip)
+        look_for_ridges(g->depth + x, g->width, g->height, ridges);
+    const unsigned low = least_width(&ridges[0]), high = least_width(&ridges[1]);
+    return high > low ? high : low;
 }
 
 /* --- Noise --- */

@@ -12,6 +12,8 @@
 
 /* Statistics look at this many texels at most, spread evenly. */
 enum { GBUFFER_MAX_SAMPLES = 1 << 18 };
+/* Of edges with texels in between; more is said. */
+#define GBUFFER_MOST_FILTERED 0.3
 
 static inline size_t gbuffer_texels(const struct gbuffer *g)
 {
@@ -91,8 +93,13 @@ double gbuffer_filtered_share(const struct gbuffer *g);
 bool gbuffer_find_step(const struct gbuffer *g, double *step);
 /* Of depth as stored: 1, or what it was enlarged by without interpolation. */
 unsigned gbuffer_block_size(const struct gbuffer *g);
+/* Of depth as stored: 1, or the side of the square whose nearest or farthest value each texel
+ * has. */
+unsigned gbuffer_ridge_width(const struct gbuffer *g);
 /* Of depth as prepared, unless a camera is given by hand. */
 void gbuffer_warn_of_panorama(const struct gbuffer *g, const char *path, struct report *report);
+/* Of depth as prepared and the normals that are used, if any. */
+void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct report *report);
 /* By how many widths of a texel depth, as prepared, bends where stored normals are alike: a median,
  * 0 where there are few of them. False if memory ran out. */
 bool gbuffer_measure_noise(const struct gbuffer *g, double *noise);
