@@ -269,6 +269,25 @@ def depth_from_a_near_plane_is_said(scratch, _, share, is_said):
     equal('looks measured from a near plane' in said, is_said, f'whether it is in {said}')
 
 
+CURVES = [('square root', np.sqrt, 'to the power of about 0.5:'), ('square', np.square, 'power of about (1.9|2):'),
+          ('of a picture', lambda z: 9 * (z / 9) ** (1 / 2.2), 'power of about 0.4[56]:'),
+          ('logarithm', lambda z: np.log(z * 10), 'the logarithm'), ('none', lambda z: z, '')]
+
+
+@cases(CURVES)
+def bent_depth_is_said(scratch, _, bend, said):
+    scene = Scene()
+    depth = bend(np.where(scene.sky, 1e10, scene.z)).astype(np.float32)
+    for channels, options in (({}, ('--fov', FOV)), (scene.normals(space='world'), ()),
+                              (scene.normals(), ('--fov', FOV))):
+        write_exr(scratch.path('in.exr'), {'Z': depth, **channels})
+        warnings = str(inspect(scratch, *options)['warnings'])
+        if said:
+            matches(f"depth 'Z' looks like .*{said}", warnings, 'the warnings')
+        else:
+            check('looks like' not in warnings, warnings)
+
+
 @case
 def steps_of_a_wall_are_no_offset(scratch):
     # Every edge of a relief in two depths bends as much: not as planes do.

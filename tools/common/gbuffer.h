@@ -57,6 +57,8 @@ struct depth_planes {
     size_t count;
     double planar, radial, linear; /* linear: 1/planar, depth buffers, orthographic */
     double offset_share, offset;   /* depth + offset is planar */
+    double power_share, power;     /* depth is planar to that power */
+    double logarithm_share;        /* depth is the logarithm of planar, to any base */
 };
 /* Normalised depth: 0 and 1 are these distances. */
 struct depth_range {

@@ -385,6 +385,9 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
     if (!gbuffer_resolve_depth_type(g, info, options, report, err) || !check_range(g, path, err) ||
         !check_planes(g, path, err))
         return false;
+    if (options->depth_type == DEPTH_AUTO && g->depth_source != DEPTH_BY_POSITIONS &&
+        !gbuffer_warn_of_curve(g, path, report))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     g->filtered_share = gbuffer_filtered_share(g);
     struct camera_planes planes = {g->camera.near_plane, g->camera.far_plane};
     g->view.depth_encoding = g->depth_type == DEPTH_INVERSE  ? VKAO_DEPTH_INVERSE_Z

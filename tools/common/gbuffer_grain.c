@@ -171,7 +171,7 @@ static unsigned least_width(const struct ridges *r)
 
 unsigned gbuffer_ridge_width(const struct gbuffer *g)
 {
-    struct ridges ridges[2] = {{{0}}};
+    struct ridges ridges[2] = {0};
     const size_t skip = gbuffer_texels(g) / RIDGE_TEXELS + 1;
     for (size_t y = 0; y < g->height; y += skip)
         look_for_ridges(g->depth + y * g->width, 1, g->width, ridges);

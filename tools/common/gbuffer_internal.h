@@ -87,6 +87,9 @@ bool gbuffer_find_background(struct gbuffer *g, const struct gbuffer_options *op
 
 /* Needs depth as stored and its background. False if memory ran out. */
 bool gbuffer_read_planes(const struct gbuffer *g, struct depth_planes *planes);
+/* Of depth as stored that was bent by gamma or a logarithm, which the planes tell. False if memory
+ * ran out. */
+bool gbuffer_warn_of_curve(struct gbuffer *g, const char *path, struct report *report);
 /* Share of edges of the depth, as stored, that have a texel in between, as filters make them. */
 double gbuffer_filtered_share(const struct gbuffer *g);
 /* The step of depth, as stored, that all of it is multiples of, or 0. False if memory ran out. */

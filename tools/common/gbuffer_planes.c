@@ -4,11 +4,13 @@
  * the one in the middle is the harmonic mean of the others if depth is a distance along the view
  * axis, and the arithmetic mean if it is one over that, or of a depth buffer, or seen without
  * perspective. Where depth was moved by an offset c, as normalised depth is, it is something in
- * between which tells c. Distances from the eye are the first once they are divided by the length
+ * between which tells c. Where it was bent, as by gamma, it is the same anywhere: of the square root
+ * of a distance 3/2. Of its logarithm it grows with depth. Distances from the eye are the first once they are divided by the length
  * of their ray. Curved things tell anything, each something else. */
 #include "gbuffer_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -134,6 +136,40 @@ static double best_offset(const struct triple *triples, size_t count, double *of
     return best;
 }
 
+/* The mean of those that say nearly this. */
+static double mean_near(const struct triple *triples, size_t count, double place)
+{
+    double sum = 0;
+    size_t near_it = 0;
+    for (size_t i = 0; i < count; i++)
+        if (fabs(triples[i].planar - place) < tolerance) {
+            sum += triples[i].planar;
+            near_it++;
+        }
+    return near_it ? sum / (double)near_it : place;
+}
+
+/* Depth that is a power of the distance, or its logarithm: place is then the same, or a multiple of
+ * depth. */
+static void read_curves(const struct triple *triples, size_t count, struct depth_planes *planes)
+{
+    for (size_t k = 0; k < OFFSETS; k++) {
+        const struct triple *t = &triples[k * count / OFFSETS];
+        const double exponent = 1.0 / (2.0 * t->planar - 1.0), slope = t->planar / t->depth;
+        size_t near_it = 0;
+        const double share = share_near(triples, count, t->planar, false);
+        /* What is nearly 1 is 1, and nobody bends depth as much as this. */
+        if (exponent > 0.2 && exponent < 5.0 && fabs(t->planar - 1.0) > 2.0 * tolerance &&
+            share > planes->power_share) {
+            planes->power_share = share;
+            planes->power = 1.0 / (2.0 * mean_near(triples, count, t->planar) - 1.0);
+        }
+        for (size_t i = 0; slope > 0 && i < count; i++)
+            near_it += fabs(triples[i].planar - slope * triples[i].depth) < tolerance;
+        planes->logarithm_share = fmax(planes->logarithm_share, (double)near_it / (double)count);
+    }
+}
+
 bool gbuffer_read_planes(const struct gbuffer *g, struct depth_planes *planes)
 {
     struct triple *triples = malloc(MOST_TRIPLES * sizeof *triples);
@@ -149,8 +185,29 @@ bool gbuffer_read_planes(const struct gbuffer *g, struct depth_planes *planes)
         planes->linear = share_near(triples, count, 0.0, false);
         planes->radial = share_near(triples, count, 1.0, true);
         planes->offset_share = best_offset(triples, count, &planes->offset);
+        read_curves(triples, count, planes);
     }
     planes->count = count;
     free(triples);
+    return true;
+}
+
+bool gbuffer_warn_of_curve(struct gbuffer *g, const char *path, struct report *report)
+{
+    static const double least = 0.25, least_of_logarithm = 0.4, more = 1.5;
+    struct depth_planes *p = &g->planes;
+    char what[64] = "";
+    if (p->count == 0 && !gbuffer_read_planes(g, p))
+        return false;
+    const double other = more * fmax(fmax(p->planar, p->linear), fmax(p->radial, p->offset_share));
+    if (p->power_share >= least && p->power_share > other && p->power_share >= p->logarithm_share)
+        snprintf(what, sizeof what, "a distance to the power of about %.2g", p->power);
+    else if (p->logarithm_share >= least_of_logarithm && p->logarithm_share > other)
+        snprintf(what, sizeof what, "the logarithm of a distance");
+    if (what[0])
+        report_warn(report, "curved depth",
+                    "%s: depth '%s' looks like %s: flat things are flat only then, and camera and "
+                    "AO are wrong; write it as a distance, without any curve",
+                    path, g->roles.kind[ROLE_DEPTH].label, what);
     return true;
 }
