@@ -136,7 +136,7 @@ static vkao_result read_device(vkao_context *ctx)
                            "the device has Vulkan %u.%u, want 1.1 or later",
                            VK_API_VERSION_MAJOR(properties.apiVersion),
                            VK_API_VERSION_MINOR(properties.apiVersion));
-    ctx->max_dimension = properties.limits.maxImageDimension2D;
+    ctx->max_image = ctx->max_dimension = properties.limits.maxImageDimension2D;
     /* shaders/params.h packs texel coordinates to 16 bits */
     if (ctx->max_dimension > UINT16_MAX)
         ctx->max_dimension = UINT16_MAX;

@@ -19,10 +19,11 @@ struct vkao_context {
     VkPhysicalDeviceMemoryProperties memory;
     VkAllocationCallbacks allocator_copy;
     const VkAllocationCallbacks *allocator; /* &allocator_copy or NULL */
-    uint32_t max_dimension;
-    uint32_t max_texels, max_buffer; /* of a texel buffer; bytes of a storage buffer */
-    VkDeviceSize granularity;        /* between images and buffers in one memory */
-    bool is_cpu;                     /* and can do what the CPU's passes want */
+    uint32_t max_image;                     /* maxImageDimension2D */
+    uint32_t max_dimension;                 /* of a frame */
+    uint32_t max_texels, max_buffer;        /* of a texel buffer; bytes of a storage buffer */
+    VkDeviceSize granularity;               /* between images and buffers in one memory */
+    bool is_cpu;                            /* and can do what the CPU's passes want */
     bool has_16bit_storage;
     /* Effects and frames that live. The only member that changes; a pointer, so that contexts can
      * be const. */

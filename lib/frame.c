@@ -15,15 +15,31 @@ static VkFormat ao_scratch_format(const vkao_context *ctx)
                                                        : VK_FORMAT_R32_SFLOAT;
 }
 
+uint32_t vkao_view_z_columns(uint32_t width)
+{
+    return (width + VKAO_VIEW_Z_BLOCKS - 1) / VKAO_VIEW_Z_BLOCKS + 2;
+}
+
+VkExtent2D vkao_view_z_extent(VkExtent2D grid)
+{
+    return (VkExtent2D){vkao_view_z_columns(grid.width) * VKAO_VIEW_Z_BLOCKS,
+                        grid.height + 2 * VKAO_VIEW_Z_BORDER};
+}
+
+static VkExtent2D grid_of(const vkao_frame *frame)
+{
+    const uint32_t shift = frame->program->settings.half_resolution;
+    return (VkExtent2D){(frame->extent.width + shift) >> shift,
+                        (frame->extent.height + shift) >> shift};
+}
+
 /* AO that COMPOSITE reads has the image's resolution, all else that of the grid. */
 static void plan_images(const vkao_frame *frame, struct vkao_scratch_plan *plan)
 {
     const struct vkao_program *program = frame->program;
     const VkFormat ao = ao_scratch_format(frame->ctx),
                    blurred = program->settings.bent_normals ? VK_FORMAT_R16G16B16A16_SFLOAT : ao;
-    const uint32_t shift = program->settings.half_resolution, border = 2 * VKAO_VIEW_Z_BORDER;
-    const VkExtent2D grid = {(frame->extent.width + shift) >> shift,
-                             (frame->extent.height + shift) >> shift};
+    const VkExtent2D grid = grid_of(frame), view_z = vkao_view_z_extent(grid);
     const uint32_t halfway_rows =
         program->is_cpu ? vkao_cpu_halfway_rows(grid.height) : grid.height;
     const struct {
@@ -35,8 +51,8 @@ static void plan_images(const vkao_frame *frame, struct vkao_scratch_plan *plan)
         {VKAO_RESOURCE_CODES, VKAO_CODES_FORMAT, grid},
         {VKAO_RESOURCE_BENT_CODES, VKAO_BENT_CODES_FORMAT, grid},
         {VKAO_RESOURCE_AO, ao, frame->extent},
-        {VKAO_RESOURCE_VIEW_Z, VK_FORMAT_R32_SFLOAT, {grid.width + border, grid.height + border}},
-        {VKAO_RESOURCE_SECOND_Z, VK_FORMAT_R32_SFLOAT, {grid.width + border, grid.height + border}},
+        {VKAO_RESOURCE_VIEW_Z, VK_FORMAT_R32_SFLOAT, view_z},
+        {VKAO_RESOURCE_SECOND_Z, VK_FORMAT_R32_SFLOAT, view_z},
         {VKAO_RESOURCE_HALFWAY, blurred, {grid.width, halfway_rows}},
         {VKAO_RESOURCE_BLURRED, blurred, grid},
         {VKAO_RESOURCE_BREAKS_X, VK_FORMAT_R32_UINT, {(grid.width + 31) / 32, grid.height}},
@@ -259,6 +275,13 @@ static vkao_result describe(const vkao_effect *effect, const vkao_frame_info *ca
         vkao_program_plan(own, ctx, &program->settings, false);
         frame->program = own;
     }
+    const VkExtent2D view_z = vkao_view_z_extent(grid_of(frame));
+    if (!frame->program->is_cpu && vkao_makes_ao(&program->settings) &&
+        (view_z.width > ctx->max_image || view_z.height > ctx->max_image))
+        return vkao_refuse(&ctx->log, VKAO_ERROR_UNSUPPORTED,
+                           "frame.extent is %ux%u, for which view z takes %ux%u; the limit is %u",
+                           info->extent.width, info->extent.height, view_z.width, view_z.height,
+                           ctx->max_image);
     frame->copies = frame->program->is_packed && frame->images.ao.image;
     return vkao_slots_check(frame->program, &frame->images, need_views);
 }

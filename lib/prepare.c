@@ -115,6 +115,9 @@ void vkao_prepare_constants(const struct vkao_recording *r, const vkao_params *p
                                            : (float)VKAO_VBAO_BREAK_LEAST;
     out->width_reach = image->orthographic ? (float)VKAO_VBAO_WIDTH_REACH_RADII * radius
                                            : (float)VKAO_VBAO_WIDTH_REACH;
+    out->view_z_columns = vkao_view_z_columns(vkao_area(r, VKAO_AREA_WHOLE).x1);
+    out->view_z_pitch = (float)(out->view_z_columns * VKAO_VIEW_Z_BLOCKS - 1);
+    out->view_z_last = (float)out->view_z_columns - 1.0f / (float)VKAO_VIEW_Z_BLOCKS;
     const bool far_is_one = image->far_depth > 0.5f;
     memcpy(out->image_unproject, image->unproject, sizeof out->image_unproject);
     memcpy(out->unproject, grid->unproject, sizeof out->unproject);

@@ -130,9 +130,11 @@ static void record_pass(const struct vkao_recording *r, uint32_t pass)
     struct vkao_rect rect = vkao_area(r, row->area);
     struct vkao_dispatch push;
     vkao_rect_pack(rect, push.rect);
-    if (row->area <= VKAO_AREA_VALID) /* and the border, which begins before the first texel */
-        rect = (struct vkao_rect){0, 0, rect.x1 - rect.x0 + 2 * VKAO_VIEW_Z_BORDER,
-                                  rect.y1 - rect.y0 + 2 * VKAO_VIEW_Z_BORDER};
+    if (row->area <= VKAO_AREA_VALID) { /* and the border, which begins before the first texel */
+        const VkExtent2D extent =
+            vkao_view_z_extent((VkExtent2D){rect.x1 - rect.x0, rect.y1 - rect.y0});
+        rect = (struct vkao_rect){0, 0, extent.width, extent.height};
+    }
     vkao_bind(r, pass, &push, sizeof push);
     vkao_dispatch(r, pass, rect);
 }

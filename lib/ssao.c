@@ -16,7 +16,8 @@
         VKAO_CODE(vkao_ssao_##method),                                                             \
         .uses = {VKAO_READS_VIEW_Z, VKAO_READS(NORMALS, NORMALS), VKAO_READS(SECOND_Z, SECOND_Z),  \
                  VKAO_WRITES(TARGET, AO_NOISY), VKAO_WRITES(BENT_TARGET, BENT_CODES)},             \
-        .area = VKAO_AREA_AROUND, VKAO_ONE_TEXEL, .forms = 1,                                      \
+        .area = VKAO_AREA_AROUND, .texels = {1, 1},                                                \
+        .group = {VKAO_SSAO_GROUP_WIDTH, VKAO_SSAO_GROUP_HEIGHT}, .forms = 1,                      \
     }
 static const struct vkao_pass methods[] = {
     [VKAO_SSAO_SPHERE] = METHOD(sphere), [VKAO_SSAO_HEMISPHERE] = METHOD(hemisphere),

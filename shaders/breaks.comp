@@ -3,7 +3,7 @@
  * Where depth breaks between a texel and the next one of its row, and of its column, in words of
  * 32 bits: what width.comp counts. A bit stands for 1 << shift texels, so that the words of a row
  * are those of one, two, four ... groups side by side, which share out the rows; likewise
- * columns. An invocation takes parts of two lines side by side, as gathers have them. */
+ * columns. An invocation takes parts of two lines side by side, as gathers of rows have them. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
@@ -21,8 +21,8 @@ layout(push_constant) uniform Block { vkao_dispatch here; };
 layout(binding = VKAO_BINDING_BREAKS_X_WRITE) uniform writeonly uimage2D breaks_x_image;
 layout(binding = VKAO_BINDING_BREAKS_Y_WRITE) uniform writeonly uimage2D breaks_y_image;
 
-/* Texels of a line that an invocation takes at once, and what it reads of it, in pairs: one before
- * them, and two behind. */
+/* Texels of a line that an invocation takes at once, and what it reads of it: one before them, two
+ * behind, and one that comes with a gather. */
 const int RUN = 8, FOLDS = 3, READ = RUN + 4;
 
 /* Of the rows and of the columns that the group has. */
@@ -57,6 +57,30 @@ bool breaks(float before, float z, float next, float behind)
     return abs(next - z) > break_limit(before, z, next, behind) || next > 0.5 * NOTHING;
 }
 
+/* View z of READ texels of a line and of the next one, from a texel on. */
+void read_lines(bool vertical, ivec2 first, out vec2 z[READ])
+{
+    if (vertical) {
+        [[unroll]] for (int k = 0; k < READ; k += 2) {
+            vec4 left = gather_view_z(first + ivec2(0, k)),
+                 right = gather_view_z(first + ivec2(1, k));
+            z[k] = vec2(left.w, right.w);
+            z[k + 1] = vec2(left.x, right.x);
+        }
+    } else {
+        const int next = int(BLOCKS);
+        [[unroll]] for (int k = 0; k < next; ++k) {
+            vec4 two = gather_view_z(first + ivec2(k, 0)),
+                 third = gather_view_z(first + ivec2(k + 2 * next, 0));
+            z[k] = two.wx;
+            z[k + next] = two.zy;
+            z[k + 2 * next] = third.wx;
+        }
+    }
+    [[unroll]] for (int k = 0; k < READ; ++k)
+        z[k] = mix(vec2(NOTHING), z[k], greaterThan(z[k], vec2(0.0)));
+}
+
 void find_breaks(Lines l, int thread, ivec2 low, ivec2 high)
 {
     const int which = l.vertical ? 1 : 0;
@@ -65,15 +89,8 @@ void find_breaks(Lines l, int thread, ivec2 low, ivec2 high)
         /* Threads side by side have lines side by side. */
         int line = 2 * (i & (1 << pairs) - 1), step = RUN * (i >> pairs);
         int along = (l.word * WORD << l.shift) + step;
-        vec2 z[READ]; /* of both lines */
-        [[unroll]] for (int k = 0; k < READ; k += 2) {
-            vec2 middle = vec2(low + texel_of(l, along + k, l.first + line + 1));
-            vec4 four = textureGather(sampler2D(view_z_image, nearest),
-                                      middle + float(VKAO_VIEW_Z_BORDER));
-            four = mix(vec4(NOTHING), four, greaterThan(four, vec4(0.0)));
-            z[k] = l.vertical ? four.wz : four.wx;
-            z[k + 1] = l.vertical ? four.xy : four.zy;
-        }
+        vec2 z[READ];
+        read_lines(l.vertical, low + texel_of(l, along - 1, l.first + line), z);
         uvec2 bits = uvec2(0u);
         [[unroll]] for (int k = 0; k < RUN; ++k)
             bits |= uvec2(breaks(z[k].x, z[k + 1].x, z[k + 2].x, z[k + 3].x) ? 1u << k : 0u,

@@ -34,6 +34,10 @@ Slice make_slice(float turn, vec3 position, vec3 normal, Plane plane, vec3 to_ey
     Slice s;
     vec3 d = vec3(half_turn_x(turn), half_turn_y(turn), 0.0);
     vec2 texels = d.xy * params.inverse_unproject; /* of a scene unit at unit distance */
+    /* Either direction is the slice's. To the right its samples have one edge to leave by. */
+    bool is_left = texels.x < 0.0;
+    d = is_left ? -d : d;
+    texels = is_left ? -texels : texels;
     float length2 = dot(texels, texels), per_texel = inversesqrt(length2);
     s.step = product(texels, vec2(per_texel));
     s.texels = length2 * per_texel * (ORTHOGRAPHIC ? 1.0 : 1.0 / position.z);
@@ -89,7 +93,7 @@ vec2 step_offset(Slice s, Steps steps, uint t, float least)
 /* View z of the texels at +offset and -offset. */
 vec2 load_sides(vec2 texel, vec2 offset)
 {
-    return vec2(load_view_z_at(texel + offset), load_view_z_at(texel - offset));
+    return load_sides_from(view_z_image, texel, offset);
 }
 
 /* x of them, were they as far away as z. */

@@ -25,6 +25,11 @@
 #define VKAO_GROUP_WIDTH 16
 #define VKAO_GROUP_HEIGHT 8
 
+/* Texels of a group of SSAO on a GPU: VKAO_GROUP_WIDTH columns of each block of view z
+ * (gpu/columns.glsl). */
+#define VKAO_SSAO_GROUP_WIDTH (VKAO_GROUP_WIDTH * VKAO_VIEW_Z_BLOCKS)
+#define VKAO_SSAO_GROUP_HEIGHT (VKAO_GROUP_HEIGHT / VKAO_VIEW_Z_BLOCKS)
+
 /* Set 0. A pass has those that its row names; the CPU's own come after these
  * (shaders/cpu/layout.h). */
 #define VKAO_BINDING_CONSTANTS 0
@@ -119,6 +124,9 @@
 /* Texels of zeros around view z, so that taps outside read background without a test: around the
  * valid ones on a CPU, around the image on a GPU, where all that is not valid is zero too. */
 #define VKAO_VIEW_Z_BORDER 1
+/* Of a GPU: the blocks that columns are dealt to (shaders/gpu/columns.glsl), and so the width of
+ * the border in texels. As long as a tile of the noise. */
+#define VKAO_VIEW_Z_BLOCKS 4
 
 /* Values of the public enums that shaders test; the stages' C files assert that they are equal. */
 #define VKAO_GLSL_DEPTH_PROJECTED 0
@@ -259,6 +267,9 @@ struct vkao_constants {
     VKAO_FLOAT(thickness_slope);
     VKAO_FLOAT(power);
     VKAO_FLOAT(debug_distance);
+    VKAO_FLOAT(view_z_pitch); /* see shaders/gpu/view_z.glsl */
+    VKAO_FLOAT(view_z_last);
+    VKAO_UINT(view_z_columns); /* of a block */
     VKAO_UINT(slices);
     VKAO_UINT(steps);
     VKAO_UINT(samples);

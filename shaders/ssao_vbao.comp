@@ -166,7 +166,7 @@ vec3 hidden(Slice s, ivec2 texel, float center_z, float jitter)
         vec2 offset = step_offset(s, steps, t, VKAO_VBAO_STEP_LEAST), at = vec2(texel);
         hide(march, first, s, m, b, center_z, offset, load_sides(at, offset), IS_GIVEN);
         if (SECOND_LAYER) {
-            vec2 z = vec2(load_second_z_at(at + offset), load_second_z_at(at - offset));
+            vec2 z = load_second_sides(at, offset);
             hide(march, second, s, m, b, center_z, offset, z, IS_GIVEN);
         }
         if (++t >= step_count())

@@ -12,6 +12,7 @@ layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_dispatch here; };
 #include "settings.glsl"
 layout(binding = VKAO_BINDING_VIEW_Z_WRITE, r32f) uniform image2D view_z_image;
+#include "columns.glsl"
 #include "depth.glsl"
 #include "thickness.glsl"
 
@@ -29,10 +30,11 @@ void main()
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + low;
     if (any(greaterThanEqual(texel, high)))
         return;
-    float z = imageLoad(view_z_image, texel + VKAO_VIEW_Z_BORDER).x;
+    ivec2 place = view_z_place(texel);
+    float z = imageLoad(view_z_image, place).x;
     float thickness = given_thickness(texel << GRID_SHIFT, z) * params.inverse_radius;
     bool is_known = thickness > 0.0 && thickness < VKAO_THICKNESS_MOST;
     if (z > 0.0)
-        imageStore(view_z_image, texel + VKAO_VIEW_Z_BORDER,
+        imageStore(view_z_image, place,
                    vec4(with_code(z, is_known ? thickness : VKAO_THICKNESS_MOST)));
 }

@@ -35,7 +35,8 @@ struct Corner {
 void load_corners(ivec2 first, out Corner corners[2][2])
 {
     vec2 middle = vec2(first) + 1.0;
-    vec4 z = textureGather(sampler2D(view_z_image, nearest), middle + float(VKAO_VIEW_Z_BORDER));
+    vec4 left = gather_view_z(first), right = gather_view_z(first + ivec2(1, 0));
+    vec4 z = vec4(left.x, right.xw, left.w); /* as a gather of neighbours has them */
     vec4 open = vec4(0.0);
     if (!BENT_NORMALS)
         open = textureGather(sampler2D(half_image, nearest), middle);

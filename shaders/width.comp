@@ -13,6 +13,7 @@
 layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
 layout(push_constant) uniform Block { vkao_dispatch here; };
 #include "settings.glsl"
+#include "columns.glsl"
 #include "thickness.glsl"
 
 layout(binding = VKAO_BINDING_BREAKS_X) uniform utexture2D breaks_x_image;
@@ -68,10 +69,12 @@ void main()
     clear_outside(rows, word.x, words.x);
     clear_outside(columns, word.y, words.y);
     /* One beyond the last texel is of the border, and no surface either. */
-    ivec2 to = low + texel + VKAO_VIEW_Z_BORDER;
+    ivec2 first = view_z_place(low + texel), right = view_z_place(low + texel + ivec2(1, 0));
+    ivec2 places[2][2] = ivec2[2][2](ivec2[2](first, right),
+                                     ivec2[2](first + ivec2(0, 1), right + ivec2(0, 1)));
     float z[2][2];
     [[unroll]] for (int i = 0; i < 4; ++i)
-        z[i >> 1][i & 1] = imageLoad(view_z_image, to + ivec2(i & 1, i >> 1)).x;
+        z[i >> 1][i & 1] = imageLoad(view_z_image, places[i >> 1][i & 1]).x;
     [[unroll]] for (int i = 0; i < 4; ++i) {
         int x = i & 1, y = i >> 1;
         ivec2 bit = ((texel + ivec2(x, y)) >> reach.shift) & 31;
@@ -79,7 +82,7 @@ void main()
             run_of(rows.before[y], rows.here[y], rows.after[y], bit.x, uint(reach.steps.x));
         int along_y = run_of(columns.before[x], columns.here[x], columns.after[x], bit.y,
                              uint(reach.steps.y));
-        imageStore(view_z_image, to + ivec2(x, y),
+        imageStore(view_z_image, places[y][x],
                    vec4(with_thickness(z[y][x], along_x, along_y, reach)));
     }
 }

@@ -456,8 +456,10 @@ typedef struct vkao_frame vkao_frame;
 
 typedef struct vkao_frame_info {
     uint32_t struct_size;
-    uint32_t padding;          /* zero */
-    VkExtent2D extent;         /* texels; size of every image, 1..maxImageDimension2D */
+    uint32_t padding; /* zero */
+    /* texels; size of every image, at least 1, at most maxImageDimension2D; on a GPU, 8 columns and
+     * 2 rows less than that, as scratch images have a border */
+    VkExtent2D extent;
     const vkao_images *images; /* read during the call only */
     /* Place scratch here instead of allocating: DEVICE_LOCAL memory satisfying
      * vkao_frame_scratch(), kept until destroy. Frames on one queue may share it, and you may alias

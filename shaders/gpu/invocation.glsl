@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * SSAO of a GPU: groups are near squares, as their lanes share caches; one texel per invocation,
- * into an image. */
+ * SSAO of a GPU: one texel per invocation, into an image. A group has its texels block by block of
+ * columns (see columns.glsl), so that invocations side by side read what lies side by side. */
 #include "bent_code.glsl"
 #include "visibility_code.glsl"
 
@@ -11,7 +11,11 @@ layout(binding = VKAO_BINDING_BENT_TARGET) uniform writeonly image2D bent_image;
 
 void main()
 {
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) + unpack_texel(here.rect.x);
+    uvec2 in_group = gl_LocalInvocationID.xy;
+    uint block = in_group.y / VKAO_SSAO_GROUP_HEIGHT, row = in_group.y % VKAO_SSAO_GROUP_HEIGHT;
+    uvec2 origin = gl_WorkGroupID.xy * uvec2(VKAO_SSAO_GROUP_WIDTH, VKAO_SSAO_GROUP_HEIGHT);
+    origin += uvec2(in_group.x * BLOCKS + block, row);
+    ivec2 texel = unpack_texel(here.rect.x) + ivec2(origin);
     if (any(greaterThanEqual(texel, unpack_texel(here.rect.y))))
         return;
     Visibility v = shade(texel);

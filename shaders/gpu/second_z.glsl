@@ -3,16 +3,20 @@
  * View z of the second layer of depth, an image as the first one's. */
 layout(binding = VKAO_BINDING_SECOND_Z) uniform texture2D second_z_image;
 
-/* As load_view_z_at. Where thickness is given the second layer has none of its own, and vbao takes
- * it to be thin. */
-float load_second_z_at(vec2 texel)
+/* Where thickness is given the second layer has none of its own, and vbao takes it to be thin. */
+float without_thickness(float z)
 {
-    vec2 at = texel + (VKAO_VIEW_Z_BORDER + 0.5);
-    float z = textureLod(sampler2D(second_z_image, nearest), at, 0.0).x;
     return IS_GIVEN ? intBitsToFloat(floatBitsToInt(z) & ~THICKNESS_MASK) : z;
 }
 
 float load_second_z(ivec2 texel)
 {
-    return load_second_z_at(vec2(texel));
+    return without_thickness(load_from(second_z_image, vec2(texel)));
+}
+
+/* As load_sides. */
+vec2 load_second_sides(vec2 texel, vec2 offset)
+{
+    vec2 z = load_sides_from(second_z_image, texel, offset);
+    return vec2(without_thickness(z.x), without_thickness(z.y));
 }

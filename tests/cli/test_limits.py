@@ -122,6 +122,17 @@ def images_that_no_device_holds_are_refused_by_name(scratch, _, size):
                   'in.exr', '-o', 'ao.exr', '--device', 'cpu', hint='crop or scale')
 
 
+@case
+def a_gpu_wants_room_for_a_border_and_a_cpu_does_not(scratch):
+    write_exr(scratch.path('in.exr'), grey(16384, 2))
+    on_gpu = scratch.run('in.exr', '-o', 'ao.exr', *VIEW, env={'VKAO_PATH': 'images'})
+    equal(on_gpu.code, DEVICE, f'exit code of: {on_gpu}\n')
+    matches(r'16384x2, for which view z takes 16392x4; the limit is 16384', on_gpu.stderr, 'limit')
+    matches(r'crop or scale the image, or take --device cpu', on_gpu.stderr, 'the hint')
+    equal(scratch.files(), ['in.exr'], 'files')
+    scratch.render('in.exr', '-o', 'ao.exr', *VIEW)
+
+
 # --- Frames ---
 
 @case

@@ -178,7 +178,12 @@ FAKE_CREATE(PipelineLayout, PIPELINE_LAYOUT, {
 FAKE_DESTROY(PipelineLayout, PIPELINE_LAYOUT)
 FAKE_CREATE(DescriptorPool, DESCRIPTOR_POOL, {})
 FAKE_DESTROY(DescriptorPool, DESCRIPTOR_POOL)
-FAKE_CREATE(Image, IMAGE, { call->image = object->image = *info; })
+FAKE_CREATE(Image, IMAGE, {
+    call->image = object->image = *info;
+    const VkExtent3D extent = info->extent;
+    if (extent.width > fake->max_dimension || extent.height > fake->max_dimension)
+        fake_misuse(fake, "vkCreateImage: larger than maxImageDimension2D");
+})
 FAKE_DESTROY(Image, IMAGE)
 FAKE_CREATE(ImageView, IMAGE_VIEW, {
     const struct fake_object *image =

@@ -260,18 +260,20 @@ static void vbao_has_two_passes_more(void **state)
     assert_true(bytes[1] >= bytes[0]);
 }
 
-/* Groups cover the rect and a border, and not one more; the rect that shaders test is the rect
- * itself. */
-static void check_cover(const struct world *w, size_t index, struct vkao_rect want, uint32_t border)
+/* Groups of that size cover the rect and a border, and not one more; the rect that shaders test is
+ * the rect itself. */
+static void check_cover(const struct world *w, size_t index, struct vkao_rect want,
+                        VkExtent2D border, VkExtent2D group)
 {
     const struct fake_call *dispatch = fake_nth(&w->fake, "vkCmdDispatch", index);
     const struct fake_call *push = fake_nth(&w->fake, "vkCmdPushConstants", index);
     assert_non_null(dispatch);
-    const uint32_t width = want.x1 - want.x0 + 2 * border, height = want.y1 - want.y0 + 2 * border;
-    assert_true(dispatch->groups[0] * VKAO_GROUP_WIDTH >= width);
-    assert_true((dispatch->groups[0] - 1) * VKAO_GROUP_WIDTH < width);
-    assert_true(dispatch->groups[1] * VKAO_GROUP_HEIGHT >= height);
-    assert_true((dispatch->groups[1] - 1) * VKAO_GROUP_HEIGHT < height);
+    const uint32_t width = want.x1 - want.x0 + border.width,
+                   height = want.y1 - want.y0 + border.height;
+    assert_true(dispatch->groups[0] * group.width >= width);
+    assert_true((dispatch->groups[0] - 1) * group.width < width);
+    assert_true(dispatch->groups[1] * group.height >= height);
+    assert_true((dispatch->groups[1] - 1) * group.height < height);
     assert_int_equal(dispatch->groups[2], 1);
     uint32_t packed[2];
     vkao_rect_pack(want, packed);
@@ -315,11 +317,13 @@ static void dispatch_covers_the_rect_exactly(void **state)
         w.view.rect = cases[i].rect;
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
         /* What is not valid is background for all that samples. */
-        check_cover(&w, 0, (struct vkao_rect){0, 0, 100, 60}, VKAO_VIEW_Z_BORDER);
-        check_cover(&w, 1, cases[i].ssao, 0);
-        check_cover(&w, 2, cases[i].blur_x, 0);
-        check_cover(&w, 3, cases[i].rest, 0);
-        check_cover(&w, 4, cases[i].rest, 0);
+        const VkExtent2D none = {0, 0}, group = {VKAO_GROUP_WIDTH, VKAO_GROUP_HEIGHT},
+                         ssao_group = {VKAO_SSAO_GROUP_WIDTH, VKAO_SSAO_GROUP_HEIGHT};
+        check_cover(&w, 0, (struct vkao_rect){0, 0, 100, 60}, (VkExtent2D){8, 2}, group);
+        check_cover(&w, 1, cases[i].ssao, none, ssao_group);
+        check_cover(&w, 2, cases[i].blur_x, none, group);
+        check_cover(&w, 3, cases[i].rest, none, group);
+        check_cover(&w, 4, cases[i].rest, none, group);
         world_close(&w);
     }
 }

@@ -159,6 +159,8 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
                                                .images = &images,
                                            },
                                            &session->frame);
+    if (result == VKAO_ERROR_UNSUPPORTED)
+        fail_hint(err, "crop or scale the image, or take --device cpu");
     if (result != VKAO_SUCCESS)
         return gpu_library_failed(err, "vkao_frame_create", result);
     session->extent = extent;
