@@ -488,6 +488,21 @@ def what_normals_do_not_check_is_said(scratch):
         equal('nothing checks' in said, False, said)
 
 
+@cases([('twice as wide', 2, 1, '2'), ('twice as high', 1, 2, '0.(49|5)')])
+def forgotten_shape_of_pixels_is_said(scratch, _, across, down, ratio):
+    scene = Scene(320, 180)
+    channels = {'Z': scene.depth(), **scene.normals(space='world')}
+    channels = {n: np.ascontiguousarray(v[::down, ::across]) for n, v in channels.items()}
+    for options in ((), ('--fov', FOV)):
+        write_exr(scratch.path('in.exr'), channels)
+        matches(f'a pixel is {ratio}[0-9.]* times as wide as high, and the header says 1:',
+                inspect(scratch, *options)[1], 'what is said')
+        write_exr(scratch.path('in.exr'), channels,
+                  attributes=[('PixelAspectRatio', across / down)])
+        said = inspect(scratch, *options)[1]
+        check('as wide as high' not in said, said)
+
+
 @case
 def depth_alone_assumes_a_camera(scratch):
     write_exr(scratch.path('in.exr'), {'Z': Scene().depth()})

@@ -269,7 +269,8 @@ def depth_from_a_near_plane_is_said(scratch, _, share, is_said):
     equal('looks measured from a near plane' in said, is_said, f'whether it is in {said}')
 
 
-CURVES = [('square root', np.sqrt, 'to the power of about 0.5:'), ('square', np.square, 'power of about (1.9|2):'),
+CURVES = [('square root', np.sqrt, 'to the power of about 0.5:'),
+          ('square', np.square, 'power of about (1.9|2):'),
           ('of a picture', lambda z: 9 * (z / 9) ** (1 / 2.2), 'power of about 0.4[56]:'),
           ('logarithm', lambda z: np.log(z * 10), 'the logarithm'), ('none', lambda z: z, '')]
 

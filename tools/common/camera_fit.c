@@ -14,6 +14,8 @@ enum { MOST_FOUND = 64, MOST_RIVALS = 8, SEARCH_SAMPLES = 1500, FIELDS_OF_VIEW =
 static const double sharpest_sigma = 0.0005, least_sigma = 0.004, most_sigma = 0.12;
 /* Bumps and smooth shading turn normals by as much, as a sine: half of one agrees. */
 static const double half_agreement = 0.12;
+/* Of these nothing more is asked. */
+static const double all_agree = 0.995;
 
 /* --- Search --- */
 
@@ -120,8 +122,7 @@ static void search_model(const struct fit_samples *s, const struct fit_input *in
     struct fit_solution row[FIELDS_OF_VIEW];
     for (size_t start = 0; start < starts.count; start++) {
         for (int i = 0; i < count; i++) {
-            row[i] =
-                (struct fit_solution){.model = model, .free = {!is_known, false, false, false}};
+            row[i] = (struct fit_solution){.model = model, .free = {!is_known}};
             row[i].free[FIT_C] = has_offset(model);
             row[i].p[FIT_LN_K] = is_known ? log(input->half_width)
                                  : input->near_half_width > 0
@@ -264,19 +265,6 @@ static struct fit_solution sharpened(const struct fit_samples *s, const struct f
     return best;
 }
 
-/* How surely one is better than the other, from their costs by tiles. */
-static double paired_z(const struct fit_solution *better, const struct fit_solution *worse)
-{
-    double sum = 0, squares = 0;
-    for (int i = 0; i < FIT_TILES; i++) {
-        const double d = worse->tile_cost[i] - better->tile_cost[i];
-        sum += d;
-        squares += d * d;
-    }
-    const double spread = (squares - sum * sum / FIT_TILES) * FIT_TILES / (FIT_TILES - 1.0);
-    return sum / sqrt(fmax(spread, 1e-24));
-}
-
 static struct fit_solution refined(const struct fit_samples *s, const struct fit_solution *from,
                                    double sigma)
 {
@@ -296,7 +284,7 @@ static void try_shift(const struct fit_samples *s, const struct fit_solution *co
     const double scale = fmax(t.sigma, best->sigma);
     struct fit_solution with = refined(s, &t, scale), without = refined(s, best, scale);
     const double *p = with.p, *deviation = with.deviation;
-    const double z = paired_z(&with, &without);
+    const double z = fit_paired_z(&with, &without);
     const double ratio = with.cost / fmax(without.cost, 1e-12);
     const double sigmas = fmax(fabs(p[FIT_CX]) / fmax(deviation[FIT_CX], 0.002),
                                fabs(p[FIT_CY]) / fmax(deviation[FIT_CY], 0.002));
@@ -317,7 +305,7 @@ static bool earns(const struct fit_samples *s, const struct fit_solution *plain,
 {
     struct fit_solution without = refined(s, plain, sigma), with = refined(s, offset, sigma);
     return fabs(with.p[FIT_C]) > fmax(5.0 * with.deviation[FIT_C], 0.001) &&
-           without.cost - with.cost > 0.01 && paired_z(&with, &without) > 2.5;
+           without.cost - with.cost > 0.01 && fit_paired_z(&with, &without) > 2.5;
 }
 
 static enum fit_model without_offset(enum fit_model model)
@@ -391,7 +379,11 @@ static void settle_sign(const struct fit_samples *s, struct fit_solution *best)
         out[i] = mad(reflected, -2.0 * along[i], rows[i]);
     t.rotation = (struct mat3){out[0], out[1], out[2]};
     fit_refine(s, &t, best->sigma);
-    if (t.cost - best->cost < 0.01 || (t.cost - best->cost < 0.05 && paired_z(best, &t) < 3)) {
+    /* Round things tell it too, which are not exact. */
+    const double common = fmax(best->sigma, 0.02);
+    const struct fit_solution as_is = refined(s, best, common), turned = refined(s, &t, common);
+    const double worse = turned.cost - as_is.cost;
+    if (worse < 0.01 || (worse < 0.05 && fit_paired_z(&as_is, &turned) < 3)) {
         t.hand_unknown = true;
         *best = t;
     }
@@ -464,7 +456,7 @@ static bool find_rival(const struct fit_samples *s, const struct found *f, doubl
             fit_refine(s, &rival, sigma);
         }
         const double worse = rival.cost - at.cost;
-        if (!(worse < 0.03 || (worse < 0.15 && paired_z(&at, &rival) < 3)))
+        if (!(worse < 0.03 || (worse < 0.15 && fit_paired_z(&at, &rival) < 3)))
             continue;
         if (!difference(s, best, &rival, &apart))
             return false;
@@ -611,7 +603,11 @@ static bool attempt(const struct fit_input *input, unsigned blur, struct attempt
             describe(&s, input, &a->best, &a->fit);
             a->fit.agreement = 1.0 - fit_cost(&s, &a->best, half_agreement);
             a->fit.tells_view = unseen_change(&s, &a->best) < sure_bound;
-            ok = judge(&s, &f, sigma, &a->best, &a->fit);
+            double times = 1.0;
+            if ((a->fit.agreement < all_agree || a->best.shifted) && blur == 0)
+                ok = fit_find_stretch(&s, &a->best, &times);
+            a->fit.pixel_aspect = times < 1 || times > 1 ? input->pixel_aspect / times : 0;
+            ok = ok && judge(&s, &f, sigma, &a->best, &a->fit);
             *tried = true;
         }
     }
@@ -665,6 +661,7 @@ bool camera_fit(const struct fit_input *input, struct fit *fit, struct tool_erro
     if (!best)
         return true;
     *fit = best->fit;
+    fit->pixel_aspect = attempts[0].fit.pixel_aspect;
     for (size_t i = 0; i < count && fit->is_sure; i++)
         if (contradict(best, &attempts[i])) {
             fit->is_sure = false;

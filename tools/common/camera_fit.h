@@ -58,6 +58,7 @@ struct fit {
     double rotation[9];      /* of the stored normals to view space, m[row * 3 + column] */
     double bound;            /* relative error of half_width that is not exceeded, surely not */
     double agreement;        /* [0,1] of the stored normals with those of depth */
+    double pixel_aspect;     /* 0, or what is seen if it is not that of the input */
     bool tells_view;         /* another half_width would be seen in the normals */
     char why[192];           /* not sure: because ... */
 };

@@ -16,7 +16,7 @@ enum {
     FIT_TILES_X = 8,
     FIT_TILES_Y = 6,
     FIT_TILES = FIT_TILES_X * FIT_TILES_Y,
-    FIT_PARAMETERS = 7 /* rotation vector, ln k, cx, cy, c */
+    FIT_PARAMETERS = 8 /* rotation vector, and the five below */
 };
 
 /* A texel and its neighbours at the baseline: itself, left, right, below, above. */
@@ -45,19 +45,20 @@ bool fit_samples_take(const struct fit_input *input, unsigned blur, struct fit_s
 bool fit_samples_thin(const struct fit_samples *all, size_t most, struct fit_samples *samples);
 void fit_samples_free(struct fit_samples *samples);
 
-/* p: ln k, cx, cy, c. c is the near plane in medians of depth, or an offset of the stored value. */
-enum { FIT_LN_K, FIT_CX, FIT_CY, FIT_C };
+/* p: ln k, cx, cy, c, ln a. c is the near plane in medians of depth, or an offset of the stored
+ * value; a is by how much all is higher than it seems, since pixels are not what the file says. */
+enum { FIT_LN_K, FIT_CX, FIT_CY, FIT_C, FIT_LN_A, FIT_SHAPE };
 struct fit_solution {
     enum fit_model model;
     struct mat3 rotation;
-    double p[4];
-    bool free[4];
+    double p[FIT_SHAPE];
+    bool free[FIT_SHAPE];
     double sigma; /* robust scale, sine of an angle */
     double cost;  /* [0,1], weighted mean of e^2 / (e^2 + sigma^2) */
     double tile_cost[FIT_TILES];
-    double inlier_weight;      /* share, [0,1] */
-    double deviation[4];       /* standard errors of p */
-    double rotation_deviation; /* degrees */
+    double inlier_weight;        /* share, [0,1] */
+    double deviation[FIT_SHAPE]; /* standard errors of p */
+    double rotation_deviation;   /* degrees */
     bool shifted, hand_unknown, near_known;
     double doubt; /* of ln k: by a shift that is not accepted, and not excluded */
 };
@@ -65,10 +66,10 @@ struct fit_solution {
 bool fit_model_is_ortho(enum fit_model model);
 /* Unit normal of the surface at a sample, by the depth alone. */
 struct vec3 fit_model_normal(const struct fit_samples *s, const struct fit_sample *sample,
-                             enum fit_model model, const double p[4]);
+                             enum fit_model model, const double p[FIT_SHAPE]);
 /* Scene units across one unit of the image plane at a sample. */
 double fit_model_scale(const struct fit_samples *s, const struct fit_sample *sample,
-                       enum fit_model model, const double p[4]);
+                       enum fit_model model, const double p[FIT_SHAPE]);
 /* ln k may lie between these. */
 void fit_model_range(const struct fit_samples *s, enum fit_model model, double *low, double *high);
 
@@ -93,5 +94,12 @@ void fit_descend(const struct fit_samples *s, struct fit_solution *at, double si
 double fit_sensitivity(const struct fit_samples *s, const struct fit_solution *at);
 /* The same, and everything else of the solution. */
 void fit_refine(const struct fit_samples *s, struct fit_solution *at, double sigma);
+/* How surely one is better than the other, from their costs by tiles: in standard errors. */
+double fit_paired_z(const struct fit_solution *better, const struct fit_solution *worse);
+
+/* *times: by how much all is higher than it seems, if that is clear, or 1. False if memory runs
+ * out. */
+bool fit_find_stretch(const struct fit_samples *all, const struct fit_solution *best,
+                      double *times);
 
 #endif

@@ -56,18 +56,24 @@ static double stretch_at(enum fit_model model, double k, double x, double y)
     return is_radial(model) ? sqrt(1.0 + k * k * (x * x + y * y)) : 1.0;
 }
 
-static struct vec3 normal_with(const struct fit_samples *s, const struct fit_sample *p,
-                               enum fit_model model, double k, const double at[4])
+static double height_of(const double p[FIT_SHAPE])
 {
-    const double dx = 2.0 * s->step_x, dy = 2.0 * s->step_y;
+    return fabs(p[FIT_LN_A]) > 0 ? exp(p[FIT_LN_A]) : 1.0;
+}
+
+static struct vec3 normal_with(const struct fit_samples *s, const struct fit_sample *p,
+                               enum fit_model model, double k, const double at[FIT_SHAPE])
+{
+    const double height = height_of(at), step_y = s->step_y * height;
+    const double dx = 2.0 * s->step_x, dy = 2.0 * step_y;
     struct vec3 n;
     if (fit_model_is_ortho(model)) {
         const double sign = model == FIT_ORTHO ? 1.0 : -1.0;
         n = vec3(sign * (p->d[2] - p->d[1]) / dx / k, sign * (p->d[4] - p->d[3]) / dy / k, 1.0);
     } else {
-        const double x = p->x - at[FIT_CX], y = p->y - at[FIT_CY], c = at[FIT_C];
+        const double x = p->x - at[FIT_CX], y = p->y * height - at[FIT_CY], c = at[FIT_C];
         const double xs[5] = {x, x - s->step_x, x + s->step_x, x, x};
-        const double ys[5] = {y, y, y, y - s->step_y, y + s->step_y};
+        const double ys[5] = {y, y, y, y - step_y, y + step_y};
         double w[5];
         for (int i = 0; i < 5; i++)
             w[i] = model == FIT_PLANAR
@@ -80,18 +86,19 @@ static struct vec3 normal_with(const struct fit_samples *s, const struct fit_sam
 }
 
 struct vec3 fit_model_normal(const struct fit_samples *s, const struct fit_sample *sample,
-                             enum fit_model model, const double p[4])
+                             enum fit_model model, const double p[FIT_SHAPE])
 {
     return normal_with(s, sample, model, exp(p[FIT_LN_K]), p);
 }
 
 double fit_model_scale(const struct fit_samples *s, const struct fit_sample *sample,
-                       enum fit_model model, const double p[4])
+                       enum fit_model model, const double p[FIT_SHAPE])
 {
     const double k = exp(p[FIT_LN_K]);
     if (fit_model_is_ortho(model))
         return k;
-    const double stretch = stretch_at(model, k, sample->x - p[FIT_CX], sample->y - p[FIT_CY]);
+    const double y = sample->y * height_of(p) - p[FIT_CY];
+    const double stretch = stretch_at(model, k, sample->x - p[FIT_CX], y);
     const double w = inverse_z(s, model, sample->d[0], p[FIT_C], stretch);
     return k / fmax(w, 1e-30);
 }
@@ -256,8 +263,8 @@ double fit_cost(const struct fit_samples *s, const struct fit_solution *at, doub
 /* Normal equations at a solution, and the gradient by groups of samples, whose errors hang
  * together. */
 struct equations {
-    int count;        /* of unknowns: three of the rotation, and what is free of p */
-    int parameter[4]; /* which of p */
+    int count;                /* of unknowns: three of the rotation, and what is free of p */
+    int parameter[FIT_SHAPE]; /* which of p */
     double matrix[FIT_PARAMETERS][FIT_PARAMETERS], gradient[FIT_PARAMETERS];
     double by_tile[FIT_TILES][FIT_PARAMETERS], by_cell[FIT_CELLS][FIT_PARAMETERS];
     double weight, error; /* of all samples: sums, the second of squares */
@@ -275,7 +282,7 @@ static void differentiate(const struct fit_samples *s, const struct fit_sample *
     de[1] = sub(vec3(0, nq, 0), scale(q, n.y));
     de[2] = sub(vec3(0, 0, nq), scale(q, n.z));
     for (int a = 3; a < eq->count; a++) {
-        double p[4];
+        double p[FIT_SHAPE];
         memcpy(p, at->p, sizeof p);
         p[eq->parameter[a - 3]] += step;
         const struct vec3 moved = fit_model_normal(s, sample, at->model, p);
@@ -290,7 +297,7 @@ static void linearise(const struct fit_samples *s, const struct fit_solution *at
     double slope = 0, bend = 0;
     memset(eq, 0, sizeof *eq);
     eq->count = 3;
-    for (int i = 0; i < 4; i++)
+    for (int i = 0; i < FIT_SHAPE; i++)
         if (at->free[i])
             eq->parameter[eq->count++ - 3] = i;
     for (size_t i = 0; i < s->count; i++) {
@@ -484,4 +491,16 @@ void fit_refine(const struct fit_samples *s, struct fit_solution *at, double sig
     }
     at->inlier_weight = inliers / s->total_weight;
     find_deviations(s, at);
+}
+
+double fit_paired_z(const struct fit_solution *better, const struct fit_solution *worse)
+{
+    double sum = 0, squares = 0;
+    for (int i = 0; i < FIT_TILES; i++) {
+        const double d = worse->tile_cost[i] - better->tile_cost[i];
+        sum += d;
+        squares += d * d;
+    }
+    const double spread = (squares - sum * sum / FIT_TILES) * FIT_TILES / (FIT_TILES - 1.0);
+    return sum / sqrt(fmax(spread, 1e-24));
 }

@@ -175,7 +175,7 @@ static struct borders look(const struct gbuffer *g)
     return b;
 }
 
-/* How many more of the normals change behind the step than before it: [-1,1]; 0: too few to tell. */
+/* How many more of the normals change behind the step than before it: [-1,1]; 0: too few tell. */
 static double excess(const struct steps *s)
 {
     return s->count < FEW_SIDES ? 0 : ((double)s->behind - (double)s->before) / (double)s->count;

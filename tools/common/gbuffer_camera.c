@@ -257,6 +257,19 @@ static void tell_offset(const struct gbuffer *g, const struct fit *fit, const ch
                     path, g->roles.kind[ROLE_DEPTH].label, fit->near_plane);
 }
 
+/* Nothing else makes all of a scene wider or higher. */
+static void tell_pixels(const struct gbuffer *g, const struct fit *fit, const char *path,
+                        struct report *report)
+{
+    if (fit->pixel_aspect > 0)
+        report_warn(
+            report, "pixel aspect",
+            "%s: by depth and normals a pixel is %.3g times as wide as high, and the header "
+            "says %.3g: camera and AO are wrong; write the attribute pixelAspectRatio, or "
+            "the image without squeeze",
+            path, fit->pixel_aspect, (double)g->pixel_aspect);
+}
+
 /* A frame that does not tell, of a sequence whose others did. */
 static void keep_remembered(struct gbuffer *g, const struct gbuffer_options *options,
                             const char *path, struct report *report)
@@ -273,6 +286,7 @@ static bool find_unknown(struct gbuffer *g, const struct gbuffer_options *option
     struct fit fit = {0};
     if (g->normals && !g->camera.is_assumed && !estimate(g, options, &fit, err))
         return false;
+    tell_pixels(g, &fit, path, report);
     if (!fit.is_sure && options->memory && options->memory->is_known && !g->camera.is_assumed) {
         keep_remembered(g, options, path, report);
         if (g->normals && !estimate_as(g, possible_models(g, options, true), true, 0, &fit, err))
@@ -348,6 +362,7 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
     if (!estimate_as(g, possible_models(g, options, true), true, 0, &told, err))
         return false;
     const bool is_exact = strcmp(g->camera.source, "positions") == 0;
+    tell_pixels(g, &told, path, report);
     const bool was_asked = options->memory && is_same_view(&options->memory->told, &g->camera);
     if (options->memory)
         options->memory->told = g->camera;

@@ -4,9 +4,10 @@
  * the one in the middle is the harmonic mean of the others if depth is a distance along the view
  * axis, and the arithmetic mean if it is one over that, or of a depth buffer, or seen without
  * perspective. Where depth was moved by an offset c, as normalised depth is, it is something in
- * between which tells c. Where it was bent, as by gamma, it is the same anywhere: of the square root
- * of a distance 3/2. Of its logarithm it grows with depth. Distances from the eye are the first once they are divided by the length
- * of their ray. Curved things tell anything, each something else. */
+ * between which tells c. Where it was bent, as by gamma, it is the same anywhere: of the square
+ * root of a distance 3/2. Of its logarithm it grows with depth. Distances from the eye are the
+ * first once they are divided by the length of their ray. Curved things tell anything, each
+ * something else. */
 #include "gbuffer_internal.h"
 
 #include <math.h>
