@@ -64,7 +64,7 @@ Visibility visibility(ivec2 texel, vec3 position, vec3 normal);
 Visibility shade(ivec2 texel)
 {
     Visibility v = Visibility(vec3(0.0), 1.0);
-    float z = load_view_z(texel);
+    float z = view_z_beside(texel, ivec2(0));
     if (z == 0.0)
         return v;
     vec3 position = view_position(vec2(texel), z);

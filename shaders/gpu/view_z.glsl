@@ -54,10 +54,11 @@ float load_view_z(ivec2 texel)
     return load_view_z_at(vec2(texel));
 }
 
-/* Of the texel at an offset. */
+/* Of the texel at an offset of at most BLOCKS from one in the image: none is beyond the border. */
 float view_z_beside(ivec2 texel, ivec2 offset)
 {
-    return load_view_z_at(vec2(texel) + vec2(offset));
+    vec2 at = place_of(vec2(texel) + vec2(offset));
+    return load_from(view_z_image, at.x, at.y);
 }
 
 /* Of a texel, the fourth to its right, and those below them, as textureGather has them. */
