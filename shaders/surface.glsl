@@ -27,11 +27,16 @@ float local_slope(float before, float z, float after)
 
 /* How far a tap k texels away lies off the surface that goes on from the centre by its slope. At
  * half resolution, where a blur spans twice as much and more lies between two texels, the centre
- * must also lie on the tap's surface: what only meets at an edge is told apart without normals. */
+ * must also lie on the tap's surface: what only meets at an edge is told apart without normals. Of
+ * the two distances the larger counts twice as much: alone it would leave ground that is not even
+ * to its noise. */
 float off_surface(float z, float slope, float tap_z, float tap_slope, float k)
 {
     float off = abs(tap_z - z - slope * k);
-    return GRID_SHIFT > 0u ? max(off, abs(tap_z - z - tap_slope * k)) : off;
+    if (GRID_SHIFT == 0u)
+        return off;
+    float tap_off = abs(tap_z - z - tap_slope * k);
+    return (off + tap_off + max(off, tap_off)) * (1.0 / 3.0);
 }
 
 /* 1 / the distance off the continued slope at which a tap counts nothing; never 0, so that

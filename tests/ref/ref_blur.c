@@ -56,7 +56,8 @@ static double flat_weight(int k, int radius)
 }
 
 /* flat_weight * max(0, 1 - sharpness |z_k - z - slope k| / z) * max(0, n.n_k)^normal_power;
- * at half resolution the larger of the distances by the centre's slope and by the tap's */
+ * at half resolution a third of the distances by the centre's slope and by the tap's, the larger
+ * one counted twice */
 static double blurred(const struct blur *blur, const double *ao, int x, int y, int dx, int dy)
 {
     double z = ref_scene_z(blur->scene, x, y), sum = 0.0, weights = 0.0;
@@ -73,8 +74,10 @@ static double blurred(const struct blur *blur, const double *ao, int x, int y, i
         size_t tap = texel_index(blur, x + k * dx, y + k * dy);
         double w = k ? flat_weight(k, radius) : 1.0;
         double off = fabs(tap_z - z - s * k);
-        if (blur->half_resolution)
-            off = fmax(off, fabs(tap_z - z - slope(blur, x + k * dx, y + k * dy, dx, dy) * k));
+        if (blur->half_resolution) {
+            double beside = fabs(tap_z - z - slope(blur, x + k * dx, y + k * dy, dx, dy) * k);
+            off = (off + beside + fmax(off, beside)) / 3.0;
+        }
         w *= fmax(0.0, 1.0 - scale * off);
         if (k != 0)
             w *= normal_weight(blur, texel_index(blur, x, y), tap);
