@@ -43,6 +43,23 @@ def one_of_several_normals_is_taken_by_rule(scratch, _, layers, wanted):
           view['passed_over'], str(view['passed_over']))
 
 
+@cases([('N', 'XY'), ('ViewLayer.Normal', 'XY'), ('VRayNormals', 'RG')])
+def normals_of_two_components_are_told(scratch, layer, letters):
+    scene = Scene(48, 27)
+    third = f'{layer}.{"Z" if letters == "XY" else "B"}'
+    normals = scene.normals(layer, letters=letters + third[-1])
+    first = next(iter(normals))
+    channels = {'Z': scene.depth(), **normals}
+    told = {'role': 'normal', 'name': first, 'why': 'two components: a third is missing'}
+    write_exr(scratch.path('in.exr'), channels)
+    check(told not in inspect(scratch, '--fov', FOV)['passed_over'], 'told of three')
+    del channels[third]
+    write_exr(scratch.path('in.exr'), channels)
+    view = inspect(scratch, '--fov', FOV)
+    equal(view['roles']['normal'], None, 'normals')
+    check(told in view['passed_over'], str(view['passed_over']))
+
+
 @cases([('hitPz',), ('ImageDepth.R',), ('Z-depth.R',), ('dd.y',), ('Depth.V',), ('Depth',),
         ('SceneDepthCm.R',), ('linear_depth',), ('Distance.R',)])
 def depth_is_found_by_all_its_names(scratch, name):

@@ -456,6 +456,28 @@ static void tell_no_depths(struct passing *p)
     }
 }
 
+/* Two components of what is called normals: the third cannot be told, as its sign is lost. */
+static void tell_no_normals(struct passing *p)
+{
+    const struct role_search *s = &p->search;
+    for (size_t i = 0; i < s->info->part_count; i++) {
+        const struct exr_part *part = &s->info->parts[i];
+        for (size_t c = 0; c < part->channel_count; c++) {
+            struct role_channel name;
+            const struct exr_channel *channel = &part->channels[c];
+            if (part->deep ||
+                !role_channel_read(part, channel->name, s->view, s->info->part_count > 1, &name) ||
+                !role_name_fits("X|R", name.component) ||
+                !(role_name_fits("N|Ns|Nn", name.leaf) || role_name_fits("~normal", name.leaf)))
+                continue;
+            const bool is_xyz = role_name_fits("X", name.component);
+            if (role_channel_sibling(s, i, &name, is_xyz ? "Y" : "G") &&
+                !role_channel_sibling(s, i, &name, is_xyz ? "Z" : "B"))
+                tell(p, ROLE_NORMAL, channel, channel->name, "two components: a third is missing");
+        }
+    }
+}
+
 void roles_passed_over(const struct exr_info *info, const struct role_request *request,
                        const struct roles *roles, role_listener listener, void *data)
 {
@@ -467,6 +489,7 @@ void roles_passed_over(const struct exr_info *info, const struct role_request *r
     tell_later_hits(&p, ROLE_NORMAL);
     tell_later_hits(&p, ROLE_COLOR);
     tell_no_depths(&p);
+    tell_no_normals(&p);
 }
 
 void roles_list_colors(const struct exr_info *info, const struct role_request *request,
