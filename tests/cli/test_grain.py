@@ -155,6 +155,19 @@ def wide_blur_is_seen_beside_borders_of_normals(scratch):
             str(inspect(scratch, '--fov', FOV)['warnings']), 'said')
 
 
+@cases([('as they are', 0), ('a texel', 1), ('two', 2), ('four', 4)])
+def blurred_normals_are_said(scratch, _, deviation):
+    depth, normals = cards()
+    if deviation:
+        weights = np.exp(-np.arange(4 * deviation) ** 2 / (2 * deviation ** 2))
+        normals = {n: blurred(p, weights, (0, 1)) for n, p in normals.items()}
+        length = np.sqrt(sum(p * p for p in normals.values()))
+        normals = {n: p / np.maximum(length, 1e-6) for n, p in normals.items()}
+    write_exr(scratch.path('in.exr'), {'Z': depth, **normals})
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    equal('are blurred (denoised, or enlarged)' in said, deviation > 0, f'whether it is in {said}')
+
+
 BLURS = [('of a lens', [1.0, 0.7, 0.25, 0.04], (0, 1)), ('wide', np.exp(-np.arange(9) ** 2 / 18.0),
          (0, 1)), ('of motion', [1.0, 0.8, 0.4, 0.1], (1,))]
 

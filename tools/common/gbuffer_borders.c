@@ -3,7 +3,8 @@
  * Where normals have borders, depth has them too, and at the same place. A renderer that stores the
  * nearest or the farthest of a pixel's samples moves those of depth by half a texel towards what
  * lies behind or before, a filter of minima or maxima by more; two passes that do not fit are moved
- * to one side. Blur bends flat things near their borders. */
+ * to one side. Blur bends flat things near their borders, and makes normals change little by
+ * little. */
 #include "gbuffer_internal.h"
 
 #include <math.h>
@@ -25,6 +26,11 @@ static const double other = 0.1;
 /* Steps in depth from near to far that face one way, by where the normals change. */
 struct steps {
     size_t count, before, behind; /* the last two: on the near, on the far side of the step */
+};
+
+/* Steps in depth to something that faces elsewhere, and those along which normals turn slowly. */
+struct turns {
+    size_t count, slow;
 };
 
 /* Flat places beside borders of normals, and those where depth bends. */
@@ -89,8 +95,24 @@ static bool find_change(const struct gbuffer *g, size_t near_texel, ptrdiff_t wa
     return true;
 }
 
+/* A texel that covers both things leaves half of the turn to one step, a quarter in squares. */
+static void look_at_turn(const struct gbuffer *g, size_t near_texel, ptrdiff_t way,
+                         struct turns *turns)
+{
+    static const double at_once = 0.21;
+    const ptrdiff_t from = -REACH + 1, to = REACH;
+    const double all =
+        apart(normal_at(g, near_texel, from * way), normal_at(g, near_texel, to * way));
+    double most = 0;
+    for (ptrdiff_t k = from; k < to; k++)
+        most = fmax(most, apart(normal_at(g, near_texel, k * way),
+                                normal_at(g, near_texel, (k + 1) * way)));
+    turns->count += all > other;
+    turns->slow += all > other && most < at_once * all;
+}
+
 static void look_at_step(const struct gbuffer *g, size_t near_texel, ptrdiff_t way,
-                         struct steps *steps)
+                         struct steps *steps, struct turns *turns)
 {
     double z_near[REACH], z_far[REACH], place;
     for (int k = 0; k < REACH; k++) {
@@ -98,7 +120,10 @@ static void look_at_step(const struct gbuffer *g, size_t near_texel, ptrdiff_t w
         z_far[k] = depth_at(g, near_texel, (k + 1) * way);
     }
     const double step = z_far[0] - z_near[0];
-    if (!goes_on(z_near, step) || !goes_on(z_far, step) || !find_change(g, near_texel, way, &place))
+    if (!goes_on(z_near, step) || !goes_on(z_far, step))
+        return;
+    look_at_turn(g, near_texel, way, turns);
+    if (!find_change(g, near_texel, way, &place))
         return;
     steps->count++;
     steps->before += place < -0.5;
@@ -147,7 +172,8 @@ static void look_at_border(const struct gbuffer *g, size_t last, ptrdiff_t way, 
 
 struct borders {
     struct steps steps[WAYS]; /* to the right, left, down, up */
-    struct bends bends[2];    /* along rows, along columns */
+    struct turns turns;
+    struct bends bends[2]; /* along rows, along columns */
 };
 
 static struct borders look(const struct gbuffer *g)
@@ -166,7 +192,7 @@ static struct borders look(const struct gbuffer *g)
             if (fabs(next - here) > 0.1 * fmin(here, next)) {
                 const bool is_near = here < next;
                 look_at_step(g, is_near ? i : i + strides[axis], is_near ? way : -way,
-                             &b.steps[axis * 2 + !is_near]);
+                             &b.steps[axis * 2 + !is_near], &b.turns);
             }
             look_at_border(g, i, way, axis == 0, &b.bends[axis]);
             look_at_border(g, i + strides[axis], -way, axis == 0, &b.bends[axis]);
@@ -218,6 +244,14 @@ static bool is_bent(const struct bends *b)
     return b->count >= FEW_BENDS && (double)b->bent > bent * (double)b->count;
 }
 
+/* Of clean renders at most 11 of 100 turns are slow. Of normals that are blurred with a deviation
+ * of a texel 7 to 60 are, of most more than 20; of two texels 70 and more. */
+static bool is_slow(const struct turns *t)
+{
+    static const double slow = 0.16;
+    return t->count >= FEW_STEPS && (double)t->slow > slow * (double)t->count;
+}
+
 void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct report *report)
 {
     const char *normals = g->roles.kind[ROLE_NORMAL].label;
@@ -238,6 +272,12 @@ void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct r
                     y > 0   ? "below"
                     : y < 0 ? "above"
                             : "");
+    else if (is_slow(&b.turns))
+        report_warn(report, "blurred normals",
+                    "%s: normals '%s' are blurred (denoised, or enlarged): they turn little by "
+                    "little where depth steps at once; AO is wrong there; write them unfiltered, "
+                    "or derive them from depth by --normal none",
+                    path, normals);
     else if (nearest)
         report_warn(report, "nearest depth",
                     "%s: depth is that of the %s of a pixel's samples, or of its neighbours: its "
