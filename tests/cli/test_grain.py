@@ -127,12 +127,20 @@ def nearest_and_farthest_samples_are_said(scratch, which, pick):
         check('nearest' not in said and 'bend' not in said, said)
 
 
-@cases([('right', 0, 1), ('left', 0, -1), ('below', 1, 0), ('above', -1, 0)])
+@cases([('a texel to the right', 0, 1), ('a texel to the left', 0, -1), ('a texel below', 1, 0),
+        ('a texel above', -1, 0), ('6 texels to the right', 0, 6), ('8 texels above', -8, 0),
+        ('3 texels to the left and 2 texels below', 2, -3)])
 def depth_and_normals_of_different_places_are_said(scratch, where, down, right):
-    depth, normals = cards()
-    write_exr(scratch.path('in.exr'), {'Z': np.roll(depth, (down, right), (0, 1)), **normals})
-    matches(f'of different places: depth lies about a texel [^;]*{where};',
-            str(inspect(scratch, '--fov', FOV)['warnings']), 'said')
+    # Flat things, small and large, and round ones.
+    scene = Scene(320, 180)
+    for depth, normals in (cards(), cards(640, 360), (depth_of(scene, 1e10), scene.normals())):
+        moved = np.roll(depth, (down, right), (0, 1))
+        write_exr(scratch.path('in.exr'), {'Z': moved, **normals})
+        matches(f'of different places: depth lies about {where};',
+                str(inspect(scratch, '--fov', FOV, '--normal-space', 'camera')['warnings']), 'said')
+        write_exr(scratch.path('in.exr'), {'Z': depth, **normals})
+        said = str(inspect(scratch, '--fov', FOV)['warnings'])
+        check('places' not in said, said)
 
 
 @cases([('5', 5), ('9', 9), ('20', 20)])

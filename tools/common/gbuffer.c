@@ -499,6 +499,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         return false;
     const struct role *depth = &g->roles.kind[ROLE_DEPTH], *normal = &g->roles.kind[ROLE_NORMAL];
     const struct exr_info *normals = normal->found ? normal->info : info;
+    bool is_moved;
     if (g->camera.remark[0])
         report_warn(report, "camera remark", "%s: %s", info->path, g->camera.remark);
     if (!read_depth(g, err) || !check_grey(g, report, err) ||
@@ -522,7 +523,12 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         !gbuffer_prepare_normals(g, options, normals->path, report, err))
         goto failed;
     warn_about_assumption(g, report);
-    gbuffer_warn_of_borders(g, depth->info->path, report);
+    if (!gbuffer_warn_of_move(g, depth->info->path, report, &is_moved)) {
+        fail(err, EXIT_MEMORY, "%s: out of memory", depth->info->path);
+        goto failed;
+    }
+    if (!is_moved)
+        gbuffer_warn_of_borders(g, depth->info->path, report);
     free(g->alpha);
     g->alpha = NULL;
     if ((options->want_color && !read_light(g, err)) ||

@@ -82,8 +82,8 @@ bool gbuffer_pair_normals(const struct gbuffer *g, struct normal_pairs *pairs)
 {
     /* Steps of half values are slopes where differences are small. */
     const size_t reach = g->depth_is_half ? 4 : 1, step = gbuffer_texels(g) / MOST_TEXELS + 1;
-    *pairs =
-        (struct normal_pairs){.pair = malloc((gbuffer_texels(g) / step + 1) * sizeof *pairs->pair)};
+    *pairs = (struct normal_pairs){
+        .pair = malloc((gbuffer_texels(g) / step + 1) * sizeof *pairs->pair), .reach = reach};
     if (!pairs->pair)
         return false;
     for (size_t i = 0; i < gbuffer_texels(g); i += step) {
@@ -92,6 +92,7 @@ bool gbuffer_pair_normals(const struct gbuffer *g, struct normal_pairs *pairs)
         const float *n = g->normals + i * 4;
         if (x < reach || x + reach >= g->width || y < reach || y + reach >= g->height)
             continue;
+        pair->texel = i;
         for (int c = 0; c < 3; c++)
             pair->stored[c] = (double)n[c];
         const double *s = pair->stored;

@@ -2,9 +2,9 @@
  *
  * Where normals have borders, depth has them too, and at the same place. A renderer that stores the
  * nearest or the farthest of a pixel's samples moves those of depth by half a texel towards what
- * lies behind or before, a filter of minima or maxima by more; two passes that do not fit are moved
- * to one side. Blur bends flat things near their borders, and makes normals change little by
- * little. */
+ * lies behind or before, a filter of minima or maxima by more. Blur bends flat things near their
+ * borders, and makes normals change little by little.
+ */
 #include "gbuffer_internal.h"
 
 #include <math.h>
@@ -209,8 +209,8 @@ static double excess(const struct steps *s)
 
 /* Of clean renders, small ones too, at most 12 of 100 steps that face one way are amiss, and 15 of
  * 100 flat places bend. Of the nearest or the farthest sample 20 and more are amiss, and of blur 40
- * bend; of passes that are moved by a texel nearly all are amiss. */
-static const double amiss = 0.15, displaced = 0.4, bent = 0.3;
+ * bend. */
+static const double amiss = 0.15, bent = 0.3;
 
 /* 1: depth is that of the nearest, -1: of the farthest sample. One way alone may be a floor whose
  * farthest row is taken for sky. */
@@ -232,13 +232,6 @@ static int nearest_or_farthest(const struct borders *b)
     return nearest >= 2 && sum < -all ? 1 : farthest >= 2 && sum > all ? -1 : 0;
 }
 
-/* Depth lies to the right of normals, or below them: 1; -1: the other way. */
-static int moved_aside(const struct steps *one, const struct steps *opposite)
-{
-    const double a = excess(one), b = excess(opposite);
-    return a < -displaced && b > displaced ? 1 : a > displaced && b < -displaced ? -1 : 0;
-}
-
 static bool is_bent(const struct bends *b)
 {
     return b->count >= FEW_BENDS && (double)b->bent > bent * (double)b->count;
@@ -258,21 +251,8 @@ void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct r
     if (!g->normals || g->block_size > 1)
         return;
     const struct borders b = look(g);
-    const int x = moved_aside(&b.steps[0], &b.steps[1]), y = moved_aside(&b.steps[2], &b.steps[3]);
     const int nearest = nearest_or_farthest(&b);
-    if (x || y)
-        report_warn(report, "moved depth",
-                    "%s: depth and normals '%s' are of different places: depth lies about a texel "
-                    "%s%s%s; AO is wrong at borders; write both in one size, from the same samples",
-                    path, normals,
-                    x > 0   ? "to the right"
-                    : x < 0 ? "to the left"
-                            : "",
-                    x && y ? " and " : "",
-                    y > 0   ? "below"
-                    : y < 0 ? "above"
-                            : "");
-    else if (is_slow(&b.turns))
+    if (is_slow(&b.turns))
         report_warn(report, "blurred normals",
                     "%s: normals '%s' are blurred (denoised, or enlarged): they turn little by "
                     "little where depth steps at once; AO is wrong there; write them unfiltered, "

@@ -101,6 +101,10 @@ unsigned gbuffer_block_size(const struct gbuffer *g);
 unsigned gbuffer_ridge_width(const struct gbuffer *g);
 /* Of depth as prepared, unless a camera is given by hand. */
 void gbuffer_warn_of_panorama(const struct gbuffer *g, const char *path, struct report *report);
+/* Of depth as prepared and the normals that are used, if any, where these belong to other texels.
+ * False if memory ran out. */
+bool gbuffer_warn_of_move(const struct gbuffer *g, const char *path, struct report *report,
+                          bool *is_moved);
 /* Of depth as prepared and the normals that are used, if any. */
 void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct report *report);
 /* By how many widths of a texel depth, as prepared, bends where stored normals are alike: a median,
@@ -123,10 +127,11 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
 /* What depth has for a normal at a texel, in view space, and what is stored there. */
 struct normal_pair {
     double depth[3], stored[3], weight;
+    size_t texel;
 };
 struct normal_pairs {
     struct normal_pair *pair;
-    size_t count;
+    size_t count, reach; /* of the neighbours that lie on the plane of depth, in texels */
 };
 /* Needs the depth as prepared, and decoded normals. False if memory ran out. */
 bool gbuffer_pair_normals(const struct gbuffer *g, struct normal_pairs *pairs);
