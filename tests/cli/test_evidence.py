@@ -289,6 +289,31 @@ def bent_depth_is_said(scratch, _, bend, said):
             check('looks like' not in warnings, warnings)
 
 
+TONES = [('reinhard', lambda z: 6 * z / (6 + z), True), ('strong', lambda z: 2 * z / (2 + z), True),
+         ('exponential', lambda z: 9 * (1 - np.exp(-z / 9)), True), ('none', lambda z: z, False)]
+
+
+@cases(TONES)
+def toned_depth_is_said(scratch, _, squeeze, is_said):
+    # Its planes are flat, and not those of the normals.
+    for size in ((160, 90), (400, 225)):
+        scene = Scene(*size)
+        depth = squeeze(np.where(scene.sky, 1, scene.z))
+        depth = np.where(scene.sky, 1e10, depth).astype(np.float32)
+        for options in (('--fov', FOV), ()):
+            write_exr(scratch.path('in.exr'), {'Z': depth, **scene.normals(space='world')})
+            said = str(inspect(scratch, *options)['warnings'])
+            equal("depth 'Z' looks squeezed" in said, is_said, f'whether it is in {said}')
+
+
+@case
+def another_field_of_view_is_no_tone(scratch):
+    write_exr(scratch.path('in.exr'), {'Z': Scene().depth(), **Scene().normals(space='world')})
+    for fov in (FOV * 0.7, FOV * 1.4):
+        said = str(inspect(scratch, '--fov', fov)['warnings'])
+        check('depth and normals' in said and 'squeezed' not in said, said)
+
+
 @case
 def steps_of_a_wall_are_no_offset(scratch):
     # Every edge of a relief in two depths bends as much: not as planes do.

@@ -436,7 +436,8 @@ static const char *model_name(enum fit_model model)
                                                   "normalized planar",
                                                   "reversed planar",
                                                   "normalized radial",
-                                                  "reversed orthographic"};
+                                                  "reversed orthographic",
+                                                  "toned"};
     return names[model];
 }
 
@@ -575,6 +576,25 @@ static void describe(const struct fit_samples *s, const struct fit_input *input,
     }
 }
 
+/* What else may be wrong with an image whose normals are not those of its depth: the one that
+ * explains them best. */
+static bool find_causes(const struct fit_samples *s, const struct fit_input *input,
+                        const struct fit_solution *best, struct fit *fit)
+{
+    double times, tone = 0, by_stretch, by_tone = INFINITY;
+    if (!fit_find_stretch(s, best, &times, &by_stretch))
+        return false;
+    /* A field of view that is known may be wrong, and looks like it. */
+    if (best->free[FIT_LN_K] && (input->models >> FIT_PLANAR & 1u) &&
+        !fit_find_tone(s, best, &tone, &by_tone))
+        return false;
+    if (tone > 0 && by_tone < by_stretch)
+        fit->tone = s->median / tone;
+    else if (isfinite(by_stretch))
+        fit->pixel_aspect = input->pixel_aspect / times;
+    return true;
+}
+
 /* One attempt with normals averaged over a patch. *tried is false if there is too little to go by.
  */
 static bool attempt(const struct fit_input *input, unsigned blur, struct attempt *a, bool *tried)
@@ -603,10 +623,8 @@ static bool attempt(const struct fit_input *input, unsigned blur, struct attempt
             describe(&s, input, &a->best, &a->fit);
             a->fit.agreement = 1.0 - fit_cost(&s, &a->best, half_agreement);
             a->fit.tells_view = unseen_change(&s, &a->best) < sure_bound;
-            double times = 1.0;
             if ((a->fit.agreement < all_agree || a->best.shifted) && blur == 0)
-                ok = fit_find_stretch(&s, &a->best, &times);
-            a->fit.pixel_aspect = times < 1 || times > 1 ? input->pixel_aspect / times : 0;
+                ok = find_causes(&s, input, &a->best, &a->fit);
             ok = ok && judge(&s, &f, sigma, &a->best, &a->fit);
             *tried = true;
         }
@@ -662,6 +680,7 @@ bool camera_fit(const struct fit_input *input, struct fit *fit, struct tool_erro
         return true;
     *fit = best->fit;
     fit->pixel_aspect = attempts[0].fit.pixel_aspect;
+    fit->tone = attempts[0].fit.tone;
     for (size_t i = 0; i < count && fit->is_sure; i++)
         if (contradict(best, &attempts[i])) {
             fit->is_sure = false;

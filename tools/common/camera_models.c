@@ -41,6 +41,8 @@ static double inverse_z(const struct fit_samples *s, enum fit_model model, doubl
         return 1.0 / fmax(c - d, 1e-6);
     case FIT_RADIAL_NORMALIZED:
         return 1.0 / fmax((d + offset) / stretch, least);
+    case FIT_TONED:
+        return fmax(1.0 / d - c / s->median, 1e-3 / s->median);
     default:
         return 1.0 / d;
     }

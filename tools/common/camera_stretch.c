@@ -9,13 +9,15 @@
 
 enum { ENOUGH_SAMPLES = 1500 };
 
-bool fit_find_stretch(const struct fit_samples *all, const struct fit_solution *best, double *times)
+bool fit_find_stretch(const struct fit_samples *all, const struct fit_solution *best, double *times,
+                      double *cost)
 {
     static const double starts[] = {0, 0.69, -0.69, 0.35, -0.35}, least = 0.08, most = 1.2;
     /* What is exact for a few proves nothing. */
     const double sigma = fmax(best->sigma, 0.02);
     struct fit_samples s;
     *times = 1.0;
+    *cost = INFINITY;
     if (!fit_samples_thin(all, ENOUGH_SAMPLES, &s))
         return false;
     struct fit_solution without = *best;
@@ -40,8 +42,10 @@ bool fit_find_stretch(const struct fit_samples *all, const struct fit_solution *
     /* Of clean renders none is stretched by more than 1.6 %, and none gains more than 0.0015. */
     if (change > least && change > 5.0 * with.deviation[FIT_LN_A] &&
         with.cost < 0.9 * without.cost && without.cost - with.cost > 0.0015 &&
-        fit_paired_z(&with, &without) > 1.5)
+        fit_paired_z(&with, &without) > 1.5) {
         *times = exp(with.p[FIT_LN_A]);
+        *cost = with.cost;
+    }
     fit_samples_free(&s);
     return true;
 }

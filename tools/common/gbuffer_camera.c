@@ -250,7 +250,7 @@ static void tell_estimate(struct gbuffer *g, const struct fit *fit, const char *
 static void tell_offset(const struct gbuffer *g, const struct fit *fit, const char *path,
                         struct report *report)
 {
-    if (fit->model == FIT_PLANAR && fabs(fit->near_plane) > 0)
+    if (fit->model == FIT_PLANAR && fabs(fit->near_plane) > 0 && !(fit->tone > 0))
         report_warn(report, "offset depth",
                     "%s: depth '%s' looks measured from a near plane: its normals are those that "
                     "are stored only if %.3g is added, and that is not done",
@@ -270,6 +270,18 @@ static void tell_pixels(const struct gbuffer *g, const struct fit *fit, const ch
             path, fit->pixel_aspect, (double)g->pixel_aspect);
 }
 
+static void tell_tone(const struct gbuffer *g, const struct fit *fit, const char *path,
+                      struct report *report)
+{
+    if (fit->tone > 0)
+        report_warn(report, "toned depth",
+                    "%s: depth '%s' looks squeezed, as a z / (a + z) with a = %.3g is: its normals "
+                    "are those of '%s' only if that is undone; camera and AO are wrong; write it "
+                    "as a distance, without any curve",
+                    path, g->roles.kind[ROLE_DEPTH].label, fit->tone,
+                    g->roles.kind[ROLE_NORMAL].label);
+}
+
 /* A frame that does not tell, of a sequence whose others did. */
 static void keep_remembered(struct gbuffer *g, const struct gbuffer_options *options,
                             const char *path, struct report *report)
@@ -287,6 +299,7 @@ static bool find_unknown(struct gbuffer *g, const struct gbuffer_options *option
     if (g->normals && !g->camera.is_assumed && !estimate(g, options, &fit, err))
         return false;
     tell_pixels(g, &fit, path, report);
+    tell_tone(g, &fit, path, report);
     if (!fit.is_sure && options->memory && options->memory->is_known && !g->camera.is_assumed) {
         keep_remembered(g, options, path, report);
         if (g->normals && !estimate_as(g, possible_models(g, options, true), true, 0, &fit, err))
@@ -369,7 +382,10 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
     if (told.half_width > 0 && told.agreement < doubtful_agreement && !is_exact && !was_asked) {
         if (!estimate_as(g, possible_models(g, options, false), false, 0, &seen, err))
             return false;
-        weigh(g, &told, &seen, path, report);
+        told.tone = seen.tone;
+        tell_tone(g, &told, path, report);
+        if (!(told.tone > 0))
+            weigh(g, &told, &seen, path, report);
     }
     const bool lacks_near = options->depth_type == DEPTH_AUTO &&
                             depth->depth_type == DEPTH_RADIAL_NEAR && !(g->camera.near_plane > 0);
