@@ -2,7 +2,8 @@
  *
  * One direction of the separable cross-bilateral blur (Petschnigg et al. 2004; Eisemann and Durand
  * 2004). The weight of tap k is blur_weight, times max(0, 1 - sharpness * |z_k - z - slope k| / z),
- * slope being the smaller of the two neighbour differences, times max(0, n.n_k)^normal_power.
+ * slope being the smaller of the two neighbour differences, times max(0, n.n_k)^normal_power. Where
+ * next to nothing counts, all does a little, see leak_of; but bent normals of others are wrong.
  * Continuing the slope keeps tilted walls in one piece where a plain depth difference would cut
  * them up. AO is not clamped on the way: one slice per texel often sees more than its share, and a
  * clamp would turn that noise into bias. With VKAO_LAST the result is final. */
@@ -57,23 +58,29 @@ vec4 blurred(ivec2 texel, float z)
     float edge = edge_stop(z, params.sharpness, params.reference_z);
     vec4 normal = NORMAL_POWER > 0.0 ? stored_normal(texel << GRID_SHIFT) : vec4(0.0);
     vec4 sum = load_source(texel) - ALL_OPEN;
-    float weights = 1.0;
+    float weights = 1.0, near = 0.0, all = 0.0, all_weights = 0.0;
     int k = -RADIUS;
     for (;;) {
         ivec2 at = texel + k * AXIS;
         float tap_z = k == 0 ? 0.0 : load_view_z(at);
         if (tap_z > 0.0) {
             float off = off_surface(z, slope, tap_z, local_slope(at, tap_z), float(k));
-            float w = blur_weight(k, RADIUS) * max(0.0, 1.0 - edge * off);
+            float full = blur_weight(k, RADIUS), w = full * max(0.0, 1.0 - edge * off);
+            near += w;
             if (NORMAL_POWER > 0.0)
                 w *= normal_weight(normal, stored_normal(at << GRID_SHIFT), NORMAL_POWER);
-            sum += w * (load_source(at) - ALL_OPEN);
+            vec4 v = load_source(at) - ALL_OPEN;
+            sum += w * v;
             weights += w;
+            all += full * v.w;
+            all_weights += full;
         }
         if (++k > RADIUS)
             break;
     }
-    return sum / weights + ALL_OPEN;
+    float leak = leak_of(near, weights - 1.0, RADIUS);
+    sum.w += leak * all;
+    return sum / vec4(vec3(weights), weights + leak * all_weights) + ALL_OPEN;
 }
 
 void main()

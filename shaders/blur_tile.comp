@@ -56,7 +56,7 @@ Texel load_texel(ivec2 at)
     t.v = vec4(decode_hidden(textureLod(sampler2D(source_image, nearest), middle, 0.0).x));
     if (BENT_NORMALS)
         t.v.xyz = decode_bent(textureLod(sampler2D(bent_image, nearest), middle, 0.0));
-    if (!NOISY_CODES && t.z == BACKGROUND_Z)
+    if (t.z == BACKGROUND_Z)
         t.v = vec4(0.0);
     t.normal = vec4(0.0);
     if (HAS_NORMALS) {
@@ -116,7 +116,7 @@ vec4 blurred(Texel window[2 * REACH + 3])
     float slope = local_slope(window[LEFT - 1].z, center.z, window[LEFT + 1].z);
     float edge = edge_stop(center.z, params.sharpness, ORTHOGRAPHIC ? params.reference_z : 0.0);
     vec4 sum = center.v;
-    float weights = 1.0;
+    float weights = 1.0, near = 0.0, all = 0.0, all_weights = 0.0;
     [[unroll]] for (int k = -REACH; k <= REACH; ++k) {
         if (k == 0 || abs(k) > RADIUS)
             continue;
@@ -126,12 +126,19 @@ vec4 blurred(Texel window[2 * REACH + 3])
                             : 0.0;
         float off = off_surface(center.z, slope, tap.z, tap_slope, float(k));
         float full = blur_weight(k, RADIUS), w = clamp(full - full * edge * off, 0.0, 1.0);
-        if (HAS_NORMALS)
+        if (HAS_NORMALS) {
+            near += w;
             w *= normal_weight(center.normal, tap.normal, NORMAL_POWER);
+        }
         sum += w * tap.v;
         weights += w;
+        all += full * tap.v.w;
+        all_weights += full * is_surface(tap.z);
     }
-    sum /= weights;
+    float leak = leak_of(HAS_NORMALS ? near : weights - 1.0, weights - 1.0, RADIUS);
+    leak *= is_surface(center.z); /* v of background stays 0 */
+    sum.w += leak * all;
+    sum /= vec4(vec3(weights), weights + leak * all_weights);
     /* an ao_noisy of the caller's may hold anything */
     if (!NOISY_CODES)
         sum.w = is_sane(sum.w) ? sum.w : 0.0;

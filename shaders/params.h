@@ -94,6 +94,11 @@
 #define VKAO_CODE_OFFSET 0.55
 #define VKAO_VISIBILITY_OPEN 155.0
 
+/* Where less than LEAK_BELOW of a blur's window counts, all of the window does as well, by up to
+ * LEAK. */
+#define VKAO_BLUR_LEAK 0.15
+#define VKAO_BLUR_LEAK_BELOW 0.45
+
 /* blur_tile.comp: radii that it is for; texels of a row that a group blurs; rows in its shared
  * memory, of which it blurs those that are not reached over. */
 #define VKAO_BLUR_TILE_RADIUS 3

@@ -27,16 +27,11 @@ float local_slope(float before, float z, float after)
 
 /* How far a tap k texels away lies off the surface that goes on from the centre by its slope. At
  * half resolution, where a blur spans twice as much and more lies between two texels, the centre
- * must also lie on the tap's surface: what only meets at an edge is told apart without normals. Of
- * the two distances the larger counts twice as much: alone it would leave ground that is not even
- * to its noise. */
+ * must also lie on the tap's surface: what only meets at an edge is told apart without normals. */
 float off_surface(float z, float slope, float tap_z, float tap_slope, float k)
 {
     float off = abs(tap_z - z - slope * k);
-    if (GRID_SHIFT == 0u)
-        return off;
-    float tap_off = abs(tap_z - z - tap_slope * k);
-    return (off + tap_off + max(off, tap_off)) * (1.0 / 3.0);
+    return GRID_SHIFT == 0u ? off : max(off, abs(tap_z - z - tap_slope * k));
 }
 
 /* 1 / the distance off the continued slope at which a tap counts nothing; never 0, so that
@@ -52,6 +47,35 @@ float edge_stop(float z, float sharpness, float reference_z)
 float blur_weight(int k, int radius)
 {
     return min(1.0, float(radius + 1 - abs(k)) * (radius < 3 ? 0.5 : 0.25));
+}
+
+/* What all taps count on a flat surface, without the centre's 1. */
+float blur_weights(int radius)
+{
+    float sum = 0.0;
+    for (int k = 1; k <= radius; ++k)
+        sum += 2.0 * blur_weight(k, radius);
+    return sum;
+}
+
+/* Is there a surface? As a number. */
+float is_surface(float z)
+{
+    return clamp(2.0 - z * (2.0 / BACKGROUND_Z), 0.0, 1.0);
+}
+
+/* What all of the window but background counts besides, as a share of blur_weight. The mean of a
+ * few texels alone, as of a bar or a leaf, is noise, which is seen as speckles that crawl when
+ * things move. Beside the straight edge of anything wider half a window is left, and that is
+ * enough. near: what the taps count by their depths, without the centre's 1; weights: by their
+ * normals as well, which in a small blur may leave none. */
+float leak_of(float near, float weights, int radius)
+{
+    const float LEAK = VKAO_BLUR_LEAK;
+    if (radius == 0)
+        return 0.0;
+    float few = LEAK / (VKAO_BLUR_LEAK_BELOW * blur_weights(radius));
+    return clamp(LEAK - few * (radius < 3 ? weights : near), 0.0, 1.0);
 }
 
 /* A stored normal of the image; w is 1 where there is none to trust: then depths decide. */

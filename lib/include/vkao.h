@@ -555,7 +555,9 @@ typedef struct vkao_params {
     /* (0,inf) 1 / scene units; the constant 50 of SPHERE_LITERAL. Default 50 */
     float blocking_scale;
     /* [0,10000] edge stopping of the blur: a tap whose view z is off the continued slope by more
-     * than 1 / sharpness of its own distance counts nothing. 0 = depth is ignored. Default 200 */
+     * than 1 / sharpness of its own distance counts nothing. Where that leaves less than .45 of the
+     * window, as on a bar or a leaf, up to .15 of all visibility around is mixed in. 0 = depth is
+     * ignored. Default 200 */
     float sharpness;
     /* [0,8] BLUR: scale of occlusion: 1 - intensity * (1 - visibility), clamped. Default 1:
      * physical */

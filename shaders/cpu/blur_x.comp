@@ -27,12 +27,6 @@ float fetch_code(ivec2 texel)
     return float(int(imageLoad(packed_ao, i >> 2).x >> ((i & 3) << 3)) & 255);
 }
 
-float slope_at(ivec2 texel)
-{
-    return local_slope(surface_z(load_view_z(texel - ivec2(1, 0))), surface_z(load_view_z(texel)),
-                       surface_z(load_view_z(texel + ivec2(1, 0))));
-}
-
 void blur(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
 {
     float z[WINDOW], code[WINDOW], slope[WINDOW];
@@ -56,18 +50,24 @@ void blur(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
     [[unroll]] for (int i = 0; i < VKAO_BLUR_X_WIDTH; ++i) {
         int c = REACH + i;
         float edge = edge_stop(z[c], params.sharpness, params.reference_z);
-        float sum = code[c], weights = 1.0;
+        float sum = code[c], weights = 1.0, near = 0.0, all = 0.0, all_weights = 0.0;
         [[unroll]] for (int k = -RADIUS; k <= RADIUS; ++k) {
             if (k == 0)
                 continue;
             float off = off_surface(z[c], slope[c], z[c + k], slope[c + k], float(k));
-            float w = blur_weight(k, RADIUS) * max(0.0, 1.0 - edge * off);
-            if (use_normals)
+            float full = blur_weight(k, RADIUS), w = full * max(0.0, 1.0 - edge * off);
+            if (use_normals) {
+                near += w;
                 w *= normal_weight(normal[c], normal[c + k], NORMAL_POWER);
+            }
             sum += w * code[c + k];
             weights += w;
+            full *= is_surface(z[c + k]);
+            all += full * code[c + k];
+            all_weights += full;
         }
-        result[i] = sum / weights;
+        float leak = leak_of(use_normals ? near : weights - 1.0, weights - 1.0, RADIUS);
+        result[i] = (sum + leak * all) / (weights + leak * all_weights);
     }
 }
 

@@ -46,11 +46,6 @@ vec4 slopes(vec4 before, vec4 z, vec4 after)
     return slope;
 }
 
-vec4 slopes_at(ivec2 texel)
-{
-    return slopes(load_z(texel - ivec2(0, 1)), load_z(texel), load_z(texel + ivec2(0, 1)));
-}
-
 vec4 tap_weights(int k, int radius, vec4 z, vec4 slope, vec4 tap_z, vec4 tap_slope)
 {
     vec4 w;
@@ -59,14 +54,6 @@ vec4 tap_weights(int k, int radius, vec4 z, vec4 slope, vec4 tap_z, vec4 tap_slo
         float off = off_surface(z[i], slope[i], tap_z[i], tap_slope[i], float(k));
         w[i] = blur_weight(k, radius) * max(0.0, 1.0 - edge * off);
     }
-    return w;
-}
-
-vec4 normal_weights(ivec2 texel, ivec2 tap)
-{
-    vec4 w;
-    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) w[i] = normal_weight(
-        window_normal(texel + ivec2(i, 0)), window_normal(tap + ivec2(i, 0)), NORMAL_POWER);
     return w;
 }
 
@@ -102,17 +89,28 @@ void blur(ivec2 texel)
     [[unroll]] for (int row = 0; row < VKAO_BLUR_Y_HEIGHT; ++row) {
         int c = RADIUS + MARGIN + row;
         vec4 sum = fine[c], weights = vec4(1.0);
+        vec4 near = vec4(0.0), all = vec4(0.0), all_weights = vec4(0.0);
         [[unroll]] for (int k = -RADIUS; k <= RADIUS; ++k) {
             if (k == 0)
                 continue;
             vec4 w = tap_weights(k, RADIUS, z[c], slope[c], z[c + k], slope[c + k]);
+            if (use_normals)
+                near += w;
             [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) if (use_normals) w[i] *=
                 normal_weight(normal[VKAO_BLUR_Y_WIDTH * c + i],
                               normal[VKAO_BLUR_Y_WIDTH * (c + k) + i], NORMAL_POWER);
             sum += w * fine[c + k];
             weights += w;
+            vec4 full;
+            [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) full[i] =
+                blur_weight(k, RADIUS) * is_surface(z[c + k][i]);
+            all += full * fine[c + k];
+            all_weights += full;
         }
-        put(texel + ivec2(0, row), z[c], sum / weights);
+        vec4 leak;
+        [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) leak[i] =
+            leak_of(use_normals ? near[i] : weights[i] - 1.0, weights[i] - 1.0, RADIUS);
+        put(texel + ivec2(0, row), z[c], (sum + leak * all) / (weights + leak * all_weights));
     }
 }
 

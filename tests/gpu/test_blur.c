@@ -130,6 +130,42 @@ static void normal_edges_do_not_leak(void **state)
     picture_free(&p);
 }
 
+/* A bar two texels wide before a wall, dark where the wall is open: it takes a share of what is
+ * beside it, and the wall takes nothing of it. The last bar stands before background, which has
+ * nothing to give. */
+static void narrow_things_take_a_share_of_the_window(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t radius;
+        double own, all; /* what the other texel of the bar counts, and the whole window */
+        double behind;   /* depth */
+    } rows[] = {{3, 0.75, 3.0, 4.0}, {4, 1.0, 5.0, 4.0}, {3, 0.75, 3.0, INFINITY}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        struct picture p;
+        const struct scene wall = scene_tilted_plane(0.0, 0.0);
+        make(&p, &wall, 0.0);
+        p.view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
+        p.blur.radius = rows[i].radius;
+        for (size_t texel = 0; texel < picture_texels(&p); ++texel) {
+            bool is_bar = texel % p.width / 2 == 20;
+            p.values[SLOT_DEPTH][texel] = is_bar ? 3.0 : rows[i].behind;
+            p.values[SLOT_NOISY][texel] = is_bar ? 0.0 : 1.0;
+        }
+        picture_run(&p);
+        double leak = 0.15 * (1.0 - rows[i].own / (0.45 * rows[i].all)), want = 0.0;
+        if (isfinite(rows[i].behind))
+            want = leak * (rows[i].all - rows[i].own) / (1.0 + rows[i].own + leak * rows[i].all);
+        for (size_t texel = 0; texel < picture_texels(&p); ++texel) {
+            bool is_bar = texel % p.width / 2 == 20;
+            double got = p.values[SLOT_AO][texel];
+            if (!(fabs(got - (is_bar ? want : 1.0)) <= (is_bar ? 1e-3 : 0.0)))
+                fail_msg("row %zu: texel %zu is %.9g, want %g", i, texel, got, is_bar ? want : 1.0);
+        }
+        picture_free(&p);
+    }
+}
+
 static void tilted_walls_are_blurred_in_one_piece(void **state)
 {
     (void)state;
@@ -216,6 +252,7 @@ int main(void)
         gpu_test(agrees_with_reference_for_every_parameter),
         gpu_test(depth_edges_do_not_leak),
         gpu_test(normal_edges_do_not_leak),
+        gpu_test(narrow_things_take_a_share_of_the_window),
         gpu_test(tilted_walls_are_blurred_in_one_piece),
         gpu_test(constants_are_kept),
         gpu_test(radius_0_copies),

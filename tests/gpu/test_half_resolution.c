@@ -43,7 +43,8 @@ static void reference(const struct picture *p, double *out)
     for (size_t c = 0; c < 4; ++c) {
         for (size_t i = 0; i < texels; ++i)
             channel[i] = c == 3 ? ao[i] : bent[i * 3 + c];
-        ref_blur_channel_half(&half, &p->blur, p->view.normal_encoding, stored, channel, blurred);
+        ref_blur_channel_half(&half, &p->blur, p->view.normal_encoding, stored, channel, c == 3,
+                              blurred);
         ref_upsample(&full, &half, &p->blur, p->view.normal_encoding, p->values[SLOT_NORMALS],
                      c == 3 ? 1.0 : 0.0, blurred, result);
         for (size_t i = 0; i < picture_texels(p); ++i)

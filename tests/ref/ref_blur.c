@@ -13,7 +13,7 @@ struct blur {
     const double *stored;
     double ndc_width; /* scene units across the viewport, what sharpness is relative to without
                          perspective */
-    bool half_resolution;
+    bool half_resolution, is_visibility;
 };
 
 static size_t texel_index(const struct blur *blur, int x, int y)
@@ -56,11 +56,13 @@ static double flat_weight(int k, int radius)
 }
 
 /* flat_weight * max(0, 1 - sharpness |z_k - z - slope k| / z) * max(0, n.n_k)^normal_power;
- * at half resolution a third of the distances by the centre's slope and by the tap's, the larger
- * one counted twice */
+ * at half resolution the larger of the distances by the centre's slope and by the tap's. Visibility
+ * where this leaves less than .45 of the window: at most .15 of the flat mean besides; of a small
+ * radius with what normals leave, of a large one without. */
 static double blurred(const struct blur *blur, const double *ao, int x, int y, int dx, int dy)
 {
     double z = ref_scene_z(blur->scene, x, y), sum = 0.0, weights = 0.0;
+    double near = 0.0, most = 0.0, flat = 0.0, others = 0.0;
     int radius = (int)blur->params->radius;
     if (isnan(z))
         return 1.0;
@@ -69,22 +71,28 @@ static double blurred(const struct blur *blur, const double *ao, int x, int y, i
         (double)blur->params->sharpness / (blur->scene->view.orthographic ? blur->ndc_width : z);
     for (int k = -radius; k <= radius; ++k) {
         double tap_z = ref_scene_z(blur->scene, x + k * dx, y + k * dy);
+        double w = k ? flat_weight(k, radius) : 1.0, full = k ? w : 0.0;
+        most += full;
         if (isnan(tap_z))
             continue;
+        others += full;
         size_t tap = texel_index(blur, x + k * dx, y + k * dy);
-        double w = k ? flat_weight(k, radius) : 1.0;
+        flat += full * ao[tap];
         double off = fabs(tap_z - z - s * k);
         if (blur->half_resolution) {
             double beside = fabs(tap_z - z - slope(blur, x + k * dx, y + k * dy, dx, dy) * k);
-            off = (off + beside + fmax(off, beside)) / 3.0;
+            off = fmax(off, beside);
         }
         w *= fmax(0.0, 1.0 - scale * off);
+        double normals = k ? normal_weight(blur, texel_index(blur, x, y), tap) : 1.0;
         if (k != 0)
-            w *= normal_weight(blur, texel_index(blur, x, y), tap);
-        sum += w * ao[tap];
-        weights += w;
+            near += w * (radius < 3 ? normals : 1.0);
+        sum += w * normals * ao[tap];
+        weights += w * normals;
     }
-    return sum / weights;
+    double leak =
+        radius > 0 && blur->is_visibility ? fmax(0.0, 0.15 * (1.0 - near / (0.45 * most))) : 0.0;
+    return (sum + leak * flat) / (weights + leak * others);
 }
 
 double ref_blur_finish(const struct ao_blur *params, double visibility)
@@ -95,13 +103,14 @@ double ref_blur_finish(const struct ao_blur *params, double visibility)
 
 static void blur_channel(const struct ref_scene *scene, const struct ao_blur *params,
                          vkao_normal_encoding encoding, const double *stored, const double *noisy,
-                         bool half_resolution, double *out)
+                         bool half_resolution, bool is_visibility, double *out)
 {
     double left[3], right[3];
     const double *viewport = scene->view.viewport;
     ref_view_position(&scene->view, viewport[0] - 0.5, 0.0, 1.0, left);
     ref_view_position(&scene->view, viewport[0] + viewport[2] - 0.5, 0.0, 1.0, right);
-    struct blur blur = {scene, params, encoding, stored, fabs(right[0] - left[0]), half_resolution};
+    struct blur blur = {scene,           params,       encoding, stored, fabs(right[0] - left[0]),
+                        half_resolution, is_visibility};
     const VkRect2D *rect = &scene->view.rect, *valid = &scene->view.valid;
     double *halfway = malloc((size_t)scene->width * scene->height * sizeof *halfway);
     if (!halfway)
@@ -120,16 +129,16 @@ static void blur_channel(const struct ref_scene *scene, const struct ao_blur *pa
 
 void ref_blur_channel_half(const struct ref_scene *scene, const struct ao_blur *params,
                            vkao_normal_encoding encoding, const double *stored, const double *noisy,
-                           double *out)
+                           bool is_visibility, double *out)
 {
-    blur_channel(scene, params, encoding, stored, noisy, true, out);
+    blur_channel(scene, params, encoding, stored, noisy, true, is_visibility, out);
 }
 
 void ref_blur(const struct ref_scene *scene, const struct ao_blur *params,
               vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao)
 {
     const VkRect2D *rect = &scene->view.rect;
-    blur_channel(scene, params, encoding, stored, noisy, false, ao);
+    blur_channel(scene, params, encoding, stored, noisy, false, true, ao);
     for (int y = rect->offset.y; y < rect->offset.y + (int)rect->extent.height; ++y) {
         for (int x = rect->offset.x; x < rect->offset.x + (int)rect->extent.width; ++x) {
             size_t i = (size_t)y * scene->width + (size_t)x;
