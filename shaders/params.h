@@ -167,7 +167,9 @@
  * are fractions of the radius, cosines those of the angle to the eye. Found by coordinate search,
  * as tools/bench/fit-vbao does it, on solid and thin scenes together; but THICKNESS_GIVEN_GAP on
  * the scenes of tests/gpu/test_layers.c, THICKNESS_WIDER on those of test_radius.c. These moved
- * THICKNESS_GAP as well, from the 2.5 of the search, which could not tell the two apart. */
+ * THICKNESS_GAP as well, from the 2.5 of the search, which could not tell the two apart.
+ * THICKNESS_LENGTH and _BASE were chosen by hand on the scenes of the search; more of _BASE is
+ * better there, and worse for bent normals behind the fence of test_truth.c. */
 #define VKAO_VBAO_REACH_SMOOTH 0.82    /* end of the last step: the smooth falloff hides the rest */
 #define VKAO_VBAO_REACH_THRESHOLD 1.08 /* samples beyond stand for what lies before them */
 /* Rise over the surface's plane, per run, up to which two samples join. */
@@ -178,17 +180,19 @@
 /* Taken off that at the upper edge of what all joins to the shaded point: its own plane. */
 #define VKAO_VBAO_ROUND_LESS 0.3
 
-/* What is seen is as thick as it is wide in the depth image, WIDTH of that, at least GAP of the way
- * from the sample before, for whose gap it stands, and at most BASE + SLOPE of its lateral
+/* What is seen is as thick as it is wide in the depth image, and a little thicker if it is longer,
+ * by LENGTH of the difference, as it may be the edge of a board; WIDTH of that, at least GAP of the
+ * way from the sample before, for whose gap it stands, and at most BASE + SLOPE of its lateral
  * distance. */
 #define VKAO_VBAO_THICKNESS_WIDTH 0.9
+#define VKAO_VBAO_THICKNESS_LENGTH 0.1
 /* Of what goes on on all sides, but at most WIDER of the width that is seen of it: where the radius
  * is most of the view, and what is seen a sliver of it, that says little. */
 #define VKAO_VBAO_THICKNESS_WIDE 0.75
 #define VKAO_VBAO_THICKNESS_WIDER 10.0
 #define VKAO_VBAO_THICKNESS_GAP 2.35
 #define VKAO_VBAO_THICKNESS_GIVEN_GAP 0.5 /* where thickness is an input, which has no cap */
-#define VKAO_VBAO_THICKNESS_BASE 0.40
+#define VKAO_VBAO_THICKNESS_BASE 0.45
 #define VKAO_VBAO_THICKNESS_SLOPE 0.80
 /* Depth breaks between two texels if it changes by more than RISE of the smaller change beside them
  * plus LEAST. Surfaces are followed to REACH on each side. Both are tangents of angles that the eye

@@ -55,7 +55,9 @@ real with_thickness(real z, whole along_x, whole along_y, Reach reach)
 {
     vec2 texel = params.inverse_radius * abs(params.unproject.xy);
     vec2 step = texel * vec2(ivec2(1) << reach.shift);
-    real width = min(texel.x + step.x * real(along_x), texel.y + step.y * real(along_y));
+    real width_x = texel.x + step.x * real(along_x), width_y = texel.y + step.y * real(along_y);
+    real width =
+        mix(min(width_x, width_y), max(width_x, width_y), real(VKAO_VBAO_THICKNESS_LENGTH));
     width *= VKAO_VBAO_THICKNESS_WIDTH * (ORTHOGRAPHIC ? real(1.0) : z);
     /* 0 where none is left. */
     real left = real(min(2 * (reach.steps.x + reach.steps.y) - along_x - along_y, whole(1)));

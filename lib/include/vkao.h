@@ -548,7 +548,7 @@ typedef struct vkao_params {
      * acne from coarse depth or interpolated normals. Default 0.005 */
     float bias;
     /* [0,8] VBAO, RAYMARCH: how thick the scene is behind what is seen, relative to the measured
-     * default. VBAO: .9 of its width in the depth image, at most .4 radius and .8 of the distance
+     * default. VBAO: .9 of its width in the depth image, at most .45 radius and .8 of the distance
      * to the side. RAYMARCH: .19 radius and .42 of that distance. With THRESHOLD 1.1 times these.
      * 0 = 1. Default 1 */
     float thickness;

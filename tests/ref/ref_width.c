@@ -80,7 +80,7 @@ double ref_width_thickness(const struct ref_scene *scene, double radius, int x, 
 {
     if (scene->thickness)
         return given(scene, radius, x, y);
-    double here[3], next[3], z = ref_scene_z(scene, x, y), least = INFINITY;
+    double here[3], next[3], z = ref_scene_z(scene, x, y), width[2];
     double reach =
         scene->view.orthographic ? VKAO_VBAO_WIDTH_REACH_RADII * radius : VKAO_VBAO_WIDTH_REACH * z;
     bool goes_on = true;
@@ -91,9 +91,11 @@ double ref_width_thickness(const struct ref_scene *scene, double radius, int x, 
         int most = (int)fmax(1.0, reach / texel + 0.5),
             texels = run(scene, radius, axis, x, y, most);
         goes_on = goes_on && texels == 2 * most;
-        least = fmin(least, (texels + 1) * texel);
+        width[axis] = (texels + 1) * texel;
     }
-    double thickness = VKAO_VBAO_THICKNESS_WIDTH * least / radius;
+    double least = fmin(width[0], width[1]), length = fmax(width[0], width[1]) - least;
+    double thickness =
+        VKAO_VBAO_THICKNESS_WIDTH * (least + VKAO_VBAO_THICKNESS_LENGTH * length) / radius;
     if (goes_on)
         thickness = fmin(VKAO_VBAO_THICKNESS_WIDER * thickness, VKAO_VBAO_THICKNESS_WIDE);
     return radius * coded(thickness, false);
