@@ -5,6 +5,7 @@
 #include "formats.h"
 #include "parameters.h"
 #include "slots.h"
+#include "stages.h"
 
 /* --- Scratch --- */
 
@@ -13,17 +14,6 @@ static VkFormat ao_scratch_format(const vkao_context *ctx)
 {
     return vkao_scratch_can(ctx, VK_FORMAT_R16_SFLOAT) ? VK_FORMAT_R16_SFLOAT
                                                        : VK_FORMAT_R32_SFLOAT;
-}
-
-uint32_t vkao_view_z_columns(uint32_t width)
-{
-    return (width + VKAO_VIEW_Z_BLOCKS - 1) / VKAO_VIEW_Z_BLOCKS + 2;
-}
-
-VkExtent2D vkao_view_z_extent(VkExtent2D grid)
-{
-    return (VkExtent2D){vkao_view_z_columns(grid.width) * VKAO_VIEW_Z_BLOCKS,
-                        grid.height + 2 * VKAO_VIEW_Z_BORDER};
 }
 
 static VkExtent2D grid_of(const vkao_frame *frame)

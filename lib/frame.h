@@ -26,9 +26,4 @@ struct vkao_frame {
     VkDescriptorSet sets[VKAO_MOST_PASSES];
 };
 
-/* The image of view z for a grid of texels, and how many columns a block of it has: see
- * shaders/gpu/columns.glsl. */
-VkExtent2D vkao_view_z_extent(VkExtent2D grid);
-uint32_t vkao_view_z_columns(uint32_t width);
-
 #endif

@@ -27,6 +27,17 @@ static_assert(VKAO_GLSL_THICKNESS_AS_SEEN == (int)VKAO_THICKNESS_AS_SEEN &&
                   VKAO_GLSL_THICKNESS_BACK_DEPTH == (int)VKAO_THICKNESS_BACK_DEPTH,
               "params.h repeats vkao_thickness_input");
 
+uint32_t vkao_view_z_columns(uint32_t width)
+{
+    return (width + VKAO_VIEW_Z_BLOCKS - 1) / VKAO_VIEW_Z_BLOCKS + 2;
+}
+
+VkExtent2D vkao_view_z_extent(VkExtent2D grid)
+{
+    return (VkExtent2D){vkao_view_z_columns(grid.width) * VKAO_VIEW_Z_BLOCKS,
+                        grid.height + 2 * VKAO_VIEW_Z_BORDER};
+}
+
 #define PREPARES(shader, texels, ...)                                                              \
     {                                                                                              \
         .name = "vkao " #shader, .label = "prepare", .stage = VKAO_STAGE_PREPARE,                  \

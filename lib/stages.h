@@ -21,6 +21,10 @@
 VKAO_STAGES(VKAO_DECLARE_STAGE)
 #undef VKAO_DECLARE_STAGE
 
+/* The image of view z for a grid of texels, and how many columns a block of it has: see
+ * shaders/gpu/columns.glsl. */
+VkExtent2D vkao_view_z_extent(VkExtent2D grid);
+uint32_t vkao_view_z_columns(uint32_t width);
 /* VKAO_SETTING_TILE_WORDS. */
 uint32_t vkao_blur_tile_words(const vkao_effect_info *effect);
 

@@ -51,7 +51,6 @@
 #define VKAO_BINDING_BREAKS_Y 16
 #define VKAO_BINDING_BREAKS_X_WRITE 17
 #define VKAO_BINDING_BREAKS_Y_WRITE 20
-#define VKAO_BINDING_THICKNESS 18
 #define VKAO_BINDING_SECOND_Z 19
 #define VKAO_BINDING_NEAREST 21     /* the sampler of texels by their number */
 #define VKAO_BINDING_BENT_SOURCE 22 /* bent normals of the pass before, as codes */

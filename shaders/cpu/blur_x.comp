@@ -21,12 +21,6 @@ layout(binding = VKAO_BINDING_HALFWAY_WORDS) writeonly buffer Halfway { uint hal
 const int REACH = (RADIUS + MARGIN + 3) & ~3; /* windows begin and end at whole words */
 const int WINDOW = VKAO_BLUR_X_WIDTH + 2 * REACH;
 
-float fetch_code(ivec2 texel)
-{
-    int i = buffer_row(texel.y) + texel.x;
-    return float(int(imageLoad(packed_ao, i >> 2).x >> ((i & 3) << 3)) & 255);
-}
-
 void blur(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
 {
     float z[WINDOW], code[WINDOW], slope[WINDOW];

@@ -3,6 +3,7 @@
  * Half resolution and bent normals as frames know them: which combinations exist, how much scratch
  * they take, and which texels each dispatch covers. */
 #include "recording.h"
+#include "stages.h"
 #include "world.h"
 
 #include <stdio.h>
