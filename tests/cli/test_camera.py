@@ -100,6 +100,17 @@ def parallel_camera_is_found(scratch, space):
     matches('orthographic, width 4.8', said, 'the warning')
 
 
+@cases([('fraction', lambda z: 15 * z / (15 + z), r'a z / \(a \+ z\)'),
+        ('exponential', lambda z: 15 * (1 - np.exp(-z / 15)), r'a \(1 - exp\(-z / a\)\)')])
+def squeezed_depth_of_a_parallel_camera_is_said(scratch, _, squeeze, name):
+    # All of it only looks narrower.
+    channels = corners(320, 200, 2.4, 'world')
+    channels['Z'] = squeeze(channels['Z'])
+    write_exr(scratch.path('in.exr'), channels)
+    matches(rf"depth 'Z' looks squeezed, as {name} with a = 1[3-7]", inspect(scratch)[1],
+            'the warning')
+
+
 @case
 def cut_data_window_is_seen_in_its_display(scratch):
     scene, cut = Scene(200, 120, 66), (slice(30, 120), slice(20, 170))

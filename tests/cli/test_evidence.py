@@ -306,6 +306,21 @@ def toned_depth_is_said(scratch, _, squeeze, is_said):
             equal("depth 'Z' looks squeezed" in said, is_said, f'whether it is in {said}')
 
 
+@cases([('exponential', lambda z: 16 * (1 - np.exp(-z / 16)), True), ('none', lambda z: z, False)])
+def toned_depth_beside_waves_of_normals_is_said(scratch, _, squeeze, is_said):
+    # What is not flat keeps its own error.
+    scene = Scene(400, 225)
+    row, column = np.mgrid[:225, :400] * (2 * np.pi / 60)
+    waves = np.stack([np.sin(column + row * 0.19), np.sin(row + 1), np.cos(row + column)], -1)
+    waves *= 0.03 * (scene.x > np.quantile(scene.x, 0.6))[..., None]
+    scene.normal = np.where(scene.sky[..., None], 0, scene.normal + waves)
+    scene.normal /= np.maximum(np.linalg.norm(scene.normal, axis=-1, keepdims=True), 1e-9)
+    depth = np.where(scene.sky, 1e10, squeeze(np.where(scene.sky, 1, scene.z))).astype(np.float32)
+    write_exr(scratch.path('in.exr'), {'Z': depth, **scene.normals()})
+    said = str(inspect(scratch)['warnings'])
+    equal("depth 'Z' looks squeezed" in said, is_said, f'whether it is in {said}')
+
+
 @case
 def another_field_of_view_is_no_tone(scratch):
     write_exr(scratch.path('in.exr'), {'Z': Scene().depth(), **Scene().normals(space='world')})

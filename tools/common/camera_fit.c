@@ -425,22 +425,6 @@ static bool difference(const struct fit_samples *s, const struct fit_solution *a
     return true;
 }
 
-static const char *model_name(enum fit_model model)
-{
-    static const char *const names[FIT_MODELS] = {"planar",
-                                                  "radial",
-                                                  "radial from a near plane",
-                                                  "inverse",
-                                                  "orthographic",
-                                                  "device",
-                                                  "normalized planar",
-                                                  "reversed planar",
-                                                  "normalized radial",
-                                                  "reversed orthographic",
-                                                  "toned"};
-    return names[model];
-}
-
 /* Another solution that fits as well and is not the same geometry; fit->why says which. */
 static bool find_rival(const struct fit_samples *s, const struct found *f, double sigma,
                        const struct fit_solution *best, struct fit *fit)
@@ -463,7 +447,7 @@ static bool find_rival(const struct fit_samples *s, const struct found *f, doubl
             return false;
         if (apart > 0.03 && !fit->why[0])
             snprintf(fit->why, sizeof fit->why, "%s depth of %.4g degrees fits as well",
-                     model_name(rival.model), 2.0 * atan(exp(rival.p[FIT_LN_K])) * 180.0 / PI);
+                     fit_model_name(rival.model), 2.0 * atan(exp(rival.p[FIT_LN_K])) * 180.0 / PI);
     }
     return true;
 }
@@ -586,7 +570,7 @@ static bool find_causes(const struct fit_samples *s, const struct fit_input *inp
         return false;
     /* A field of view that is known may be wrong, and looks like it. */
     if (best->free[FIT_LN_K] && (input->models >> FIT_PLANAR & 1u) &&
-        !fit_find_tone(s, best, &tone, &by_tone))
+        !fit_find_tone(s, best, &tone, &fit->curve, &by_tone))
         return false;
     if (tone > 0 && by_tone < by_stretch)
         fit->tone = s->median / tone;
@@ -681,6 +665,7 @@ bool camera_fit(const struct fit_input *input, struct fit *fit, struct tool_erro
     *fit = best->fit;
     fit->pixel_aspect = attempts[0].fit.pixel_aspect;
     fit->tone = attempts[0].fit.tone;
+    fit->curve = attempts[0].fit.curve;
     for (size_t i = 0; i < count && fit->is_sure; i++)
         if (contradict(best, &attempts[i])) {
             fit->is_sure = false;

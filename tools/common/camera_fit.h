@@ -29,7 +29,12 @@ enum fit_model {
     FIT_PLANAR_REVERSED,
     FIT_RADIAL_NORMALIZED,
     FIT_ORTHO_REVERSED,
-    FIT_TONED, /* planar, squeezed towards a largest value; only to be told from planar */
+    /* Squeezed towards a largest value a, to a z / (a + z) or a (1 - exp(-z / a)); only to be told
+     * from what is not. */
+    FIT_TONED,
+    FIT_EXPONENTIAL,
+    FIT_ORTHO_TONED,
+    FIT_ORTHO_EXPONENTIAL,
     FIT_MODELS
 };
 
@@ -60,9 +65,10 @@ struct fit {
     double bound;            /* relative error of half_width that is not exceeded, surely not */
     double agreement;        /* [0,1] of the stored normals with those of depth */
     double pixel_aspect;     /* 0, or what is seen if it is not that of the input */
-    double tone;     /* 0, or the value that depth seems squeezed towards: a of a z / (a + z) */
-    bool tells_view; /* another half_width would be seen in the normals */
-    char why[192];   /* not sure: because ... */
+    double tone;             /* 0, or the value that depth seems squeezed towards: a */
+    enum fit_model curve;    /* of tone */
+    bool tells_view;         /* another half_width would be seen in the normals */
+    char why[192];           /* not sure: because ... */
 };
 
 /* False only if memory runs out; *fit tells all else. */

@@ -64,6 +64,7 @@ struct fit_solution {
 };
 
 bool fit_model_is_ortho(enum fit_model model);
+const char *fit_model_name(enum fit_model model);
 /* Unit normal of the surface at a sample, by the depth alone. */
 struct vec3 fit_model_normal(const struct fit_samples *s, const struct fit_sample *sample,
                              enum fit_model model, const double p[FIT_SHAPE]);
@@ -101,9 +102,9 @@ double fit_paired_z(const struct fit_solution *better, const struct fit_solution
  * scale of 0.02 or more. False if memory runs out. */
 bool fit_find_stretch(const struct fit_samples *all, const struct fit_solution *best, double *times,
                       double *cost);
-/* *tone: median of depth over the value that depth nears far away, if that is clear, or 0; *cost as
- * above. False if memory runs out. */
+/* *tone: median of depth over the value that depth nears far away, if that is clear, or 0; *curve
+ * then, and *cost as above. False if memory runs out. */
 bool fit_find_tone(const struct fit_samples *all, const struct fit_solution *best, double *tone,
-                   double *cost);
+                   enum fit_model *curve, double *cost);
 
 #endif

@@ -11,7 +11,29 @@
 
 bool fit_model_is_ortho(enum fit_model model)
 {
-    return model == FIT_ORTHO || model == FIT_ORTHO_REVERSED;
+    return model == FIT_ORTHO || model == FIT_ORTHO_REVERSED || model == FIT_ORTHO_TONED ||
+           model == FIT_ORTHO_EXPONENTIAL;
+}
+
+const char *fit_model_name(enum fit_model model)
+{
+    static const char *const names[FIT_MODELS] = {
+        [FIT_PLANAR] = "planar",
+        [FIT_RADIAL] = "radial",
+        [FIT_RADIAL_NEAR] = "radial from a near plane",
+        [FIT_INVERSE] = "inverse",
+        [FIT_ORTHO] = "orthographic",
+        [FIT_DEVICE] = "device",
+        [FIT_PLANAR_NORMALIZED] = "normalized planar",
+        [FIT_PLANAR_REVERSED] = "reversed planar",
+        [FIT_RADIAL_NORMALIZED] = "normalized radial",
+        [FIT_ORTHO_REVERSED] = "reversed orthographic",
+        [FIT_TONED] = "toned",
+        [FIT_EXPONENTIAL] = "exponential",
+        [FIT_ORTHO_TONED] = "toned orthographic",
+        [FIT_ORTHO_EXPONENTIAL] = "exponential orthographic",
+    };
+    return names[model];
 }
 
 void fit_model_range(const struct fit_samples *s, enum fit_model model, double *low, double *high)
@@ -19,6 +41,15 @@ void fit_model_range(const struct fit_samples *s, enum fit_model model, double *
     const bool ortho = fit_model_is_ortho(model);
     *low = ortho ? s->log_slope - 4.0 : log(tan(PI / 180.0));
     *high = ortho ? s->log_slope + 4.0 : log(tan(80.0 * PI / 180.0));
+}
+
+/* z of what was squeezed; c: median of depth over the value that it nears far away. */
+static double unsqueezed(const struct fit_samples *s, enum fit_model model, double d, double c)
+{
+    const double left = fmax(1.0 - c * d / s->median, 1e-3);
+    if (model == FIT_TONED || model == FIT_ORTHO_TONED)
+        return d / left;
+    return fabs(c) > 1e-9 ? -log(left) / c * s->median : d;
 }
 
 /* 1/z of a stored value. stretch: length of the ray with z = 1. */
@@ -43,6 +74,8 @@ static double inverse_z(const struct fit_samples *s, enum fit_model model, doubl
         return 1.0 / fmax((d + offset) / stretch, least);
     case FIT_TONED:
         return fmax(1.0 / d - c / s->median, 1e-3 / s->median);
+    case FIT_EXPONENTIAL:
+        return 1.0 / unsqueezed(s, model, d, c);
     default:
         return 1.0 / d;
     }
@@ -70,8 +103,13 @@ static struct vec3 normal_with(const struct fit_samples *s, const struct fit_sam
     const double dx = 2.0 * s->step_x, dy = 2.0 * step_y;
     struct vec3 n;
     if (fit_model_is_ortho(model)) {
-        const double sign = model == FIT_ORTHO ? 1.0 : -1.0;
-        n = vec3(sign * (p->d[2] - p->d[1]) / dx / k, sign * (p->d[4] - p->d[3]) / dy / k, 1.0);
+        const double sign = model == FIT_ORTHO_REVERSED ? -1.0 : 1.0;
+        double z[5];
+        for (int i = 1; i < 5; i++)
+            z[i] = model == FIT_ORTHO_TONED || model == FIT_ORTHO_EXPONENTIAL
+                       ? unsqueezed(s, model, p->d[i], at[FIT_C])
+                       : p->d[i];
+        n = vec3(sign * (z[2] - z[1]) / dx / k, sign * (z[4] - z[3]) / dy / k, 1.0);
     } else {
         const double x = p->x - at[FIT_CX], y = p->y * height - at[FIT_CY], c = at[FIT_C];
         const double xs[5] = {x, x - s->step_x, x + s->step_x, x, x};

@@ -273,12 +273,14 @@ static void tell_pixels(const struct gbuffer *g, const struct fit *fit, const ch
 static void tell_tone(const struct gbuffer *g, const struct fit *fit, const char *path,
                       struct report *report)
 {
+    const bool is_fraction = fit->curve == FIT_TONED || fit->curve == FIT_ORTHO_TONED;
     if (fit->tone > 0)
         report_warn(report, "toned depth",
-                    "%s: depth '%s' looks squeezed, as a z / (a + z) with a = %.3g is: its normals "
-                    "are those of '%s' only if that is undone; camera and AO are wrong; write it "
-                    "as a distance, without any curve",
-                    path, g->roles.kind[ROLE_DEPTH].label, fit->tone,
+                    "%s: depth '%s' looks squeezed, as %s with a = %.3g is: its normals are those "
+                    "of '%s' only if that is undone; camera and AO are wrong; write it as a "
+                    "distance, without any curve",
+                    path, g->roles.kind[ROLE_DEPTH].label,
+                    is_fraction ? "a z / (a + z)" : "a (1 - exp(-z / a))", fit->tone,
                     g->roles.kind[ROLE_NORMAL].label);
 }
 
@@ -383,6 +385,7 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
         if (!estimate_as(g, possible_models(g, options, false), false, 0, &seen, err))
             return false;
         told.tone = seen.tone;
+        told.curve = seen.curve;
         tell_tone(g, &told, path, report);
         if (!(told.tone > 0))
             weigh(g, &told, &seen, path, report);
