@@ -514,6 +514,63 @@ def forgotten_shape_of_pixels_is_said(scratch, _, across, down, ratio):
         check('as wide as high' not in said, said)
 
 
+def boxes_along_axes(boxes, width, height, aspect=1.0, shift=(0, 0), turn=TURN):
+    """Depth and normals of boxes, each two corners, that are parallel to the axes of the world."""
+    half = half_width(FOV)
+    x = ((np.arange(width) + 0.5) / width * 2 - 1 + 2 * shift[0]) * half
+    y = (1 - (np.arange(height) + 0.5) / height * 2 + 2 * shift[1]) * half * height / \
+        (width * aspect)
+    x, y = np.meshgrid(x, y)
+    ray = np.stack([x, y, -np.ones_like(x)], axis=-1) @ turn
+    z, normals = np.full_like(x, np.inf), np.zeros((height, width, 3))
+    for low, high in boxes:
+        with np.errstate(divide='ignore'):
+            near, far = np.array(low) / ray, np.array(high) / ray
+        enter, leave = np.minimum(near, far), np.maximum(near, far).min(axis=-1)
+        axis, enter = enter.argmax(axis=-1), enter.max(axis=-1)
+        hit = (enter < leave) & (enter > 0) & (enter < z)
+        z = np.where(hit, enter, z)
+        side = np.eye(3)[axis] * -np.sign(np.take_along_axis(ray, axis[..., None], -1))
+        normals = np.where(hit[..., None], side, normals)
+    return {'Z': np.where(np.isinf(z), 1e10, z).astype(np.float32),
+            **{f'N.{c}': normals[..., i].astype(np.float32) for i, c in enumerate('XYZ')}}
+
+
+CORNER = [((-50, 3.5, -50), (50, 9, 50)), ((-50, -50, -12), (50, 50, -9)),
+          ((-9, -50, -50), (-6, 50, 50))]  # the ceiling and two walls of a room
+
+
+def hanging(*size, **view):
+    boxes = [((i - 6, 2.8 - i * 0.3, -5 - i * 0.7), (i - 5.2, 9, -4.2 - i * 0.5))
+             for i in range(5)]
+    return boxes_along_axes(CORNER + boxes, *size, **view)
+
+
+@cases([('four thirds', (240, 180), 4 / 3, '1.3'), ('three halves', (240, 203), 1.5, '1.(5|49)'),
+        ('square', (320, 180), 1, '')])
+def squeeze_that_looks_like_a_lens_shift_is_said(scratch, _, size, aspect, ratio):
+    # Three directions of faces are as well those of a shift along one side.
+    write_exr(scratch.path('in.exr'), hanging(*size, aspect=aspect))
+    view, said = inspect(scratch)
+    if ratio:
+        matches(r'those of a lens shift of \S+ -?\d\S*, which is taken, and as well of pixels '
+                f'that are {ratio}[0-9.]* times as wide as high, where the header says 1:.*'
+                'pixelAspectRatio.*--camera', said, 'what is said')
+    write_exr(scratch.path('in.exr'), hanging(*size, aspect=aspect),
+              attributes=[('PixelAspectRatio', float(aspect))])
+    view, said = inspect(scratch)
+    check('as wide as high' not in said and 'lens shift' not in said, said)
+    check(abs(view['camera']['fov_x_deg'] - FOV) < 0.5, f'{view["camera"]["fov_x_deg"]} degrees')
+
+
+@case
+def shift_of_both_sides_is_no_squeeze(scratch):
+    write_exr(scratch.path('in.exr'), hanging(320, 180, shift=(0.12, 0.2)))
+    said = inspect(scratch)[1]
+    matches(r'field of view, shift 0\.12\S* 0\.2', said, 'the warning')
+    check('as wide as high' not in said and 'lens shift' not in said, said)
+
+
 @case
 def depth_alone_assumes_a_camera(scratch):
     write_exr(scratch.path('in.exr'), {'Z': Scene().depth()})

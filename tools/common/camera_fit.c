@@ -576,6 +576,8 @@ static bool find_causes(const struct fit_samples *s, const struct fit_input *inp
         fit->tone = s->median / tone;
     else if (isfinite(by_stretch))
         fit->pixel_aspect = input->pixel_aspect / times;
+    else if (fabs(times - 1.0) > 0)
+        fit->other_aspect = input->pixel_aspect / times;
     return true;
 }
 
@@ -664,6 +666,7 @@ bool camera_fit(const struct fit_input *input, struct fit *fit, struct tool_erro
         return true;
     *fit = best->fit;
     fit->pixel_aspect = attempts[0].fit.pixel_aspect;
+    fit->other_aspect = best->best.shifted ? attempts[0].fit.other_aspect : 0;
     fit->tone = attempts[0].fit.tone;
     fit->curve = attempts[0].fit.curve;
     for (size_t i = 0; i < count && fit->is_sure; i++)

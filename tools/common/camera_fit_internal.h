@@ -98,8 +98,9 @@ void fit_refine(const struct fit_samples *s, struct fit_solution *at, double sig
 /* How surely one is better than the other, from their costs by tiles: in standard errors. */
 double fit_paired_z(const struct fit_solution *better, const struct fit_solution *worse);
 
-/* *times: by how much all is higher than it seems, if that is clear, or 1; *cost: then, with a
- * scale of 0.02 or more. False if memory runs out. */
+/* *times: by how much all is higher than it seems, if that is clear, or explains as much as the
+ * lens shift of the best does, or 1; *cost: if it is clear, with a scale of 0.02 or more. False if
+ * memory runs out. */
 bool fit_find_stretch(const struct fit_samples *all, const struct fit_solution *best, double *times,
                       double *cost);
 /* *tone: median of depth over the value that depth nears far away, if that is clear, or 0; *curve

@@ -219,6 +219,14 @@ static void describe(enum camera_type type, double half_width, char view[VIEW_BY
                  camera_fov_x_deg(&camera));
 }
 
+/* Of a lens, if it is more than rounding. */
+static void describe_shift(const struct fit *fit, char shift[VIEW_BYTES])
+{
+    shift[0] = '\0';
+    if (fabs(fit->shift_x) + fabs(fit->shift_y) > 0.01)
+        snprintf(shift, VIEW_BYTES, ", shift %.3g %.3g", fit->shift_x, fit->shift_y);
+}
+
 static void tell_unknown(struct gbuffer *g, const struct fit *fit, const char *path,
                          struct report *report)
 {
@@ -234,12 +242,13 @@ static void tell_unknown(struct gbuffer *g, const struct fit *fit, const char *p
 static void tell_estimate(struct gbuffer *g, const struct fit *fit, const char *path,
                           struct report *report)
 {
-    char view[VIEW_BYTES];
+    char view[VIEW_BYTES], shift[VIEW_BYTES];
     describe(g->camera.type, g->camera.half_width, view);
+    describe_shift(fit, shift);
     report_warn(report, "camera",
-                "%s: no camera in the header; by depth and normals it is %s%s (%s%s%s), depth %s "
+                "%s: no camera in the header; by depth and normals it is %s%s%s (%s%s%s), depth %s "
                 "(--fov or --camera overrides)",
-                path, fit->is_sure ? "" : "perhaps ", view, g->camera.source,
+                path, fit->is_sure ? "" : "perhaps ", view, shift, g->camera.source,
                 fit->is_sure ? "" : ": ", fit->is_sure ? "" : fit->why,
                 depth_type_name(g->depth_type));
     if (!fit->is_sure && !g->camera.remark[0])
@@ -268,6 +277,19 @@ static void tell_pixels(const struct gbuffer *g, const struct fit *fit, const ch
             "says %.3g: camera and AO are wrong; write the attribute pixelAspectRatio, or "
             "the image without squeeze",
             path, fit->pixel_aspect, (double)g->pixel_aspect);
+}
+
+/* One image, two causes: the camera that is taken has the first. */
+static void tell_shift(const struct gbuffer *g, const struct fit *fit, const char *path,
+                       struct report *report)
+{
+    if (fit->other_aspect > 0)
+        report_warn(report, "lens shift",
+                    "%s: depth and normals are those of a lens shift of %.3g %.3g, which is taken, "
+                    "and as well of pixels that are %.3g times as wide as high, where the header "
+                    "says %.3g: if the image is squeezed, camera and AO are wrong; write the "
+                    "attribute pixelAspectRatio then, else the shift in a camera file (--camera)",
+                    path, fit->shift_x, fit->shift_y, fit->other_aspect, (double)g->pixel_aspect);
 }
 
 static void tell_tone(const struct gbuffer *g, const struct fit *fit, const char *path,
@@ -321,6 +343,7 @@ static bool find_unknown(struct gbuffer *g, const struct gbuffer_options *option
     if (options->memory)
         remember(g, &fit, path, options->memory, report);
     tell_estimate(g, &fit, path, report);
+    tell_shift(g, &fit, path, report);
     tell_offset(g, &fit, path, report);
     return true;
 }
@@ -353,15 +376,14 @@ static void weigh(const struct gbuffer *g, const struct fit *told, const struct 
 {
     const struct camera *c = &g->camera;
     const double gain = seen->agreement - told->agreement;
-    char by_told[VIEW_BYTES], by_seen[VIEW_BYTES], shift[48] = "";
+    char by_told[VIEW_BYTES], by_seen[VIEW_BYTES], shift[VIEW_BYTES];
     if (!seen->is_usable || gain < (seen->is_sure ? sure_gain : clear_gain) ||
         !is_other_view(c, seen))
         return;
     describe(c->type, c->half_width, by_told);
     describe(seen->model == FIT_ORTHO ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE, seen->half_width,
              by_seen);
-    if (fabs(seen->shift_x) + fabs(seen->shift_y) > 0.01)
-        snprintf(shift, sizeof shift, ", shift %.3g %.3g", seen->shift_x, seen->shift_y);
+    describe_shift(seen, shift);
     report_warn(report, "doubted camera",
                 "%s: %s says %s, but depth and normals %s%s%s (%.0f %% of normals agree then, and "
                 "%.0f %% as it says): that of %s is taken (--fov or --camera overrides)",
