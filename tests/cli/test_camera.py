@@ -571,6 +571,22 @@ def shift_of_both_sides_is_no_squeeze(scratch):
     check('as wide as high' not in said and 'lens shift' not in said, said)
 
 
+@cases([('whole', 0, False), ('cut', 24, True)])
+def cut_of_a_wall_with_many_boards_is_said(scratch, _, cut, is_said):
+    # Seen nearly straight on, normals hardly turn, and patches of them mix those of boards.
+    high = np.random.default_rng(1).random((12, 12)) * 0.4
+    boards = [((x - 5.8, y - 2, -9.1), (x - 5.5, y - 1.7, -8.9 + high[i, j]))
+              for i, x in enumerate(np.arange(12) * 0.5) for j, y in enumerate(np.arange(12) * 0.5)]
+    a, b = np.radians(20), np.radians(-3)
+    turn = np.array([[1, 0, 0], [0, np.cos(b), -np.sin(b)], [0, np.sin(b), np.cos(b)]]) @ \
+        np.array([[np.cos(a), 0, -np.sin(a)], [0, 1, 0], [np.sin(a), 0, np.cos(a)]])
+    channels = boxes_along_axes(CORNER + boards, 400, 225, turn=turn)
+    write_exr(scratch.path('in.exr'),
+              {n: np.ascontiguousarray(v[:, cut:]) for n, v in channels.items()})
+    said = inspect(scratch, '--fov', FOV)[1]
+    equal('but depth and normals' in said and ', shift 0.0319 ' in said, is_said, said)
+
+
 @case
 def depth_alone_assumes_a_camera(scratch):
     write_exr(scratch.path('in.exr'), {'Z': Scene().depth()})

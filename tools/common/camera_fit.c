@@ -281,7 +281,9 @@ static void try_shift(const struct fit_samples *s, const struct fit_solution *co
     t.free[FIT_CX] = t.free[FIT_CY] = true;
     fit_refine(s, &t, fmax(sigma, 0.03));
     t = sharpened(s, &t);
-    const double scale = fmax(t.sigma, best->sigma);
+    /* What is exact for most needs no sharpening, and is held against the sharpest scale. */
+    const bool is_exact = robust_scale(s, &t) <= least_sigma;
+    const double scale = fmax(is_exact ? least_sigma : t.sigma, best->sigma);
     struct fit_solution with = refined(s, &t, scale), without = refined(s, best, scale);
     const double *p = with.p, *deviation = with.deviation;
     const double z = fit_paired_z(&with, &without);
