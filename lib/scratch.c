@@ -122,21 +122,44 @@ static VkDeviceSize place_parts(const struct vkao_program *program,
     return vkao_place(parts, count);
 }
 
+/* Places the buffer's memory: the end of it may lie in the memory of images, once the last of its
+ * parts is no longer needed. */
+static void split_buffer(struct vkao_scratch *scratch, const VkMemoryRequirements *need,
+                         VkDeviceSize alignment)
+{
+    const struct vkao_block *last = NULL;
+    VkDeviceSize kept = 0;
+    for (int i = VKAO_RESOURCE_CONSTANTS; i < VKAO_RESOURCE_COUNT; ++i) {
+        const struct vkao_block *b = &scratch->blocks[i];
+        if (b->size && (!last || b->offset + b->size > last->offset + last->size))
+            last = b;
+    }
+    for (int i = VKAO_RESOURCE_CONSTANTS; i < VKAO_RESOURCE_COUNT; ++i) {
+        const struct vkao_block *b = &scratch->blocks[i];
+        if (b->size && b->last > last->last && b->offset + b->size > kept)
+            kept = b->offset + b->size;
+    }
+    kept = last->last == UINT32_MAX ? need->size : align_up(kept, alignment);
+    kept = kept < need->size ? kept : need->size;
+    scratch->kept = (struct vkao_block){kept, alignment, 0, 0, UINT32_MAX, false};
+    scratch->tail = (struct vkao_block){need->size - kept, alignment, 0, 0, last->last, false};
+}
+
 vkao_result vkao_scratch_create(const struct vkao_program *program,
                                 const struct vkao_scratch_plan *plan, struct vkao_scratch *scratch,
                                 VkMemoryRequirements *out)
 {
     const vkao_context *ctx = program->ctx;
     const VkDeviceSize granularity = ctx->granularity ? ctx->granularity : 1;
-    struct vkao_block *blocks[VKAO_IMAGE_COUNT + 1] = {&scratch->whole};
-    uint32_t count = 1;
+    struct vkao_block *blocks[VKAO_IMAGE_COUNT + 2] = {&scratch->kept, &scratch->tail};
+    uint32_t count = 2;
     VkMemoryRequirements r;
     *out = (VkMemoryRequirements){.alignment = granularity, .memoryTypeBits = UINT32_MAX};
     vkao_result result = create_buffer(ctx, place_parts(program, plan, scratch), &scratch->buffer);
     if (result != VKAO_SUCCESS)
         return result;
     ctx->vk.GetBufferMemoryRequirements(ctx->device, scratch->buffer, &r);
-    scratch->whole = (struct vkao_block){r.size, r.alignment, 0, 0, UINT32_MAX, false};
+    split_buffer(scratch, &r, r.alignment > granularity ? r.alignment : granularity);
     out->memoryTypeBits &= r.memoryTypeBits;
     for (uint32_t i = 0; i < VKAO_IMAGE_COUNT; ++i) {
         struct vkao_block *block = &scratch->blocks[i];
@@ -227,7 +250,7 @@ static vkao_result bind_buffer(const struct vkao_program *program, struct vkao_s
 vkao_result vkao_scratch_bind(const struct vkao_program *program, struct vkao_scratch *scratch,
                               VkDeviceMemory memory, VkDeviceSize offset)
 {
-    vkao_result result = bind_buffer(program, scratch, memory, offset + scratch->whole.offset);
+    vkao_result result = bind_buffer(program, scratch, memory, offset + scratch->kept.offset);
     for (uint32_t i = 0; result == VKAO_SUCCESS && i < VKAO_IMAGE_COUNT; ++i) {
         if (scratch->images[i].image)
             result = bind_image(program->ctx, &scratch->images[i], memory,
