@@ -45,8 +45,8 @@ static void plan_images(const vkao_frame *frame, struct vkao_scratch_plan *plan)
         {VKAO_RESOURCE_SECOND_Z, VK_FORMAT_R32_SFLOAT, view_z},
         {VKAO_RESOURCE_HALFWAY, blurred, {grid.width, halfway_rows}},
         {VKAO_RESOURCE_BLURRED, blurred, grid},
-        {VKAO_RESOURCE_BREAKS_X, VK_FORMAT_R32_UINT, {(grid.width + 31) / 32, grid.height}},
-        {VKAO_RESOURCE_BREAKS_Y, VK_FORMAT_R32_UINT, {grid.width, (grid.height + 31) / 32}},
+        {VKAO_RESOURCE_BREAKS_X, VK_FORMAT_R32G32_UINT, {(grid.width + 31) / 32, grid.height}},
+        {VKAO_RESOURCE_BREAKS_Y, VK_FORMAT_R32G32_UINT, {grid.width, (grid.height + 31) / 32}},
     };
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
         const enum vkao_resource r = rows[i].resource;

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Where depth breaks between a texel and the next one of its row, and of its column, in words of
- * 32 bits: what width.comp counts. A bit stands for 1 << shift texels, so that the words of a row
+ * 32 bits: what width.comp counts. .x has the breaks behind which the next texel is farther, .y
+ * those behind which it is nearer. A bit stands for 1 << shift texels, so that the words of a row
  * are those of one, two, four ... groups side by side, which share out the rows; likewise
  * columns. An invocation takes parts of two lines side by side, as gathers of rows have them. */
 #version 450
@@ -26,7 +27,7 @@ layout(binding = VKAO_BINDING_BREAKS_Y_WRITE) uniform writeonly uimage2D breaks_
 const int RUN = 8, FOLDS = 3, READ = RUN + 4;
 
 /* Of the rows and of the columns that the group has. */
-shared uint words[2][WORD];
+shared uvec2 words[2][WORD];
 
 /* What a group has to find: of rows, or of columns, a word along and lines across. */
 struct Lines {
@@ -91,21 +92,23 @@ void find_breaks(Lines l, int thread, ivec2 low, ivec2 high)
         int along = (l.word * WORD << l.shift) + step;
         vec2 z[READ];
         read_lines(l.vertical, low + texel_of(l, along - 1, l.first + line), z);
-        uvec2 bits = uvec2(0u);
+        uvec2 broken = uvec2(0u), nearer = uvec2(0u);
         [[unroll]] for (int k = 0; k < RUN; ++k)
-            bits |= uvec2(breaks(z[k].x, z[k + 1].x, z[k + 2].x, z[k + 3].x) ? 1u << k : 0u,
-                          breaks(z[k].y, z[k + 1].y, z[k + 2].y, z[k + 3].y) ? 1u << k : 0u);
+            broken |= uvec2(breaks(z[k].x, z[k + 1].x, z[k + 2].x, z[k + 3].x) ? 1u << k : 0u,
+                            breaks(z[k].y, z[k + 1].y, z[k + 2].y, z[k + 3].y) ? 1u << k : 0u);
+        [[unroll]] for (int k = RUN; k > 0; --k)
+            nearer = nearer << 1 | floatBitsToUint(z[k + 1] - z[k]) >> 31;
         /* Beyond the last texel nothing breaks. */
-        bits &= (1u << clamp(length - 1 - along, 0, RUN)) - 1u;
+        broken &= (1u << clamp(length - 1 - along, 0, RUN)) - 1u;
+        uvec4 bits = uvec4(broken & ~nearer, broken & nearer).xzyw;
         for (int fold = 0; fold < min(l.shift, FOLDS); ++fold) {
             bits |= bits >> 1;
             bits = bits & 1u | bits >> 1 & 2u | bits >> 2 & 4u | bits >> 3 & 8u;
         }
         bits <<= step >> l.shift;
-        if (bits.x != 0u)
-            atomicOr(words[which][line], bits.x);
-        if (bits.y != 0u)
-            atomicOr(words[which][line + 1], bits.y);
+        [[unroll]] for (int k = 0; k < 4; ++k)
+            if (bits[k] != 0u)
+                atomicOr(words[which][line + (k >> 1)][k & 1], bits[k]);
     }
 }
 
@@ -118,14 +121,14 @@ void main()
           columns = lines_of(true, reach.shift.y, size);
     int thread = int(gl_LocalInvocationIndex);
     for (int i = thread; i < 2 * WORD; i += THREADS)
-        words[i >> 5][i & 31] = 0u;
+        words[i >> 5][i & 31] = uvec2(0u);
     barrier();
     find_breaks(rows, thread, low, high);
     find_breaks(columns, thread, low, high);
     barrier();
     if (thread < rows.count && rows.first + thread < size.y)
-        imageStore(breaks_x_image, ivec2(rows.word, rows.first + thread), uvec4(words[0][thread]));
+        imageStore(breaks_x_image, ivec2(rows.word, rows.first + thread), words[0][thread].xyyy);
     if (thread < columns.count && columns.first + thread < size.x)
         imageStore(breaks_y_image, ivec2(columns.first + thread, columns.word),
-                   uvec4(words[1][thread]));
+                   words[1][thread].xyyy);
 }

@@ -185,14 +185,14 @@
  * way from the sample before, for whose gap it stands, and at most BASE + SLOPE of its lateral
  * distance. */
 #define VKAO_VBAO_THICKNESS_WIDTH 0.9
-#define VKAO_VBAO_THICKNESS_LENGTH 0.1
+#define VKAO_VBAO_THICKNESS_LENGTH 0.05
 /* Of what goes on on all sides, but at most WIDER of the width that is seen of it: where the radius
  * is most of the view, and what is seen a sliver of it, that says little. */
 #define VKAO_VBAO_THICKNESS_WIDE 0.75
 #define VKAO_VBAO_THICKNESS_WIDER 10.0
 #define VKAO_VBAO_THICKNESS_GAP 2.35
 #define VKAO_VBAO_THICKNESS_GIVEN_GAP 0.5 /* where thickness is an input, which has no cap */
-#define VKAO_VBAO_THICKNESS_BASE 0.45
+#define VKAO_VBAO_THICKNESS_BASE 0.40
 #define VKAO_VBAO_THICKNESS_SLOPE 0.80
 /* Depth breaks between two texels if it changes by more than RISE of the smaller change beside them
  * plus LEAST. Surfaces are followed to REACH on each side. Both are tangents of angles that the eye

@@ -25,8 +25,8 @@ real break_between(real before, real z, real next, real behind)
     return max(abs(next - z) - break_limit(before, z, next, behind), next - 0.5 * NOTHING);
 }
 
-/* How far a surface is followed to each side, in a row and in a column: in steps of texels, of
- * which a word of breaks has 32. In large images a step is several texels, 1 << shift. */
+/* How far a surface is followed to each side, in a row and in a column: in steps of texels, fewer
+ * than the 32 that a word of breaks has. In large images a step is several texels, 1 << shift. */
 struct Reach {
     ivec2 shift, steps;
 };
@@ -35,7 +35,7 @@ Reach width_reach()
 {
     vec2 reach = params.width_reach * abs(params.inverse_unproject) + 0.5;
     ivec2 texels = ivec2(clamp(reach, vec2(1.0), vec2(65535.0)));
-    ivec2 shift = findMSB((texels - 1) >> 5) + 1;
+    ivec2 shift = findMSB(texels >> 5) + 1;
     return Reach(shift, texels >> shift);
 }
 

@@ -510,8 +510,8 @@ void vkao_cpu_parts(const struct vkao_program *program, VkExtent2D extent, bool 
     const VkDeviceSize stride = rows->stride;
     parts[PART_Z] = stride * (grid.height + 2 * VKAO_VIEW_Z_BORDER) * 4;
     if (vkao_has_thickness(&program->settings)) {
-        parts[PART_BREAKS_X] = (VkDeviceSize)VKAO_BREAKS_STRIDE_OF(stride) * grid.height * 4;
-        parts[PART_BREAKS_Y] = stride * ((grid.height + 31) / 32) * 4;
+        parts[PART_BREAKS_X] = (VkDeviceSize)VKAO_BREAKS_STRIDE_OF(stride) * grid.height * 8;
+        parts[PART_BREAKS_Y] = stride * ((grid.height + 31) / 32) * 8;
     }
     /* A rect may begin within a tile of this many at most. */
     const VkDeviceSize columns = (grid.width + 3) / VKAO_ROW_GROUP_WIDTH + 1,

@@ -12,7 +12,7 @@ layout(push_constant) uniform Block { vkao_dispatch here; };
 #include "buffers.glsl"
 
 layout(binding = VKAO_BINDING_Z4, rgba32f) uniform readonly imageBuffer view_z4;
-layout(binding = VKAO_BINDING_BREAKS_WORDS) writeonly buffer Breaks { uint breaks[]; };
+layout(binding = VKAO_BINDING_BREAKS_WORDS) writeonly buffer Breaks { uvec2 breaks[]; };
 #define real vec4
 #define whole ivec4
 #include "thickness.glsl"
@@ -38,7 +38,7 @@ void main()
     ivec4 texel = ivec4(0, 1, 2, 3);
     int valid = low.x - first.x - begin;
     vec4 before = depths_at(at - 1), z = depths_at(at), next = depths_at(at + 1);
-    uvec4 bits = uvec4(0u);
+    uvec4 farther = uvec4(0u), nearer = uvec4(0u);
     int count = min(8 << shift, (left + 3) >> 2);
     for (int i = 0; i < count; ++i) {
         vec4 behind = depths_at(at + min(i + 2, most));
@@ -46,11 +46,17 @@ void main()
                                     vec4(z.zw, next.xy));
         excess = mix(vec4(0.0), excess, greaterThanEqual(texel, ivec4(valid)));
         excess = mix(vec4(0.0), excess, lessThan(texel, ivec4(left - 1)));
-        bits |= mix(uvec4(0u), uvec4(1u) << uvec4(texel >> shift), greaterThan(excess, vec4(0.0)));
+        uvec4 bits = mix(uvec4(0u), uvec4(1u) << uvec4(texel >> shift),
+                         greaterThan(excess, vec4(0.0)));
+        uvec4 is_nearer = uvec4(floatBitsToInt(vec4(z.yzw, next.x) - z) >> 31);
+        farther |= bits & ~is_nearer;
+        nearer |= bits & is_nearer;
         texel += 4;
         before = z;
         z = next;
         next = behind;
     }
-    breaks[word.y * VKAO_BREAKS_STRIDE + word.x] = bits.x | bits.y | bits.z | bits.w;
+    breaks[word.y * VKAO_BREAKS_STRIDE + word.x] =
+        uvec2(farther.x | farther.y | farther.z | farther.w,
+              nearer.x | nearer.y | nearer.z | nearer.w);
 }

@@ -37,14 +37,19 @@ void main()
     int at = (z_row(first.y + texel.y) + first.x + texel.x) >> 2, row = VKAO_STRIDE >> 2;
     int left = size.y - texel.y, count = min(32 << shift, left - 1);
     vec4 before = depths_at(at - row), z = depths_at(at), next = depths_at(at + row);
-    uvec4 bits = uvec4(0u);
+    uvec4 farther = uvec4(0u), nearer = uvec4(0u);
     for (int i = 0; i < count; ++i) {
         vec4 behind = depths_at(at + min(i + 2, left) * row);
         vec4 excess = break_between(before, z, next, behind);
-        bits |= mix(uvec4(0u), uvec4(1u << (i >> shift)), greaterThan(excess, vec4(0.0)));
+        uvec4 bits = mix(uvec4(0u), uvec4(1u << (i >> shift)), greaterThan(excess, vec4(0.0)));
+        uvec4 is_nearer = uvec4(floatBitsToInt(next - z) >> 31);
+        farther |= bits & ~is_nearer;
+        nearer |= bits & is_nearer;
         before = z;
         z = next;
         next = behind;
     }
-    breaks[(word.y * VKAO_STRIDE + texel.x) >> 2] = bits;
+    int place = (word.y * VKAO_STRIDE + texel.x) >> 1;
+    breaks[place] = farther;
+    breaks[place + 1] = nearer;
 }

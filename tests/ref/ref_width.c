@@ -29,28 +29,37 @@ static double change(const struct ref_scene *scene, int axis, int x, int y, int 
     return isnan(a) || isnan(b) ? INFINITY : fabs(b - a);
 }
 
-static bool breaks(const struct ref_scene *scene, double radius, int axis, int x, int y, int k)
+/* Where depth breaks between texel k and the next, which is the nearer. Background is farthest. */
+enum break_kind { GOES_ON, NEXT_IS_FARTHER, NEXT_IS_NEARER };
+
+static enum break_kind break_of(const struct ref_scene *scene, double radius, int axis, int x,
+                                int y, int k)
 {
     double here, next;
     if (!known(scene, axis, x, y, k, &here) || !known(scene, axis, x, y, k + 1, &next))
-        return false;
+        return GOES_ON;
     if (isnan(here) || isnan(next))
-        return true;
+        return isnan(next) ? NEXT_IS_FARTHER : NEXT_IS_NEARER;
     double beside = fmin(change(scene, axis, x, y, k - 1), change(scene, axis, x, y, k + 1));
     double least = scene->view.orthographic ? VKAO_VBAO_BREAK_LEAST_RADII * radius
                                             : VKAO_VBAO_BREAK_LEAST * fmin(here, next);
-    return fabs(next - here) > VKAO_VBAO_BREAK_RISE * beside + least;
+    if (fabs(next - here) <= VKAO_VBAO_BREAK_RISE * beside + least)
+        return GOES_ON;
+    return next < here ? NEXT_IS_NEARER : NEXT_IS_FARTHER;
 }
 
-/* Texels without a break, to both sides; 2 * most if it goes on. */
+/* Texels without a break, to both sides; 2 * most if it goes on. A side that is hidden by what is
+ * nearer is as long as the other, if that is longer. */
 static int run(const struct ref_scene *scene, double radius, int axis, int x, int y, int most)
 {
     int ahead = 0, back = 0;
-    while (ahead < most && !breaks(scene, radius, axis, x, y, ahead))
+    enum break_kind end = GOES_ON, start = GOES_ON;
+    while (ahead < most && !(end = break_of(scene, radius, axis, x, y, ahead)))
         ++ahead;
-    while (back < most && !breaks(scene, radius, axis, x, y, -back - 1))
+    while (back < most && !(start = break_of(scene, radius, axis, x, y, -back - 1)))
         ++back;
-    return ahead + back;
+    const int longer = ahead > back ? ahead : back;
+    return (end == NEXT_IS_NEARER ? longer : ahead) + (start == NEXT_IS_FARTHER ? longer : back);
 }
 
 /* As few bits as view z has for it. */
