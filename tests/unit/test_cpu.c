@@ -186,6 +186,36 @@ static void parts_that_are_needed_together_do_not_overlap(void **state)
     }
 }
 
+/* With bent normals images follow the parts that tell thickness, in their memory, and no others. */
+static void images_follow_parts_that_have_ended(void **state)
+{
+    (void)state;
+    struct world w;
+    open_cpu(&w);
+    w.effect_info.method = VKAO_SSAO_VBAO;
+    world_use_bent_normals(&w);
+    world_create_frame(&w);
+    const struct vkao_scratch *scratch = &w.frame->scratch;
+    int following = 0;
+    for (int a = 0; a < VKAO_IMAGE_COUNT; ++a) {
+        if (!scratch->images[a].image)
+            continue;
+        const struct vkao_block *image = &scratch->blocks[a];
+        for (int b = VKAO_RESOURCE_CONSTANTS; b < VKAO_RESOURCE_COUNT; ++b) {
+            const struct vkao_block *part = &scratch->blocks[b];
+            const VkDeviceSize at = scratch->kept.offset + part->offset;
+            if (!part->size || image->offset + image->size <= at ||
+                at + part->size <= image->offset)
+                continue;
+            assert_true(image->first > part->last);
+            assert_true(image->follows);
+            ++following;
+        }
+    }
+    assert_true(following > 0);
+    world_close(&w);
+}
+
 static void images_of_other_slots_are_refused(void **state)
 {
     (void)state;
@@ -248,6 +278,7 @@ int main(void)
         cmocka_unit_test(tiles_are_those_of_the_rect),
         cmocka_unit_test(ao_is_copied_if_its_image_is_given),
         cmocka_unit_test(parts_that_are_needed_together_do_not_overlap),
+        cmocka_unit_test(images_follow_parts_that_have_ended),
         cmocka_unit_test(images_of_other_slots_are_refused),
         cmocka_unit_test(frames_too_large_for_buffers_use_images),
         cmocka_unit_test(bent_normals_and_noisy_ao_go_through_images),
