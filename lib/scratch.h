@@ -26,7 +26,7 @@ struct vkao_scratch {
     struct vkao_scratch_image images[VKAO_IMAGE_COUNT];
     /* of images in the memory, of parts in the buffer */
     struct vkao_block blocks[VKAO_RESOURCE_COUNT];
-    /* the buffer in the memory, and what lies behind it of parts that other things follow */
+    /* the buffer in the memory: what is needed to the end, and what images may follow */
     struct vkao_block kept, tail;
     VkBuffer buffer;
     VkBufferView views[VKAO_MOST_PASSES][VKAO_MOST_USES]; /* of uses as texels */

@@ -18,7 +18,7 @@ static const struct scene things = {{
 }};
 
 /* A board before a wall, and the same behind a post that is more than a radius nearer: all but the
- * right fifth of the board is hidden. */
+ * right quarter of the board is hidden. */
 static const struct scene board = {{
     {SHAPE_PLANE, {0.0, 0.0, 6.0}, {0.0, 0.0, -1.0}},
     {SHAPE_BOX, {0.0, 0.0, 5.6}, {0.5, 9.0, 0.2}},
