@@ -240,7 +240,7 @@ static const struct vkao_pass width = {
     .uses = {READS_TEXELS(BREAKS_X_READ, BREAKS_X, R32_UINT),
              READS_TEXELS(BREAKS_Y_READ4, BREAKS_Y, R32G32B32A32_UINT), READS_Z4,
              WRITES_WORDS(Z_WORDS, Z)},
-    .texels = {VKAO_PREPARE_WIDTH, 1},
+    .texels = {VKAO_PREPARE_WIDTH, VKAO_WIDTH_HEIGHT},
     GROUP,
     .forms = 1,
     .record = record_prepare,

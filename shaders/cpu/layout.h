@@ -60,6 +60,7 @@
 
 /* Texels per invocation. */
 #define VKAO_PREPARE_WIDTH 4
+#define VKAO_WIDTH_HEIGHT 32  /* 32 or fewer: their breaks of a column lie in one word */
 #define VKAO_TILE_HEIGHT 8    /* least rows of a tile of SSAO; a group is one of its rows */
 #define VKAO_MOST_TILES 65535 /* what every device dispatches; in larger frames tiles are higher */
 #define VKAO_STRIP_TEXELS 640 /* width of a strip of tiles, a multiple of every group's */

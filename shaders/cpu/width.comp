@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * ../width.comp for VKAO_PREPARE_WIDTH texels of a row at once. */
+ * ../width.comp for VKAO_PREPARE_WIDTH texels of a row at once, down VKAO_WIDTH_HEIGHT rows, which
+ * share the words of their columns. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #define VKAO_GLSL
@@ -19,31 +20,34 @@ layout(binding = VKAO_BINDING_Z_WORDS) writeonly buffer ViewZ { vec4 view_z[]; }
 #define whole ivec4
 #include "thickness.glsl"
 
-/* Texels of a row, and where their words are: of one axis. */
-struct Line {
-    bool vertical;
-    int base, step; /* of the first word that tells what is farther, and to the next */
-    int words;
-};
-
 /* Where the next texel is farther, and where it is nearer. */
 struct Breaks {
     uvec4 farther, nearer;
 };
 
+/* The word of a texel, the one before and the one after it. */
+struct Line {
+    Breaks before, here, after;
+};
+
 /* Beyond the image nothing breaks. */
-Breaks breaks_at(Line line, int word)
+Breaks if_inside(bool inside, uvec4 farther, uvec4 nearer)
 {
-    int inside = clamp(word, 0, line.words - 1), at = line.base + inside * line.step;
-    Breaks b;
-    if (line.vertical) {
-        b = Breaks(imageLoad(breaks_y, at), imageLoad(breaks_y, at + 1));
-    } else {
-        b = Breaks(imageLoad(breaks_x, at).xxxx, imageLoad(breaks_x, at + 1).xxxx);
-    }
-    if (inside != word)
-        b = Breaks(uvec4(0u), uvec4(0u));
-    return b;
+    return Breaks(inside ? farther : uvec4(0u), inside ? nearer : uvec4(0u));
+}
+
+Breaks breaks_of_row(int y, int word, int words)
+{
+    int at = 2 * (y * VKAO_BREAKS_STRIDE + clamp(word, 0, words - 1));
+    return if_inside(word >= 0 && word < words, imageLoad(breaks_x, at).xxxx,
+                     imageLoad(breaks_x, at + 1).xxxx);
+}
+
+Breaks breaks_of_columns(int x, int word, int words)
+{
+    int at = (clamp(word, 0, words - 1) * VKAO_STRIDE + x) >> 1;
+    return if_inside(word >= 0 && word < words, imageLoad(breaks_y, at),
+                     imageLoad(breaks_y, at + 1));
 }
 
 uvec4 bits_ahead(uvec4 here, uvec4 after, uvec4 shift)
@@ -63,17 +67,22 @@ ivec4 exponent_of(uvec4 bits)
     return floatBitsToInt(vec4(ivec4(bits))) >> 23;
 }
 
-/* Steps before the first break ahead, and behind. Without any they are more than `most`, which is
- * less than 32. */
-ivec4 free_ahead(uvec4 bits)
+uvec4 lowest(uvec4 bits)
 {
-    return exponent_of(bits & (~bits + 1u)) - 127 & 255;
+    return bits & (~bits + 1u);
 }
 
-ivec4 free_behind(uvec4 bits)
+/* Steps before the first break ahead, whose bit alone is set, and behind: at most so many, fewer
+ * than 32, which it is without any. */
+ivec4 free_ahead(uvec4 first, int most)
+{
+    return ivec4(min(uvec4(exponent_of(first) - 127), uint(most))); /* no exponent is negative */
+}
+
+ivec4 free_behind(uvec4 bits, int most)
 {
     uvec4 high = bits >> 1u;
-    return 157 - exponent_of(high & ~(high >> 1u));
+    return min(157 - exponent_of(high & ~(high >> 1u)), most);
 }
 
 /* Steps of the surface to both sides, at most so many to each. at: of the texels, along the line;
@@ -81,23 +90,23 @@ ivec4 free_behind(uvec4 bits)
 ivec4 run_of(Line line, ivec4 at, int most, int own)
 {
     uvec4 k = uvec4(at & 31);
-    int word = at.x >> 5;
-    Breaks before = breaks_at(line, word - 1), here = breaks_at(line, word),
-           after = breaks_at(line, word + 1);
-    uvec4 farther = bits_ahead(here.farther, after.farther, k),
-          nearer = bits_ahead(here.nearer, after.nearer, k);
-    ivec4 end = free_ahead(farther), hidden = free_ahead(nearer);
-    ivec4 start = free_behind(bits_behind(here.nearer, before.nearer, k)),
-          hidden_start = free_behind(bits_behind(here.farther, before.farther, k));
-    ivec4 ahead = min(min(end, hidden), most), behind = min(min(start, hidden_start), most);
+    uvec4 farther = bits_ahead(line.here.farther, line.after.farther, k),
+          nearer = bits_ahead(line.here.nearer, line.after.nearer, k), breaks = farther | nearer;
+    /* Back over a break that leads to what is nearer, one comes from what is farther. */
+    uvec4 starts = bits_behind(line.here.nearer, line.before.nearer, k),
+          breaks_behind = starts | bits_behind(line.here.farther, line.before.farther, k);
+    uvec4 first = lowest(breaks);
+    ivec4 ahead = free_ahead(first, most), behind = free_behind(breaks_behind, most);
     ivec4 longer = max(ahead, behind);
-    ivec4 run = mix(ahead, longer, lessThan(hidden, end)) +
-                mix(behind, longer, lessThan(hidden_start, start));
+    /* What has both kinds of breaks in one bit ends there; without any both sides are `most`. */
+    ivec4 run = mix(ahead, longer, equal(first & farther, uvec4(0u))) +
+                mix(behind, longer, greaterThanEqual(ivec4(starts << behind), ivec4(0)));
     if (own > 0) {
         /* Some of these texels lie before the break that their bit has, some behind it. Which is
          * not known: all get the narrower of both sides, and none is left between two breaks. */
-        ivec4 beyond = min(min(free_ahead((farther | nearer) >> 1u), behind), most);
-        run = mix(run, mix(beyond, ivec4(0), equal(hidden, end)), equal(ahead, ivec4(0)));
+        ivec4 beyond = min(free_ahead(lowest(breaks >> 1u), most), behind);
+        bvec4 has_both = notEqual(first & farther & nearer, uvec4(0u));
+        run = mix(run, mix(beyond, ivec4(0), has_both), equal(ahead, ivec4(0)));
     }
     return run;
 }
@@ -107,18 +116,24 @@ void main()
     ivec2 low = ivec2(params.valid.x & 0xffffu, params.valid.x >> 16);
     ivec2 high = ivec2(params.valid.y & 0xffffu, params.valid.y >> 16);
     ivec2 first = ivec2(round_down(low.x, VKAO_PREPARE_WIDTH), low.y), size = high - first;
-    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) * ivec2(VKAO_PREPARE_WIDTH, 1);
+    ivec2 texel = ivec2(gl_GlobalInvocationID.xy) * ivec2(VKAO_PREPARE_WIDTH, VKAO_WIDTH_HEIGHT);
     if (any(greaterThanEqual(texel, size)))
         return;
-    int at = (z_row(first.y + texel.y) + first.x + texel.x) >> 2;
-    vec4 z = imageLoad(view_z4, at);
     Reach reach = width_reach();
-    ivec2 words = ((size - 1) >> (5 + reach.shift)) + 1;
-    Line row = Line(false, 2 * texel.y * VKAO_BREAKS_STRIDE, 2, words.x);
-    Line column = Line(true, texel.x >> 1, VKAO_STRIDE >> 1, words.y);
-    ivec2 own = min(reach.shift, ivec2(1));
-    ivec4 along_x = run_of(row, (texel.x + ivec4(0, 1, 2, 3)) >> reach.shift.x, reach.steps.x,
-                           own.x);
-    ivec4 along_y = run_of(column, ivec4(texel.y >> reach.shift.y), reach.steps.y, own.y);
-    view_z[at] = with_thickness(z, along_x, along_y, reach);
+    ivec2 words = ((size - 1) >> (5 + reach.shift)) + 1, own = min(reach.shift, ivec2(1));
+    ivec2 word = texel >> (5 + reach.shift);
+    ivec4 x = (texel.x + ivec4(0, 1, 2, 3)) >> reach.shift.x;
+    Line column = Line(breaks_of_columns(texel.x, word.y - 1, words.y),
+                       breaks_of_columns(texel.x, word.y, words.y),
+                       breaks_of_columns(texel.x, word.y + 1, words.y));
+    int count = min(VKAO_WIDTH_HEIGHT, size.y - texel.y);
+    for (int i = 0; i < count; ++i) {
+        int y = texel.y + i, at = (z_row(first.y + y) + first.x + texel.x) >> 2;
+        vec4 z = imageLoad(view_z4, at);
+        Line row = Line(breaks_of_row(y, word.x - 1, words.x), breaks_of_row(y, word.x, words.x),
+                        breaks_of_row(y, word.x + 1, words.x));
+        ivec4 along_x = run_of(row, x, reach.steps.x, own.x),
+              along_y = run_of(column, ivec4(y >> reach.shift.y), reach.steps.y, own.y);
+        view_z[at] = with_thickness(z, along_x, along_y, reach);
+    }
 }
