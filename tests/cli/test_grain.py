@@ -154,6 +154,34 @@ def depth_of_moving_things_is_said(scratch, _, length):
                 str(inspect(scratch, '--fov', FOV)['warnings']), 'said')
 
 
+def mean_of(*moves):
+    return lambda plane: sum(np.roll(plane, move, (0, 1)) for move in moves) / len(moves)
+
+
+def enlarged_evenly(plane, times=3):
+    """With interpolation between the texels of a smaller image, each way."""
+    for axis in (0, 1):
+        count = plane.shape[axis] // times
+        at = np.minimum(np.arange(plane.shape[axis]) / times, count - 1)
+        first = np.minimum(at.astype(int), count - 2)
+        part = np.expand_dims(at - first, list({0, 1} - {axis}))
+        plane = np.take(plane, first * times, axis) * (1 - part) + \
+            np.take(plane, (first + 1) * times, axis) * part
+    return plane
+
+
+@cases([('unchanged', mean_of((0, 0))), ('moving', mean_of((0, 0), (1, 1))),
+        ('a lens', mean_of((0, 0), (0, 1), (1, 0), (0, -1), (-1, 0))),
+        ('enlarged', enlarged_evenly)])
+def ramps_that_normals_do_not_show_are_said(scratch, name, filtered):
+    depth, normals = cards()
+    for others in (lambda plane: plane, filtered):
+        planes = {'Z': filtered(depth), **{n: others(p) for n, p in normals.items()}}
+        write_exr(scratch.path('in.exr'), {n: p.astype(np.float32) for n, p in planes.items()})
+        said = str(inspect(scratch, '--fov', FOV)['warnings'])
+        equal('depth is filtered' in said, name != 'unchanged', f'whether it is in {said}')
+
+
 @case
 def wide_blur_is_seen_beside_borders_of_normals(scratch):
     depth, normals = cards()

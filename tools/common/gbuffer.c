@@ -527,6 +527,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         fail(err, EXIT_MEMORY, "%s: out of memory", depth->info->path);
         goto failed;
     }
+    gbuffer_warn_of_ramps(g, depth->info->path, report);
     if (!is_moved)
         gbuffer_warn_of_borders(g, depth->info->path, report);
     free(g->alpha);

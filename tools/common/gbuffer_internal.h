@@ -105,6 +105,9 @@ void gbuffer_warn_of_panorama(const struct gbuffer *g, const char *path, struct 
  * False if memory ran out. */
 bool gbuffer_warn_of_move(const struct gbuffer *g, const char *path, struct report *report,
                           bool *is_moved);
+/* Of depth as prepared and the normals that are used, if any, unless filtered_share says enough;
+ * becomes part of that. */
+void gbuffer_warn_of_ramps(struct gbuffer *g, const char *path, struct report *report);
 /* Of depth as prepared and the normals that are used, if any. */
 void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct report *report);
 /* By how many widths of a texel depth, as prepared, bends where stored normals are alike: a median,
