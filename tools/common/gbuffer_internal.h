@@ -108,6 +108,9 @@ bool gbuffer_warn_of_move(const struct gbuffer *g, const char *path, struct repo
 /* Of depth as prepared and the normals that are used, if any, unless filtered_share says enough;
  * becomes part of that. */
 void gbuffer_warn_of_ramps(struct gbuffer *g, const char *path, struct report *report);
+/* Of depth as prepared and the normals that are used, if any: values that all beyond them was set
+ * to. */
+void gbuffer_warn_of_limits(const struct gbuffer *g, const char *path, struct report *report);
 /* Of depth as prepared and the normals that are used, if any. */
 void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct report *report);
 /* By how many widths of a texel depth, as prepared, bends where stored normals are alike: a median,

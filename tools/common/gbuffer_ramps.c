@@ -144,9 +144,9 @@ static void look_along(struct borders *borders, const struct gbuffer *g, size_t 
     }
 }
 
-/* Of clean renders, of fur and grass too, at most 1 of 100 borders is a ramp, and 11 have a texel in
- * between. Of blur and of what was enlarged 8 and more are ramps along one axis at least, mostly 40
- * and more; of what was made smaller half have a texel in between. */
+/* Of clean renders, of fur and grass too, at most 1 of 100 borders is a ramp, and 11 have a texel
+ * in between. Of blur and of what was enlarged 8 and more are ramps along one axis at least,
+ * mostly 40 and more; of what was made smaller half have a texel in between. */
 static const double most_ramps = 0.05, most_between = 0.35;
 
 /* Share of borders that are no steps; 0: it may be that of a clean render. */

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * Whether depth ends where things go on. Ranges, of a depth pass that is made to be looked at, of a
+ * clip or of a device, leave everything beyond them at one value, as a wall or as nothing; AO is
+ * lost there. Normals go on: they face all ways and have edges. Those of a wall face the camera,
+ * those of a sky face the eye or are all the same.
+ */
+#include "gbuffer_internal.h"
+#include "text.h"
+
+#include <math.h>
+
+enum place { AT_NEAREST, AT_FARTHEST, AT_NOTHING, PLACES, ELSEWHERE };
+
+/* Texels well inside of what is all at one value, and how many of them face neither the camera nor
+ * the eye, and lie at an edge. */
+struct limit {
+    size_t texels, turned, edges;
+};
+
+struct range {
+    float low, high; /* of depth where there is something */
+    bool is_rising;  /* not 1/depth nor a reversed depth buffer */
+};
+
+static struct range range_of(const struct gbuffer *g)
+{
+    struct range r = {INFINITY, -INFINITY, true};
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        if (!gbuffer_is_foreground(g, i))
+            continue;
+        r.low = fminf(r.low, g->depth[i]);
+        r.high = fmaxf(r.high, g->depth[i]);
+    }
+    r.is_rising = gbuffer_view_z(g, r.low, 0) <= gbuffer_view_z(g, r.high, 0);
+    return r;
+}
+
+/* Of a texel with a normal; those that are means of something and nothing are shorter. */
+static enum place place_of(const struct gbuffer *g, const struct range *range, size_t texel)
+{
+    const float *n = g->normals + texel * 4, d = g->depth[texel];
+    const bool is_something = gbuffer_is_foreground(g, texel);
+    if (is_something && d > range->low && d < range->high)
+        return ELSEWHERE;
+    const float square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+    if (!(square > 0.9f) || !(square < 1.1f))
+        return ELSEWHERE;
+    return !is_something                           ? AT_NOTHING
+           : (d <= range->low) == range->is_rising ? AT_NEAREST
+                                                   : AT_FARTHEST;
+}
+
+static double apart(const float *a, const float *b)
+{
+    double sum = 0;
+    for (int c = 0; c < 3; c++)
+        sum += ((double)a[c] - (double)b[c]) * ((double)a[c] - (double)b[c]);
+    return sum;
+}
+
+static bool is_turned(const struct gbuffer *g, size_t texel)
+{
+    static const double most_cosine = 0.866; /* 30 degrees */
+    const float *n = g->normals + texel * 4, *m = g->view.normal_to_view;
+    double v[3], x = 0, y = 0;
+    for (int c = 0; c < 3; c++)
+        v[c] = (double)m[c] * (double)n[0] + (double)m[3 + c] * (double)n[1] +
+               (double)m[6 + c] * (double)n[2];
+    if (g->camera.type != CAMERA_ORTHOGRAPHIC)
+        camera_ray(&g->camera, &g->display_window, &g->data_window, (double)(texel % g->width),
+                   (double)(texel / g->width), &x, &y);
+    const double to_eye = (v[2] - v[0] * x - v[1] * y) / sqrt(1.0 + x * x + y * y);
+    return fabs(v[2]) < most_cosine && fabs(to_eye) < most_cosine;
+}
+
+static void look_at(const struct gbuffer *g, const struct range *range, size_t texel,
+                    struct limit limits[PLACES])
+{
+    static const double other = 0.1; /* 18 degrees */
+    const size_t around[4] = {texel - 1, texel + 1, texel - g->width, texel + g->width};
+    const enum place place = place_of(g, range, texel);
+    bool is_edge = false;
+    if (place == ELSEWHERE)
+        return;
+    for (int k = 0; k < 4; k++) {
+        if (place_of(g, range, around[k]) != place)
+            return;
+        is_edge |= apart(g->normals + texel * 4, g->normals + around[k] * 4) > other;
+    }
+    limits[place].texels++;
+    limits[place].turned += is_turned(g, texel);
+    limits[place].edges += is_edge;
+}
+
+/* Of clean renders no texel at all is inside of the nearest or the farthest value, but of walls
+ * that are seen straight on; those have turned ones by strong bumps alone. Of depth that was
+ * clamped to what 70 or 90 % of the image are nearer than, or 20 %, 5 to 100 of 100 are turned;
+ * where it was less than 10, the texels at edges were 10 times as many as are in a row across all
+ * that is clamped. The sides of a box that is the sky are turned too, and have 3 edges at most.
+ * Steps of halves may hold some far things. */
+static bool goes_on(const struct gbuffer *g, const struct limit *limit, enum place place)
+{
+    static const double turned = 0.1, turned_at_edges = 0.04, edges = 6.5;
+    enum { FEW = 100 };
+    const double all = (double)limit->texels;
+    const double least_share = g->depth_is_half || g->depth_step > 0 ? 0.05 : 0.005;
+    if (limit->texels < FEW || all < least_share * (double)gbuffer_texels(g))
+        return false;
+    const bool has_edges = (double)limit->edges > edges * sqrt(all);
+    return ((double)limit->turned > turned * all && (place != AT_NOTHING || has_edges)) ||
+           ((double)limit->turned > turned_at_edges * all && has_edges);
+}
+
+static void warn_of_limit(const struct gbuffer *g, const struct range *range,
+                          const struct limit *limit, enum place place, const char *path,
+                          struct report *report)
+{
+    const char *normals = g->roles.kind[ROLE_NORMAL].label;
+    const bool is_low = range->is_rising == (place == AT_NEAREST);
+    char share[PERCENT_BYTES];
+    text_percent(share, (double)limit->texels / (double)gbuffer_texels(g));
+    if (place == AT_NOTHING)
+        report_warn(report, "cut depth",
+                    "%s: depth has nothing at %s of the image where normals '%s' show things: cut "
+                    "off, or clamped? AO is 1 there; write depth without a range",
+                    path, share, normals);
+    else
+        report_warn(report, "clamped depth",
+                    "%s: depth is clamped: %s of the image are all at its %s value %.6g, where "
+                    "normals '%s' face other ways; AO is wrong there; write depth without a range",
+                    path, share, place == AT_NEAREST ? "nearest" : "farthest",
+                    (double)(is_low ? range->low : range->high), normals);
+}
+
+void gbuffer_warn_of_limits(const struct gbuffer *g, const char *path, struct report *report)
+{
+    struct limit limits[PLACES] = {{0}};
+    if (!g->normals || g->block_size > 1)
+        return;
+    const struct range range = range_of(g);
+    for (size_t y = 1; y + 1 < g->height; y++)
+        for (size_t x = 1; x + 1 < g->width; x++)
+            look_at(g, &range, y * g->width + x, limits);
+    for (int k = 0; k < PLACES; k++)
+        if (goes_on(g, &limits[k], (enum place)k))
+            warn_of_limit(g, &range, &limits[k], (enum place)k, path, report);
+}
