@@ -211,6 +211,20 @@ def positions_tell_what_depth_is(scratch, channel, kind):
         check(abs(view['camera']['near'] / NEAR - 1) < 1e-3, f'near {view["camera"]["near"]}')
 
 
+@cases([('metres', 1), ('centimetres', 100), ('feet', 3.28)])
+def another_unit_than_that_of_positions_is_said(scratch, _, times):
+    scene = Scene()
+    for kind in ('planar', 'radial'):
+        write_exr(scratch.path('in.exr'), {'Z': scene.depth(kind) * np.float32(times),
+                                           **positions(scene)})
+        said = str(inspect(scratch)[0]['warnings'])
+        if times == 1:
+            check('times what' not in said, said)
+        else:
+            matches(f"depth 'Z' is {times} times what the positions 'P' say: another unit.*"
+                    "--depth 'P'", said, kind)
+
+
 @case
 def positions_of_a_parallel_camera(scratch):
     scene = Scene(160, 90, 2 * np.degrees(np.arctan(2.0)))

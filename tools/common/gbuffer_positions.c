@@ -182,6 +182,20 @@ static void fill_depth(struct gbuffer *g, const struct position_camera *camera,
     g->depth_type = DEPTH_PLANAR;
 }
 
+/* Of the same shape, but longer: centimetres beside metres. */
+static void warn_about_unit(const struct gbuffer *g, double ratio, const char *path,
+                            struct report *report)
+{
+    /* Rounding of halves leaves a thousandth. */
+    if (fabs(ratio) > 0.01)
+        report_warn(report, "unit of depth",
+                    "%s: depth '%s' is %.4g times what the positions '%s' say: another unit? "
+                    "a --radius in scene units is in that of the depth (--depth '%s' takes depth "
+                    "from the positions)",
+                    path, g->roles.kind[ROLE_DEPTH].label, exp(ratio),
+                    g->roles.kind[ROLE_POSITION].label, g->roles.kind[ROLE_POSITION].label);
+}
+
 /* What the depth beside the positions is, where nobody says so. What they do not explain, they
  * replace. */
 static bool settle_depth_type(struct gbuffer *g, const struct position_camera *camera,
@@ -204,6 +218,7 @@ static bool settle_depth_type(struct gbuffer *g, const struct position_camera *c
     if (best.apart < 0.01 && best.unit > -0.01) {
         g->depth_type = type;
         g->depth_source = DEPTH_BY_POSITIONS;
+        warn_about_unit(g, best.unit, path, report);
         return true;
     }
     report_warn(report, "depth beside positions",
