@@ -78,8 +78,10 @@ void vkao_program_lifetime(const struct vkao_program *program, enum vkao_resourc
         const struct vkao_step *step = &program->steps[i];
         if (!touches(program, step, resource, false) && !touches(program, step, resource, true))
             continue;
-        *first = found ? *first : i - (i > 0 && program->steps[i - 1].row->with_next);
-        *last = i + step->row->with_next;
+        for (*first = found ? *first : i; *first > 0 && program->steps[*first - 1].row->with_next;)
+            --*first;
+        for (*last = i; program->steps[*last].row->with_next;)
+            ++*last;
         found = true;
     }
 }

@@ -44,7 +44,7 @@ enum vkao_resource {
     /* Parts of the scratch buffer: the constants, and those of the CPU's passes (cpu/cpu.h). */
     VKAO_RESOURCE_CONSTANTS = VKAO_IMAGE_COUNT,
     VKAO_RESOURCE_CPU,
-    VKAO_RESOURCE_COUNT = VKAO_RESOURCE_CPU + 8,
+    VKAO_RESOURCE_COUNT = VKAO_RESOURCE_CPU + 9,
     VKAO_RESOURCE_SAMPLER = VKAO_RESOURCE_COUNT /* the program's, in the layouts themselves */
 };
 
@@ -98,7 +98,7 @@ struct vkao_pass {
     VkExtent2D group;  /* invocations of a workgroup */
     bool on_rows;      /* invocations begin at multiples of texels.height, as of texels.width */
     bool vertical;     /* VKAO_SETTING_VERTICAL */
-    /* it and the next one run in turns: what either touches lives as long as both */
+    /* it and the next one run in turns: what either touches lives as long as both, and so on */
     bool with_next;
     uint32_t forms; /* 1, or the 2 or 4 with VKAO_FORM_* */
     /* Records it. NULL: one dispatch over the area. */

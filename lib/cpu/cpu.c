@@ -14,6 +14,7 @@
 #include "vkao_packed_breaks_x_cpu.h"
 #include "vkao_packed_breaks_y_cpu.h"
 #include "vkao_packed_prepare_cpu.h"
+#include "vkao_packed_ring_normals_cpu.h"
 #include "vkao_packed_width_cpu.h"
 #include "vkao_packed_ssao_gtao_16bit_cpu.h"
 #include "vkao_packed_ssao_gtao_cpu.h"
@@ -33,24 +34,12 @@
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
-/* Parts of the scratch buffer. */
-enum {
-    PART_Z = VKAO_RESOURCE_CPU,
-    PART_PACKED,  /* codes of noisy AO */
-    PART_HALFWAY, /* the ring */
-    PART_BLURRED,
-    PART_COPIED,
-    PART_TILES,
-    PART_BREAKS_X,
-    PART_BREAKS_Y,
-    PART_END
-};
-static_assert(PART_END == (int)VKAO_RESOURCE_COUNT, "as passes.h counts");
+static_assert(VKAO_PART_END == (int)VKAO_RESOURCE_COUNT, "as passes.h counts");
 static_assert(VKAO_BINDING_Z == VKAO_BINDING_CPU, "the CPU's bindings come last");
 
 #define PART(name, part, does_write, format)                                                       \
     {                                                                                              \
-        VKAO_BINDING_##name, (enum vkao_resource)PART_##part, does_write, VK_FORMAT_##format       \
+        VKAO_BINDING_##name, (enum vkao_resource)VKAO_PART_##part, does_write, VK_FORMAT_##format  \
     }
 #define READS_TEXELS(name, part, format) PART(name, part, false, format)
 #define WRITES_TEXELS(name, part, format) PART(name, part, true, format)
@@ -59,6 +48,7 @@ static_assert(VKAO_BINDING_Z == VKAO_BINDING_CPU, "the CPU's bindings come last"
 #define READS_Z READS_TEXELS(Z, Z, R32_SFLOAT)
 #define READS_Z4 READS_TEXELS(Z4, Z, R32G32B32A32_SFLOAT)
 #define READS_NORMALS VKAO_READS(NORMALS, NORMALS)
+#define READS_RING_NORMALS READS_TEXELS(RING_NORMALS_READ4, RING_NORMALS, R32G32B32A32_UINT)
 #define READS_BENT_CODES VKAO_READS(BENT_SOURCE, BENT_CODES)
 #define WRITES_NOISY VKAO_WRITES(TARGET, AO_NOISY), VKAO_WRITES(BENT_TARGET, BENT_CODES)
 
@@ -106,8 +96,8 @@ static void record_tiles(const struct vkao_recording *r, uint32_t pass)
     vkao_rect_pack(rect, push.rect);
     const struct vkao_tiles_head none = {.group_rows = height, .one = 1};
     vkao_barrier(r, VKAO_SHADERS, VKAO_TRANSFER);
-    r->frame->ctx->vk.CmdUpdateBuffer(r->cmd, r->frame->scratch.buffer, part_offset(r, PART_TILES),
-                                      sizeof none, &none);
+    r->frame->ctx->vk.CmdUpdateBuffer(r->cmd, r->frame->scratch.buffer,
+                                      part_offset(r, VKAO_PART_TILES), sizeof none, &none);
     vkao_barrier(r, VKAO_TRANSFER, VKAO_SHADERS);
     vkao_bind(r, pass, &push, sizeof push);
     vkao_dispatch(r, pass, (struct vkao_rect){0, 0, push.tiles[0] * push.tiles[1], 1});
@@ -120,7 +110,7 @@ static void record_ssao(const struct vkao_recording *r, uint32_t pass)
     vkao_barrier(r, VKAO_SHADERS, VKAO_INDIRECT); /* tiles wrote the list */
     vkao_bind(r, pass, &push, sizeof push);
     r->frame->ctx->vk.CmdDispatchIndirect(r->cmd, r->frame->scratch.buffer,
-                                          part_offset(r, PART_TILES));
+                                          part_offset(r, VKAO_PART_TILES));
 }
 
 /* Copied AO of a strip -> its image. Later vkao work, and whoever waits for it, sees the copy as
@@ -129,7 +119,7 @@ static void record_copy(const struct vkao_recording *r, struct vkao_rect strip)
 {
     const vkao_frame *frame = r->frame;
     const VkBufferImageCopy region = {
-        .bufferOffset = part_offset(r, PART_COPIED) + strip.x0 * frame->rows.copied_texel,
+        .bufferOffset = part_offset(r, VKAO_PART_COPIED) + strip.x0 * frame->rows.copied_texel,
         .bufferRowLength = frame->rows.copied_stride,
         .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
         .imageOffset = {(int32_t)strip.x0, (int32_t)strip.y0, 0},
@@ -141,13 +131,19 @@ static void record_copy(const struct vkao_recording *r, struct vkao_rect strip)
     vkao_barrier(r, VKAO_TRANSFER, VKAO_SHADERS);
 }
 
-static void record_direction(const struct vkao_recording *r, uint32_t pass, uint32_t ring_row,
-                             struct vkao_rect rect)
+static void record_part(const struct vkao_recording *r, uint32_t pass, uint32_t ring_row,
+                        struct vkao_rect rect)
 {
     struct vkao_strip push = {.ring_row = ring_row};
     vkao_rect_pack(rect, push.rect);
     vkao_bind(r, pass, &push, sizeof push);
     vkao_dispatch(r, pass, rect);
+}
+
+/* Does a pass of its own decode normals for both directions of the blur? */
+static bool decodes_normals(const struct vkao_program *program)
+{
+    return program->is_packed && program->settings.blur_normal_power > 0.0f;
 }
 
 /* Both directions, down the image in strips, so that what lies between them fits a ring of rows.
@@ -159,7 +155,9 @@ static void record_blur(const struct vkao_recording *r, uint32_t pass)
                   "a ring holds a strip and the largest radius around it");
     const vkao_effect_info *e = &r->frame->program->settings;
     const uint32_t ring = VKAO_RING_ROWS, radius = e->blur_radius;
-    const struct vkao_rect rect = r->grid.rect;
+    const bool decodes = decodes_normals(r->frame->program);
+    const uint32_t rows = decodes ? pass + 1 : pass, columns = rows + 1;
+    const struct vkao_rect rect = r->grid.rect, around = vkao_area(r, VKAO_AREA_AROUND);
     struct vkao_rect halfway = vkao_area(r, VKAO_AREA_ABOVE_BELOW), strip = rect;
     const uint32_t last = halfway.y1;
     for (; strip.y0 < rect.y1; strip.y0 = strip.y1) {
@@ -170,13 +168,24 @@ static void record_blur(const struct vkao_recording *r, uint32_t pass)
         const uint32_t ring_row = (strip.y0 + ring - radius) / ring * ring - ring;
         if (strip.y0 > rect.y0) /* the strip before was read from the ring */
             vkao_barrier(r, VKAO_SHADERS, VKAO_SHADERS);
-        record_direction(r, pass, ring_row, halfway);
-        vkao_barrier(r, VKAO_SHADERS, VKAO_SHADERS); /* x wrote the ring -> y reads it */
-        record_direction(r, pass + 1, ring_row, strip);
+        if (decodes) {
+            record_part(r, pass, ring_row,
+                        (struct vkao_rect){around.x0, halfway.y0, around.x1, halfway.y1});
+            vkao_barrier(r, VKAO_SHADERS, VKAO_SHADERS); /* normals are in the ring */
+        }
+        record_part(r, rows, ring_row, halfway);
+        vkao_barrier(r, VKAO_SHADERS, VKAO_SHADERS); /* rows wrote the ring -> columns read it */
+        record_part(r, columns, ring_row, strip);
         if (r->frame->copies && !e->half_resolution)
             record_copy(r, strip);
         halfway.y0 = halfway.y1;
     }
+}
+
+static void record_rows(const struct vkao_recording *r, uint32_t pass)
+{
+    if (!decodes_normals(r->frame->program)) /* else their pass has recorded it */
+        record_blur(r, pass);
 }
 
 /* record_blur has recorded it. */
@@ -299,18 +308,31 @@ static const struct vkao_pass methods_16bit[] = {
     [VKAO_SSAO_VBAO] = METHOD_16BIT(vbao),
 };
 
+static const struct vkao_pass ring_normals = {
+    .name = "vkao ring normals",
+    .label = "blur",
+    .stage = VKAO_STAGE_BLUR,
+    VKAO_CODE(vkao_packed_ring_normals_cpu),
+    .uses = {READS_NORMALS, WRITES_WORDS(RING_NORMALS_WORDS, RING_NORMALS)},
+    .texels = {4, 1},
+    GROUP,
+    .with_next = true,
+    .forms = 1,
+    .record = record_blur,
+};
+
 static const struct vkao_pass packed_blur_x = {
     .name = "vkao blur x",
     .label = "blur",
     .stage = VKAO_STAGE_BLUR,
     VKAO_CODE(vkao_packed_blur_x_cpu),
-    .uses = {READS_Z4, READS_NORMALS, READS_TEXELS(PACKED_READ4, PACKED, R32_UINT),
+    .uses = {READS_Z4, READS_RING_NORMALS, READS_TEXELS(PACKED_READ4, PACKED, R32_UINT),
              WRITES_WORDS(HALFWAY_WORDS, HALFWAY)},
     .texels = {VKAO_BLUR_X_WIDTH, 1},
     GROUP,
     .with_next = true,
     .forms = 1,
-    .record = record_blur,
+    .record = record_rows,
 };
 
 static const struct vkao_pass packed_blur_y = {
@@ -318,7 +340,7 @@ static const struct vkao_pass packed_blur_y = {
     .label = "blur",
     .stage = VKAO_STAGE_BLUR,
     VKAO_CODE(vkao_packed_blur_y_cpu),
-    .uses = {READS_Z4, READS_NORMALS, READS_TEXELS(HALFWAY_READ2, HALFWAY, R32_UINT),
+    .uses = {READS_Z4, READS_TEXELS(HALFWAY_READ2, HALFWAY, R32_UINT), READS_RING_NORMALS,
              WRITES_WORDS(BLURRED_WORDS, BLURRED), WRITES_WORDS(STAGED_WORDS, COPIED),
              VKAO_WRITES(AO_WRITE, AO)},
     .texels = {VKAO_BLUR_Y_WIDTH, VKAO_BLUR_Y_HEIGHT},
@@ -410,6 +432,8 @@ static const struct vkao_pass debug = {
 static void plan_blur(struct vkao_program *program)
 {
     const bool half = program->settings.half_resolution;
+    if (decodes_normals(program))
+        vkao_program_add(program, &ring_normals);
     vkao_program_add(program, program->is_packed ? &packed_blur_x : &blur_x);
     if (program->is_packed)
         vkao_program_add(program, &packed_blur_y);
@@ -508,28 +532,31 @@ void vkao_cpu_parts(const struct vkao_program *program, VkExtent2D extent, bool 
     /* The last window of a row stays inside its padding. */
     rows->stride = (grid.width + window - 1) / window * window + 2 * VKAO_BUFFER_PAD;
     const VkDeviceSize stride = rows->stride;
-    parts[PART_Z] = stride * (grid.height + 2 * VKAO_VIEW_Z_BORDER) * 4;
+    parts[VKAO_PART_Z] = stride * (grid.height + 2 * VKAO_VIEW_Z_BORDER) * 4;
     if (vkao_has_thickness(&program->settings)) {
-        parts[PART_BREAKS_X] = (VkDeviceSize)VKAO_BREAKS_STRIDE_OF(stride) * grid.height * 8;
-        parts[PART_BREAKS_Y] = stride * ((grid.height + 31) / 32) * 8;
+        parts[VKAO_PART_BREAKS_X] = (VkDeviceSize)VKAO_BREAKS_STRIDE_OF(stride) * grid.height * 8;
+        parts[VKAO_PART_BREAKS_Y] = stride * ((grid.height + 31) / 32) * 8;
     }
     /* A rect may begin within a tile of this many at most. */
     const VkDeviceSize columns = (grid.width + 3) / VKAO_ROW_GROUP_WIDTH + 1,
                        tile_rows = (grid.height + VKAO_TILE_HEIGHT - 1) / VKAO_TILE_HEIGHT;
-    parts[PART_TILES] = sizeof(struct vkao_tiles_head) + columns * tile_rows * 4;
-    parts[PART_PACKED] = parts[PART_HALFWAY] = parts[PART_BLURRED] = parts[PART_COPIED] = LEAST;
+    parts[VKAO_PART_TILES] = sizeof(struct vkao_tiles_head) + columns * tile_rows * 4;
+    parts[VKAO_PART_PACKED] = parts[VKAO_PART_HALFWAY] = parts[VKAO_PART_RING_NORMALS] =
+        parts[VKAO_PART_BLURRED] = parts[VKAO_PART_COPIED] = LEAST;
     if (!program->is_packed)
         return;
-    parts[PART_PACKED] = stride * grid.height;
-    parts[PART_HALFWAY] = stride * VKAO_RING_ROWS * 2;
+    parts[VKAO_PART_PACKED] = stride * grid.height;
+    parts[VKAO_PART_HALFWAY] = stride * VKAO_RING_ROWS * 2;
+    if (decodes_normals(program))
+        parts[VKAO_PART_RING_NORMALS] = stride * VKAO_RING_ROWS * 4;
     if (program->settings.half_resolution)
-        parts[PART_BLURRED] = stride * grid.height * 2;
+        parts[VKAO_PART_BLURRED] = stride * grid.height * 2;
     if (!copies)
         return;
     const uint32_t wide = VKAO_UPSAMPLE_WIDTH, most = VKAO_STRIP_ROWS;
     rows->copied_stride = (extent.width + wide - 1) / wide * wide;
     rows->copied_texel = find_format(program->settings.ao_format)->bytes;
-    parts[PART_COPIED] =
+    parts[VKAO_PART_COPIED] =
         rows->copied_texel * rows->copied_stride * (extent.height < most ? extent.height : most);
 }
 
@@ -538,12 +565,14 @@ bool vkao_cpu_fits(const struct vkao_program *program, VkExtent2D extent)
     VkDeviceSize parts[VKAO_RESOURCE_COUNT] = {0};
     struct vkao_rows rows;
     vkao_cpu_parts(program, extent, true, &rows, parts);
-    for (int i = PART_Z; i < PART_END; ++i) {
+    for (int i = VKAO_PART_Z; i < VKAO_PART_END; ++i) {
         /* As texels of the fewest bytes that the part is read by. */
-        const VkDeviceSize texels =
-            i == PART_Z || i == PART_HALFWAY || i == PART_BLURRED ? parts[i] / 4 : parts[i] / 2;
+        const VkDeviceSize texels = i == VKAO_PART_Z || i == VKAO_PART_HALFWAY ||
+                                            i == VKAO_PART_RING_NORMALS || i == VKAO_PART_BLURRED
+                                        ? parts[i] / 4
+                                        : parts[i] / 2;
         if (parts[i] > program->ctx->max_buffer ||
-            (i != PART_COPIED && i != PART_TILES && texels > program->ctx->max_texels))
+            (i != VKAO_PART_COPIED && i != VKAO_PART_TILES && texels > program->ctx->max_texels))
             return false;
     }
     return true;

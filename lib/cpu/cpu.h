@@ -9,6 +9,20 @@
 
 #include "frame.h"
 
+/* Parts of the scratch buffer. */
+enum {
+    VKAO_PART_Z = VKAO_RESOURCE_CPU,
+    VKAO_PART_PACKED,  /* codes of noisy AO */
+    VKAO_PART_HALFWAY, /* the ring */
+    VKAO_PART_RING_NORMALS,
+    VKAO_PART_BLURRED,
+    VKAO_PART_COPIED,
+    VKAO_PART_TILES,
+    VKAO_PART_BREAKS_X,
+    VKAO_PART_BREAKS_Y,
+    VKAO_PART_END
+};
+
 /* Has it passes for these settings? Without, those of the image path run. */
 bool vkao_cpu_has(const vkao_effect_info *settings);
 /* Adds its passes of a stage. False where the stage has none of its own: those of the image path

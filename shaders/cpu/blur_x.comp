@@ -14,6 +14,7 @@ layout(push_constant) uniform Block { vkao_strip here; };
 #include "settings.glsl"
 layout(binding = VKAO_BINDING_Z4, rgba32f) uniform readonly imageBuffer view_z4;
 layout(binding = VKAO_BINDING_PACKED_READ4, r32ui) uniform readonly uimageBuffer packed_ao;
+layout(binding = VKAO_BINDING_RING_NORMALS_READ4, rgba32ui) uniform readonly uimageBuffer normals;
 layout(binding = VKAO_BINDING_HALFWAY_WORDS) writeonly buffer Halfway { uint halfway[]; };
 #include "view.glsl"
 #include "blur_window.glsl"
@@ -27,15 +28,17 @@ void blur(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
     vec4 normal[WINDOW];
     bool use_normals = NORMAL_POWER > 0.0;
     int z_word = (z_row(texel.y) + texel.x - REACH) >> 2,
-        code_word = (buffer_row(texel.y) + texel.x - REACH) >> 2;
+        code_word = (buffer_row(texel.y) + texel.x - REACH) >> 2,
+        normal_word = (place_of(texel) - REACH) >> 2;
     [[unroll]] for (int j = 0; j < WINDOW / 4; ++j) {
         vec4 z4 = imageLoad(view_z4, z_word + j);
         int word = int(imageLoad(packed_ao, code_word + j).x);
+        uvec4 normals4 = use_normals ? imageLoad(normals, normal_word + j) : uvec4(0u);
         [[unroll]] for (int i = 0; i < 4; ++i) {
             z[4 * j + i] = surface_z(z4[i]);
             code[4 * j + i] = float((word >> (8 * i)) & 255);
             if (use_normals)
-                normal[4 * j + i] = window_normal(texel + ivec2(4 * j + i - REACH, 0));
+                normal[4 * j + i] = unpack_normal(normals4[i]);
         }
     }
     /* Those that nothing uses cost nothing. */
@@ -74,7 +77,7 @@ void main()
         return;
     float result[VKAO_BLUR_X_WIDTH];
     blur(texel, result);
-    int word = (ring_row(texel.y) * VKAO_STRIDE + VKAO_BUFFER_PAD + texel.x) >> 1;
+    int word = place_of(texel) >> 1;
     [[unroll]] for (int i = 0; i < VKAO_BLUR_X_WIDTH / 2; ++i) {
         ivec2 fine = ivec2(vec2(result[2 * i], result[2 * i + 1]) * VKAO_CODE_FINE + 0.5);
         halfway[word + i] = uint(fine.x | fine.y << 16);

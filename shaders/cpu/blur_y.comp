@@ -14,6 +14,7 @@ layout(push_constant) uniform Block { vkao_strip here; };
 #include "settings.glsl"
 layout(binding = VKAO_BINDING_Z4, rgba32f) uniform readonly imageBuffer view_z4;
 layout(binding = VKAO_BINDING_HALFWAY_READ2, r32ui) uniform readonly uimageBuffer halfway;
+layout(binding = VKAO_BINDING_RING_NORMALS_READ4, rgba32ui) uniform readonly uimageBuffer normals;
 layout(binding = VKAO_BINDING_BLURRED_WORDS) writeonly buffer Blurred { uvec2 blurred_ao[]; };
 #include "view.glsl"
 #include "blur_window.glsl"
@@ -31,7 +32,7 @@ vec4 load_z(ivec2 texel)
 /* Relative to what is open. */
 vec4 load_codes(ivec2 texel)
 {
-    int at = (ring_row(texel.y) * VKAO_STRIDE + VKAO_BUFFER_PAD + texel.x) >> 1;
+    int at = place_of(texel) >> 1;
     ivec2 word = ivec2(imageLoad(halfway, at).x, imageLoad(halfway, at + 1).x);
     return vec4(
         ivec4(word.x & 0xffff, (word.x >> 16) & 0xffff, word.y & 0xffff, (word.y >> 16) & 0xffff) -
@@ -79,9 +80,11 @@ void blur(ivec2 texel)
         z[j] = load_z(at);
         if (j >= MARGIN && j < WINDOW - MARGIN)
             fine[j] = load_codes(at);
-        [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i)
-            if (use_normals)
-                normal[VKAO_BLUR_Y_WIDTH * j + i] = window_normal(at + ivec2(i, 0));
+        if (use_normals && j >= MARGIN && j < WINDOW - MARGIN) {
+            uvec4 words = imageLoad(normals, place_of(at) >> 2);
+            [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i)
+                normal[VKAO_BLUR_Y_WIDTH * j + i] = unpack_normal(words[i]);
+        }
     }
     /* Those that nothing uses cost nothing. */
     [[unroll]] for (int j = 1; j < WINDOW - 1; ++j)

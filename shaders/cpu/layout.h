@@ -10,7 +10,8 @@
  * Noisy AO is a byte per texel, its code: (ao + OFFSET) * SCALE. One slice per texel sees between
  * -.55 and 2 of what a whole hemisphere sees, 1 must be exact, and next to its noise the rounding
  * is nothing. AO between the directions of the blur is a 16-bit word per texel, 256 times that
- * code. That buffer is a ring of VKAO_RING_ROWS rows: the blur goes down the image in strips.
+ * code. That buffer is a ring of VKAO_RING_ROWS rows: the blur goes down the image in strips. If it
+ * looks at normals, what rows of it have decoded is there for its columns, a word per texel.
  *
  * AO that is copied into its image has a buffer for one strip of the image's rows. They have no
  * padding and begin at multiples of VKAO_UPSAMPLE_WIDTH. SSAO has a list of the tiles that are not
@@ -34,6 +35,8 @@
 #define VKAO_BINDING_PACKED_WORDS 37
 #define VKAO_BINDING_HALFWAY_READ2 38 /* r32ui: 2 fine codes */
 #define VKAO_BINDING_HALFWAY_WORDS 39
+#define VKAO_BINDING_RING_NORMALS_READ4 47 /* rgba32ui: 4 normals */
+#define VKAO_BINDING_RING_NORMALS_WORDS 48
 #define VKAO_BINDING_BLURRED_READ2 40 /* r32ui: the same */
 #define VKAO_BINDING_BLURRED_WORDS 41
 #define VKAO_BINDING_STAGED_WORDS 42
@@ -55,8 +58,8 @@
 #define VKAO_CODE_FINE 256.0
 /* Fine code of 1; numbers are relative to it, so that what is open stays exactly 1. */
 #define VKAO_CODE_OPEN 39680
-#define VKAO_RING_ROWS 144
-#define VKAO_STRIP_ROWS 96 /* a ring holds a strip and the largest radius on both sides of it */
+#define VKAO_RING_ROWS 112
+#define VKAO_STRIP_ROWS 64 /* a ring holds a strip and the largest radius on both sides of it */
 
 /* Texels per invocation. */
 #define VKAO_PREPARE_WIDTH 4

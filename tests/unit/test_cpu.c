@@ -121,7 +121,7 @@ static void tiles_are_those_of_the_rect(void **state)
         VkDeviceSize parts[VKAO_RESOURCE_COUNT] = {0};
         struct vkao_rows rows;
         vkao_cpu_parts(w.frame->program, extents[i], false, &rows, parts);
-        assert_true(parts[VKAO_RESOURCE_CPU + 5] >=
+        assert_true(parts[VKAO_PART_TILES] >=
                     sizeof head + 4 * (VkDeviceSize)push.tiles[0] * push.tiles[1]);
         world_close(&w);
     }
@@ -162,10 +162,11 @@ static void ao_is_copied_if_its_image_is_given(void **state)
 static void parts_that_are_needed_together_do_not_overlap(void **state)
 {
     (void)state;
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 8; ++i) {
         struct world w;
         open_cpu(&w);
         w.effect_info.half_resolution = i & 1;
+        w.effect_info.blur_normal_power = i & 4 ? 2.0f : 0.0f;
         if (i & 2)
             give_image(&w);
         world_create_frame(&w);
@@ -173,10 +174,10 @@ static void parts_that_are_needed_together_do_not_overlap(void **state)
         for (int a = VKAO_RESOURCE_CONSTANTS; a < VKAO_RESOURCE_COUNT; ++a) {
             for (int b = VKAO_RESOURCE_CONSTANTS; b < a; ++b) {
                 /* Tiles alone are done with before the blur begins. */
-                if (a == VKAO_RESOURCE_CPU + 5)
+                if (a == VKAO_PART_TILES)
                     continue;
                 /* Noisy AO ends where upsampling begins, and copies only then. */
-                if ((i & 1) && b == VKAO_RESOURCE_CPU + 1)
+                if ((i & 1) && b == VKAO_PART_PACKED)
                     continue;
                 assert_true(blocks[a].offset + blocks[a].size <= blocks[b].offset ||
                             blocks[b].offset + blocks[b].size <= blocks[a].offset);
