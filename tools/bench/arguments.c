@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "arguments.h"
 
+#include "report.h"
 #include "text.h"
 
 #include <getopt.h>
@@ -11,26 +12,26 @@
 
 enum { MAX_ARGUMENTS = 32, COLUMNS = 80, HELP_COLUMN = 26 };
 
-static void add_options(const struct argument_list *list, struct text *text)
+static const struct argument help = {"help", NULL, "print this", ARGUMENT_FLAG, 0, 0, 0, NULL};
+
+static void add_option(const struct argument *row, struct text *text)
 {
-    for (size_t i = 0; i < list->count; i++) {
-        const struct argument *row = &list->rows[i];
-        struct text left = {0};
-        text_add(&left, "  --%s%s%s", row->name, row->value ? " " : "",
-                 row->value ? row->value : "");
-        text_add(text, "%-*s", HELP_COLUMN, left.data ? left.data : "");
-        if (left.length >= HELP_COLUMN)
-            text_add(text, "\n%*s", HELP_COLUMN, "");
-        text_free(&left);
-        text_add_wrapped(text, row->help, HELP_COLUMN, COLUMNS);
-    }
+    struct text left = {0};
+    text_add(&left, "  --%s%s%s", row->name, row->value ? " " : "", row->value ? row->value : "");
+    text_add(text, "%-*s", HELP_COLUMN, left.data ? left.data : "");
+    if (left.length >= HELP_COLUMN)
+        text_add(text, "\n%*s", HELP_COLUMN, "");
+    text_free(&left);
+    text_add_wrapped(text, row->help, HELP_COLUMN, COLUMNS);
 }
 
-void arguments_print_help(const struct argument_list *list, const char *usage)
+static void print_help(const struct argument_list *list)
 {
     struct text text = {0};
-    text_add(&text, "%s", usage);
-    add_options(list, &text);
+    text_add(&text, "%s", list->usage);
+    for (size_t i = 0; i < list->count; i++)
+        add_option(&list->rows[i], &text);
+    add_option(&help, &text);
     if (text.data && !text.out_of_memory)
         fputs(text.data, stdout);
     text_free(&text);
@@ -100,12 +101,13 @@ static bool apply(const struct argument *row, const char *value, void *target,
     return true;
 }
 
-bool arguments_parse(const struct argument_list *list, int argc, char **argv, void *target,
-                     const char **positional, struct tool_error *err)
+/* The words that are no options are left, from optind on. */
+static bool parse_options(const struct argument_list *list, int argc, char **argv, void *target,
+                          bool *wants_help, struct tool_error *err)
 {
-    struct option longs[MAX_ARGUMENTS + 1] = {0};
+    struct option longs[MAX_ARGUMENTS + 2] = {0};
     int code;
-    *positional = NULL;
+    *wants_help = false;
     if (list->count > MAX_ARGUMENTS)
         return fail(err, EXIT_BUG, "too many options");
     for (size_t i = 0; i < list->count; i++)
@@ -114,6 +116,7 @@ bool arguments_parse(const struct argument_list *list, int argc, char **argv, vo
             .has_arg = list->rows[i].value ? required_argument : no_argument,
             .val = 256 + (int)i,
         };
+    longs[list->count] = (struct option){.name = help.name, .val = 256 + (int)list->count};
     optind = 0; /* glibc and musl: start afresh */
     opterr = 0;
     while ((code = getopt_long(argc, argv, ":", longs, NULL)) != -1) {
@@ -121,13 +124,40 @@ bool arguments_parse(const struct argument_list *list, int argc, char **argv, vo
             return fail(err, EXIT_USAGE, "option '%s' needs an argument", argv[optind - 1]);
         if (code < 256)
             return fail(err, EXIT_USAGE, "unknown option '%s'", argv[optind - 1]);
-        if (!apply(&list->rows[code - 256], optarg, target, err))
+        if (code - 256 == (int)list->count)
+            *wants_help = true;
+        else if (!apply(&list->rows[code - 256], optarg, target, err))
             return false;
     }
-    if (optind < argc)
-        *positional = argv[optind++];
-    if (optind < argc)
-        return fail(err, EXIT_USAGE, "one FOLDER at a time, got '%s' and '%s'", *positional,
-                    argv[optind]);
     return true;
+}
+
+bool arguments_take(const struct argument_list *list, int argc, char **argv, void *target,
+                    const char **folder, struct tool_error *err)
+{
+    bool wants_help;
+    if (!parse_options(list, argc, argv, target, &wants_help, err))
+        return false;
+    if (wants_help) {
+        print_help(list);
+        return false;
+    }
+    const int words = argc - optind;
+    if (!folder)
+        return words == 0 || fail(err, EXIT_USAGE, "'%s' is no option", argv[optind]);
+    if (words > 1)
+        return fail(err, EXIT_USAGE, "one FOLDER at a time, got '%s' and '%s'", argv[optind],
+                    argv[optind + 1]);
+    *folder = words > 0 ? argv[optind] : NULL;
+    return words > 0 || fail(err, EXIT_USAGE, "no FOLDER given");
+}
+
+int arguments_end(const struct argument_list *list, bool ok, struct tool_error *err)
+{
+    if (ok || err->code == EXIT_OK)
+        return EXIT_OK;
+    if (err->code == EXIT_USAGE)
+        fail_hint(err, "'vkao-bench %s --help' explains the options", list->command);
+    report_error(err);
+    return err->code;
 }

@@ -33,15 +33,17 @@ struct argument {
 };
 
 struct argument_list {
-    const struct argument *rows;
+    const char *command, *usage; /* usage: what --help prints before the options */
+    const struct argument *rows; /* but for --help itself */
     size_t count;
 };
 
-/* argv[0] is skipped. One word that is no option becomes *positional, NULL if there is none.
- * Errors: EXIT_USAGE. */
-bool arguments_parse(const struct argument_list *list, int argc, char **argv, void *target,
-                     const char **positional, struct tool_error *err);
-/* The usage, and a line for each option, to standard output. */
-void arguments_print_help(const struct argument_list *list, const char *usage);
+/* How a command begins. argv[0] is skipped. folder: of the one word that is no option; NULL if there
+ * is to be none. False if nothing is left to do: --help was printed, and err->code is EXIT_OK, or
+ * something is wrong, which is EXIT_USAGE. */
+bool arguments_take(const struct argument_list *list, int argc, char **argv, void *target,
+                    const char **folder, struct tool_error *err);
+/* How it ends: its exit code. What went wrong, if it is not ok, is reported. */
+int arguments_end(const struct argument_list *list, bool ok, struct tool_error *err);
 
 #endif

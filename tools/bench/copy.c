@@ -22,7 +22,7 @@
 struct copy_options {
     const char *size, *json, *device;
     unsigned runs;
-    bool text, help;
+    bool text;
 };
 
 #define AT(member) offsetof(struct copy_options, member)
@@ -38,9 +38,13 @@ static const struct argument rows[] = {
      ARGUMENT_TEXT, AT(json), 0, 0, NULL},
     {"device", "NAME", "auto, cpu, a number from 'vkao devices' or part of a name", ARGUMENT_TEXT,
      AT(device), 0, 0, NULL},
-    {"help", NULL, "print this", ARGUMENT_FLAG, AT(help), 0, 0, NULL},
 };
-static const struct argument_list arguments = {rows, sizeof rows / sizeof rows[0]};
+
+static const char usage[] =
+    "Usage: vkao-bench copy [OPTION]...\n\n"
+    "Device time of copying a buffer, 4 bytes a texel, as 'speed' measures a stage.\n\n";
+
+static const struct argument_list arguments = {"copy", usage, rows, sizeof rows / sizeof rows[0]};
 
 static const struct copy_options default_options = {
     .size = "1080p,2160p,8k", .runs = 99, .device = "auto"};
@@ -235,30 +239,15 @@ static bool put_out(const struct copy_bench *b, struct tool_error *err)
     return !o->json || json_write(o->json, to_json(b), begun, err);
 }
 
-static const char usage[] =
-    "Usage: vkao-bench copy [OPTION]...\n\n"
-    "Device time of copying a buffer, 4 bytes a texel, as 'speed' measures a stage.\n\n";
-
 int command_copy(int argc, char **argv)
 {
     struct copy_options options = default_options;
     struct copy_bench b = {.options = &options};
     struct tool_error err = {0};
-    const char *positional;
-    bool ok = arguments_parse(&arguments, argc, argv, &options, &positional, &err);
-    if (ok && options.help) {
-        arguments_print_help(&arguments, usage);
-        return EXIT_OK;
-    }
-    if (ok && positional)
-        ok = fail(&err, EXIT_USAGE, "'%s' is no option", positional);
-    ok = ok && measure(&b, &err) && put_out(&b, &err);
-    if (!ok && err.code == EXIT_USAGE)
-        fail_hint(&err, "'vkao-bench copy --help' explains the options");
-    if (!ok)
-        report_error(&err);
+    const bool ok = arguments_take(&arguments, argc, argv, &options, NULL, &err) &&
+                    measure(&b, &err) && put_out(&b, &err);
     if (b.gpu.device)
         stage_clock_destroy(&b.clock);
     gpu_destroy(&b.gpu);
-    return ok ? EXIT_OK : err.code;
+    return arguments_end(&arguments, ok, &err);
 }

@@ -21,7 +21,7 @@
 
 struct cost_options {
     const char *configs, *family, *json;
-    bool bent_normals, text, help;
+    bool bent_normals, text;
 };
 
 #define AT(member) offsetof(struct cost_options, member)
@@ -39,9 +39,15 @@ static const struct argument arguments_rows[] = {
      NULL},
     {"json", "FILE", "write the same for programs; - = standard output", ARGUMENT_TEXT, AT(json), 0,
      0, NULL},
-    {"help", NULL, "print this", ARGUMENT_FLAG, AT(help), 0, 0, NULL},
 };
-static const struct argument_list arguments = {arguments_rows,
+
+static const char usage[] =
+    "Usage: vkao-bench cost [OPTION]...\n\n"
+    "Compiles the passes of GPUs with Mesa's RADV, which needs no GPU for that, and\n"
+    "counts their instructions. Cycles are a model: waves of 64, no cache misses, both\n"
+    "sides of every branch. Counts are exact and the same wherever Mesa is.\n\n";
+
+static const struct argument_list arguments = {"cost", usage, arguments_rows,
                                                sizeof arguments_rows / sizeof arguments_rows[0]};
 
 static const struct cost_options default_options = {
@@ -338,34 +344,17 @@ static bool check(const struct cost_bench *b, struct tool_error *err)
     return true;
 }
 
-static const char usage[] =
-    "Usage: vkao-bench cost [OPTION]...\n\n"
-    "Compiles the passes of GPUs with Mesa's RADV, which needs no GPU for that, and\n"
-    "counts their instructions. Cycles are a model: waves of 64, no cache misses, both\n"
-    "sides of every branch. Counts are exact and the same wherever Mesa is.\n\n";
-
 int command_cost(int argc, char **argv)
 {
     struct cost_options options = default_options;
     struct cost_bench b = {.options = &options};
     struct tool_error err = {0};
-    const char *positional;
-    bool ok = arguments_parse(&arguments, argc, argv, &options, &positional, &err);
-    if (ok && options.help) {
-        arguments_print_help(&arguments, usage);
-        return EXIT_OK;
-    }
-    if (ok && positional)
-        ok = fail(&err, EXIT_USAGE, "'%s' is no option", positional);
-    ok = ok && configs_choose("--configs", options.configs, &b.configs, &err) &&
-         choose_families(&b, options.family, &err) && check(&b, &err);
+    bool ok = arguments_take(&arguments, argc, argv, &options, NULL, &err) &&
+              configs_choose("--configs", options.configs, &b.configs, &err) &&
+              choose_families(&b, options.family, &err) && check(&b, &err);
     for (size_t i = 0; ok && i < b.chosen_count; i++)
         ok = measure_family(&b, b.chosen[i], &err);
     ok = ok && put_out(&b, &err);
-    if (!ok && err.code == EXIT_USAGE)
-        fail_hint(&err, "'vkao-bench cost --help' explains the options");
-    if (!ok)
-        report_error(&err);
     free(b.rows);
-    return ok ? EXIT_OK : err.code;
+    return arguments_end(&arguments, ok, &err);
 }

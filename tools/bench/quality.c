@@ -35,7 +35,7 @@ struct quality_options {
     int falloff; /* enum falloff_choice */
     unsigned passes, runs;
     float radius; /* 0 = what the truth says */
-    bool sequence, no_raymarch, text, markdown, quiet, help;
+    bool sequence, no_raymarch, text, markdown, quiet;
 };
 
 #define AT(member) offsetof(struct quality_options, member)
@@ -86,9 +86,24 @@ static const struct argument rows[] = {
     {"device", "NAME", "auto, cpu, a number from 'vkao devices' or part of a name", ARGUMENT_TEXT,
      AT(device), 0, 0, NULL},
     {"quiet", NULL, "no progress", ARGUMENT_FLAG, AT(quiet), 0, 0, NULL},
-    {"help", NULL, "print this", ARGUMENT_FLAG, AT(help), 0, 0, NULL},
 };
-static const struct argument_list arguments = {rows, sizeof rows / sizeof rows[0]};
+
+static const char usage[] =
+    "Usage: vkao-bench quality FOLDER [OPTION]...\n\n"
+    "Methods and presets against ray-traced ambient occlusion. FOLDER holds\n"
+    "G-buffers X.exr, their cameras X.camera.json and their truth X.gt.exr\n"
+    "(X.VIEW.gt.exr for stereo) with the channels AO_falloff and AO_threshold.\n"
+    "RMSE, mean absolute error, bias, p99 and SSIM are those of visibility over\n"
+    "the foreground; intensity and power are 1. Of half resolution, the RMSE\n"
+    "against the same setting at full resolution is stated too. The truth of a\n"
+    "falloff that is not measured may be missing.\n\n"
+    "Flicker, of a --sequence: each texel of the first frame is a point of the\n"
+    "world, which the nearest texel of a frame stands for if its depth agrees\n"
+    "within 1 % and its normal within 10 degrees. It is the RMS, over the points\n"
+    "that half of the frames show, of the standard deviation of their error.\n\n";
+
+static const struct argument_list arguments = {"quality", usage, rows,
+                                               sizeof rows / sizeof rows[0]};
 
 static const struct quality_options default_options = {
     .falloff = FALLOFF_BOTH, .passes = 4, .runs = 3, .device = "auto"};
@@ -429,46 +444,21 @@ static bool prepare(struct bench *b, struct tool_error *err)
     return b->session != NULL;
 }
 
-static const char usage[] =
-    "Usage: vkao-bench quality FOLDER [OPTION]...\n\n"
-    "Methods and presets against ray-traced ambient occlusion. FOLDER holds\n"
-    "G-buffers X.exr, their cameras X.camera.json and their truth X.gt.exr\n"
-    "(X.VIEW.gt.exr for stereo) with the channels AO_falloff and AO_threshold.\n"
-    "RMSE, mean absolute error, bias, p99 and SSIM are those of visibility over\n"
-    "the foreground; intensity and power are 1. Of half resolution, the RMSE\n"
-    "against the same setting at full resolution is stated too. The truth of a\n"
-    "falloff that is not measured may be missing.\n\n"
-    "Flicker, of a --sequence: each texel of the first frame is a point of the\n"
-    "world, which the nearest texel of a frame stands for if its depth agrees\n"
-    "within 1 % and its normal within 10 degrees. It is the RMS, over the points\n"
-    "that half of the frames show, of the standard deviation of their error.\n\n";
-
 int command_quality(int argc, char **argv)
 {
     struct quality_options options = default_options;
     struct bench b = {.options = &options};
     struct tool_error err = {0};
-    bool ok = arguments_parse(&arguments, argc, argv, &options, &options.folder, &err);
-    if (ok && options.help) {
-        arguments_print_help(&arguments, usage);
-        return EXIT_OK;
-    }
-    if (ok && !options.folder)
-        ok = fail(&err, EXIT_USAGE, "no FOLDER given");
-    ok = ok && check_options(&options, &err);
-    if (!ok)
-        fail_hint(&err, "'vkao-bench quality --help' explains the options");
+    bool ok = arguments_take(&arguments, argc, argv, &options, &options.folder, &err) &&
+              check_options(&options, &err);
     b.report.verbosity = options.quiet ? REPORT_QUIET : REPORT_NORMAL;
     ok = ok && prepare(&b, &err) && measure_all(&b, &err) && put_out(&b, &err);
-    if (!ok)
-        report_error(&err);
     ao_session_destroy(b.session);
     gpu_destroy(&b.gpu);
     corpus_close(&b.corpus);
     flicker_free(&b.flicker);
     cJSON_Delete(b.reference);
     free(b.quality.images);
-    if (!ok)
-        return err.code;
-    return b.failed ? EXIT_SOME_FRAMES : EXIT_OK;
+    const int code = arguments_end(&arguments, ok, &err);
+    return ok && b.failed ? EXIT_SOME_FRAMES : code;
 }

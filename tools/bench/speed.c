@@ -26,7 +26,7 @@ struct speed_options {
     unsigned slices, steps, samples; /* 0 = the method's default */
     unsigned sky, threads, runs;
     float radius;
-    bool composite, bent_normals, start, scaling, memory, text, markdown, quiet, help;
+    bool composite, bent_normals, start, scaling, memory, text, markdown, quiet;
 };
 
 #define AT(member) offsetof(struct speed_options, member)
@@ -81,9 +81,16 @@ static const struct argument rows[] = {
     {"device", "NAME", "auto, cpu, a number from 'vkao devices' or part of a name", ARGUMENT_TEXT,
      AT(device), 0, 0, NULL},
     {"quiet", NULL, "no progress", ARGUMENT_FLAG, AT(quiet), 0, 0, NULL},
-    {"help", NULL, "print this", ARGUMENT_FLAG, AT(help), 0, 0, NULL},
 };
-static const struct argument_list arguments = {rows, sizeof rows / sizeof rows[0]};
+
+static const char usage[] =
+    "Usage: vkao-bench speed [OPTION]...\n\n"
+    "Device time of every stage, by timestamps. The scene is a furnished room,\n"
+    "computed at any size: view z 2 to 9, horizontal field of view 60 degrees.\n"
+    "Depth is R32_SFLOAT view z, normals R8G8B8A8_SNORM, AO R8_UNORM; all stay on\n"
+    "the device. Settings take turns, so that a busy machine slows all of them.\n\n";
+
+static const struct argument_list arguments = {"speed", usage, rows, sizeof rows / sizeof rows[0]};
 
 static const struct speed_options default_options = {
     .radius = ROOM_RADIUS, .threads = THREADS_AS_THEY_ARE, .runs = 9, .device = "auto"};
@@ -331,34 +338,16 @@ static bool put_out(const struct bench *b, struct tool_error *err)
     return ok;
 }
 
-static const char usage[] =
-    "Usage: vkao-bench speed [OPTION]...\n\n"
-    "Device time of every stage, by timestamps. The scene is a furnished room,\n"
-    "computed at any size: view z 2 to 9, horizontal field of view 60 degrees.\n"
-    "Depth is R32_SFLOAT view z, normals R8G8B8A8_SNORM, AO R8_UNORM; all stay on\n"
-    "the device. Settings take turns, so that a busy machine slows all of them.\n\n";
-
 int command_speed(int argc, char **argv)
 {
     struct speed_options options = default_options;
     struct bench b = {.options = &options};
     struct tool_error err = {0};
-    const char *positional;
-    bool ok = arguments_parse(&arguments, argc, argv, &options, &positional, &err);
-    if (ok && options.help) {
-        arguments_print_help(&arguments, usage);
-        return EXIT_OK;
-    }
-    if (ok && positional)
-        ok = fail(&err, EXIT_USAGE, "'%s' is no option", positional);
+    bool ok = arguments_take(&arguments, argc, argv, &options, NULL, &err);
     b.report.verbosity = options.quiet ? REPORT_QUIET : REPORT_NORMAL;
     ok = ok && prepare(&b, &err) && (options.memory || measure(&b, &err)) && put_out(&b, &err);
-    if (!ok && err.code == EXIT_USAGE)
-        fail_hint(&err, "'vkao-bench speed --help' explains the options");
-    if (!ok)
-        report_error(&err);
     engine_destroy(&b.engine);
     rivals_free(&b.rivals);
     timings_free(&b.timings);
-    return ok ? EXIT_OK : err.code;
+    return arguments_end(&arguments, ok, &err);
 }
