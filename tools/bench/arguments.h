@@ -38,8 +38,8 @@ struct argument_list {
     size_t count;
 };
 
-/* How a command begins. argv[0] is skipped. folder: the one word that is no option; NULL if there is
- * to be none. False if nothing is left to do: --help was printed, and err->code is EXIT_OK, or
+/* How a command begins. argv[0] is skipped. folder: the one word that is no option; NULL if there
+ * is to be none. False if nothing is left to do: --help was printed, and err->code is EXIT_OK, or
  * something is wrong, which is EXIT_USAGE. */
 bool arguments_take(const struct argument_list *list, int argc, char **argv, void *target,
                     const char **folder, struct tool_error *err);
