@@ -230,15 +230,15 @@ struct preset {
     VkBool32 half_resolution;
     uint32_t slice_count, step_count, blur_radius;
     /* Normals keep the blur off edges that depth does not show, thin slats in front of a wall; on a
-     * CPU they cost as much as the rest of the blur. */
+     * CPU they cost more than the rest of the blur. */
     float normal_power;
 };
 
 static const struct preset presets[] = {
     [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f},
     [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f},
-    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 3, 2.0f},
-    [VKAO_QUALITY_BEST] = {VK_FALSE, 4, 18, 1, 2.0f},
+    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 3, 4.0f},
+    [VKAO_QUALITY_BEST] = {VK_FALSE, 5, 16, 1, 8.0f},
 };
 
 vkao_result vkao_preset(vkao_quality quality, vkao_effect_info *effect, vkao_params *params)

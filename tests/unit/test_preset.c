@@ -12,8 +12,8 @@ static const struct {
 } want[] = {
     [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f, 1.0f},
     [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f, 1.0f},
-    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 3, 2.0f, 1.0f},
-    [VKAO_QUALITY_BEST] = {VK_FALSE, 4, 18, 1, 2.0f, 1.0f},
+    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 3, 4.0f, 1.0f},
+    [VKAO_QUALITY_BEST] = {VK_FALSE, 5, 16, 1, 8.0f, 1.0f},
 };
 
 static void presets_set_what_they_decide_and_nothing_else(void **state)
