@@ -241,6 +241,7 @@ static const struct vkao_pass prepare = {
 static const struct vkao_pass breaks_x = BREAKS(x, BREAKS_X, 32, 1),
                               breaks_y = BREAKS(y, BREAKS_Y, VKAO_PREPARE_WIDTH, 32);
 
+static_assert(32 % VKAO_WIDTH_HEIGHT == 0, "no rows of an invocation are of two words");
 static const struct vkao_pass width = {
     .name = "vkao width",
     .label = "prepare",
@@ -566,7 +567,7 @@ bool vkao_cpu_fits(const struct vkao_program *program, VkExtent2D extent)
     struct vkao_rows rows;
     vkao_cpu_parts(program, extent, true, &rows, parts);
     for (int i = VKAO_PART_Z; i < VKAO_PART_END; ++i) {
-        /* As texels of the fewest bytes that the part is read by. */
+        /* As texels of the fewest bytes that the part is read by, or fewer. */
         const VkDeviceSize texels = i == VKAO_PART_Z || i == VKAO_PART_HALFWAY ||
                                             i == VKAO_PART_RING_NORMALS || i == VKAO_PART_BLURRED
                                         ? parts[i] / 4

@@ -11,7 +11,7 @@
  * -.55 and 2 of what a whole hemisphere sees, 1 must be exact, and next to its noise the rounding
  * is nothing. AO between the directions of the blur is a 16-bit word per texel, 256 times that
  * code. That buffer is a ring of VKAO_RING_ROWS rows: the blur goes down the image in strips. If it
- * looks at normals, what rows of it have decoded is there for its columns, a word per texel.
+ * looks at normals, those of the same rows lie in a ring of their own, a word per texel.
  *
  * AO that is copied into its image has a buffer for one strip of the image's rows. They have no
  * padding and begin at multiples of VKAO_UPSAMPLE_WIDTH. SSAO has a list of the tiles that are not
@@ -42,8 +42,8 @@
 #define VKAO_BINDING_STAGED_WORDS 42
 #define VKAO_BINDING_TILES 43 /* vkao_tiles_head, tiles */
 #define VKAO_BINDING_BREAKS_WORDS 44
-#define VKAO_BINDING_BREAKS_X_READ 45  /* r32ui */
-#define VKAO_BINDING_BREAKS_Y_READ4 46 /* rgba32ui: of 4 columns */
+#define VKAO_BINDING_BREAKS_X_READ 45  /* r32ui: farther and nearer in turn */
+#define VKAO_BINDING_BREAKS_Y_READ4 46 /* rgba32ui: of 4 columns, likewise */
 
 /* VKAO_SETTING_PATH: noisy AO goes through the buffer, else through an image; and the format of
  * what is copied. */
@@ -63,7 +63,7 @@
 
 /* Texels per invocation. */
 #define VKAO_PREPARE_WIDTH 4
-#define VKAO_WIDTH_HEIGHT 32  /* 32 or fewer: their breaks of a column lie in one word */
+#define VKAO_WIDTH_HEIGHT 32  /* a part of the 32 whose breaks of a column are a word */
 #define VKAO_TILE_HEIGHT 8    /* least rows of a tile of SSAO; a group is one of its rows */
 #define VKAO_MOST_TILES 65535 /* what every device dispatches; in larger frames tiles are higher */
 #define VKAO_STRIP_TEXELS 640 /* width of a strip of tiles, a multiple of every group's */
@@ -75,7 +75,8 @@
 #define VKAO_UPSAMPLE_HEIGHT 2
 
 /* vkao_constants.path: texels in a row of buffers, and in a row of what is copied. */
-#define VKAO_BREAKS_STRIDE_OF(stride) ((stride) / 32 + 1) /* words of breaks in a row */
+#define VKAO_BREAKS_STRIDE_OF(stride)                                                              \
+    ((stride) / 32 + 1) /* pairs of words in a row: what is farther, what is nearer */
 #ifdef VKAO_GLSL
 #define VKAO_STRIDE int(params.path.x)
 #define VKAO_BREAKS_STRIDE VKAO_BREAKS_STRIDE_OF(VKAO_STRIDE)

@@ -570,6 +570,8 @@ def squeeze_that_looks_like_a_lens_shift_is_said(scratch, _, size, aspect, ratio
         matches(r'those of a lens shift of \S+ -?\d\S*, which is taken, and as well of pixels '
                 f'that are {ratio}[0-9.]* times as wide as high, where the header says 1:.*'
                 'pixelAspectRatio.*--camera', said, 'what is said')
+    else:
+        check('as wide as high' not in said, said)
     write_exr(scratch.path('in.exr'), hanging(*size, aspect=aspect),
               attributes=[('PixelAspectRatio', float(aspect))])
     view, said = inspect(scratch)

@@ -14,7 +14,7 @@ enum { MOST_FOUND = 64, MOST_RIVALS = 8, SEARCH_SAMPLES = 1500, FIELDS_OF_VIEW =
 static const double sharpest_sigma = 0.0005, least_sigma = 0.004, most_sigma = 0.12;
 /* Bumps and smooth shading turn normals by as much, as a sine: half of one agrees. */
 static const double half_agreement = 0.12;
-/* Of these nothing more is asked. */
+/* Of these nothing more is asked, unless the camera is found shifted. */
 static const double all_agree = 0.995;
 
 /* --- Search --- */

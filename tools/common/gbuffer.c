@@ -519,7 +519,6 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         (!g->thickness && !read_behind(g, ROLE_BACK_DEPTH, &g->thickness, err)) ||
         !read_behind(g, ROLE_LAYER2, &g->second_depth, err) ||
         !gbuffer_prepare_depth(g, depth->info, options, report, err) ||
-        !take_out(info, g, options, report, err) ||
         !gbuffer_prepare_normals(g, options, normals->path, report, err))
         goto failed;
     warn_about_assumption(g, report);
@@ -531,6 +530,9 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     gbuffer_warn_of_limits(g, depth->info->path, report);
     if (!is_moved)
         gbuffer_warn_of_borders(g, depth->info->path, report);
+    /* What is taken out is no fault of the file. */
+    if (!take_out(info, g, options, report, err))
+        goto failed;
     free(g->alpha);
     g->alpha = NULL;
     if ((options->want_color && !read_light(g, err)) ||

@@ -43,14 +43,6 @@ static const float *normal_at(const struct gbuffer *g, size_t texel, ptrdiff_t s
     return g->normals + ((ptrdiff_t)texel + step) * 4;
 }
 
-static double apart(const float *a, const float *b)
-{
-    double sum = 0;
-    for (int c = 0; c < 3; c++)
-        sum += ((double)a[c] - (double)b[c]) * ((double)a[c] - (double)b[c]);
-    return sum;
-}
-
 static double depth_at(const struct gbuffer *g, size_t texel, ptrdiff_t step)
 {
     static const double endless = 1e30;
@@ -76,18 +68,18 @@ static bool find_change(const struct gbuffer *g, size_t near_texel, ptrdiff_t wa
 {
     const float *first = normal_at(g, near_texel, -2 * way);
     const float *last = normal_at(g, near_texel, 3 * way);
-    const double all = apart(first, last);
-    if (!(all > other) || !(apart(first, normal_at(g, near_texel, -3 * way)) < alike) ||
-        !(apart(first, normal_at(g, near_texel, -4 * way)) < alike) ||
-        !(apart(last, normal_at(g, near_texel, 4 * way)) < alike) ||
-        !(apart(last, normal_at(g, near_texel, 5 * way)) < alike))
+    const double all = gbuffer_apart(first, last);
+    if (!(all > other) || !(gbuffer_apart(first, normal_at(g, near_texel, -3 * way)) < alike) ||
+        !(gbuffer_apart(first, normal_at(g, near_texel, -4 * way)) < alike) ||
+        !(gbuffer_apart(last, normal_at(g, near_texel, 4 * way)) < alike) ||
+        !(gbuffer_apart(last, normal_at(g, near_texel, 5 * way)) < alike))
         return false;
     double sum = 0;
     for (int k = -1; k <= 2; k++) {
         const float *n = normal_at(g, near_texel, k * way);
         /* 0: the first, 1: the last; and what is neither. */
-        const double part = ((apart(n, first) - apart(n, last)) / all + 1.0) / 2.0;
-        if (!(fabs(part - 0.5) < 0.65) || !(apart(n, first) / all - part * part < 0.1))
+        const double part = ((gbuffer_apart(n, first) - gbuffer_apart(n, last)) / all + 1.0) / 2.0;
+        if (!(fabs(part - 0.5) < 0.65) || !(gbuffer_apart(n, first) / all - part * part < 0.1))
             return false;
         sum += part;
     }
@@ -102,11 +94,11 @@ static void look_at_turn(const struct gbuffer *g, size_t near_texel, ptrdiff_t w
     static const double at_once = 0.21;
     const ptrdiff_t from = -REACH + 1, to = REACH;
     const double all =
-        apart(normal_at(g, near_texel, from * way), normal_at(g, near_texel, to * way));
+        gbuffer_apart(normal_at(g, near_texel, from * way), normal_at(g, near_texel, to * way));
     double most = 0;
     for (ptrdiff_t k = from; k < to; k++)
-        most = fmax(most, apart(normal_at(g, near_texel, k * way),
-                                normal_at(g, near_texel, (k + 1) * way)));
+        most = fmax(most, gbuffer_apart(normal_at(g, near_texel, k * way),
+                                        normal_at(g, near_texel, (k + 1) * way)));
     turns->count += all > other;
     turns->slow += all > other && most < at_once * all;
 }
@@ -157,12 +149,12 @@ static void look_at_border(const struct gbuffer *g, size_t last, ptrdiff_t way, 
     static const double least_bend = 0.05; /* rounding leaves a thousandth */
     const float *here = normal_at(g, last, -way), *there = normal_at(g, last, 2 * way);
     static const float zero[3] = {0};
-    if (!(apart(here, zero) > 0.9) || !(apart(here, there) > 2.0 * other) ||
-        !(apart(there, normal_at(g, last, 3 * way)) < flat))
+    if (!(gbuffer_apart(here, zero) > 0.9) || !(gbuffer_apart(here, there) > 2.0 * other) ||
+        !(gbuffer_apart(there, normal_at(g, last, 3 * way)) < flat))
         return;
     for (int k = 1; k <= REACH; k++)
         if (!gbuffer_is_foreground(g, (size_t)((ptrdiff_t)last - k * way)) ||
-            !(apart(here, normal_at(g, last, -k * way)) < flat))
+            !(gbuffer_apart(here, normal_at(g, last, -k * way)) < flat))
             return;
     bends->count++;
     bends->bent += bend_before(g, last, way, is_row) > least_bend;

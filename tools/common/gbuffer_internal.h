@@ -38,6 +38,24 @@ static inline double gbuffer_aspect(const struct gbuffer *g)
     return width * (double)g->pixel_aspect / height;
 }
 
+/* A normal as it is used, in view space. */
+static inline void gbuffer_view_normal(const struct gbuffer *g, size_t texel, double v[3])
+{
+    const float *n = g->normals + texel * 4, *m = g->view.normal_to_view;
+    for (int c = 0; c < 3; c++)
+        v[c] = (double)m[c] * (double)n[0] + (double)m[3 + c] * (double)n[1] +
+               (double)m[6 + c] * (double)n[2];
+}
+
+/* The square of how far two normals are from each other. */
+static inline double gbuffer_apart(const float *a, const float *b)
+{
+    double sum = 0;
+    for (int c = 0; c < 3; c++)
+        sum += ((double)a[c] - (double)b[c]) * ((double)a[c] - (double)b[c]);
+    return sum;
+}
+
 /* The user said so. */
 static inline bool gbuffer_camera_is_explicit(const struct camera *camera)
 {

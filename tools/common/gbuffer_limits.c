@@ -51,22 +51,11 @@ static enum place place_of(const struct gbuffer *g, const struct range *range, s
                                                    : AT_FARTHEST;
 }
 
-static double apart(const float *a, const float *b)
-{
-    double sum = 0;
-    for (int c = 0; c < 3; c++)
-        sum += ((double)a[c] - (double)b[c]) * ((double)a[c] - (double)b[c]);
-    return sum;
-}
-
 static bool is_turned(const struct gbuffer *g, size_t texel)
 {
     static const double most_cosine = 0.866; /* 30 degrees */
-    const float *n = g->normals + texel * 4, *m = g->view.normal_to_view;
     double v[3], x = 0, y = 0;
-    for (int c = 0; c < 3; c++)
-        v[c] = (double)m[c] * (double)n[0] + (double)m[3 + c] * (double)n[1] +
-               (double)m[6 + c] * (double)n[2];
+    gbuffer_view_normal(g, texel, v);
     if (g->camera.type != CAMERA_ORTHOGRAPHIC)
         camera_ray(&g->camera, &g->display_window, &g->data_window, (double)(texel % g->width),
                    (double)(texel / g->width), &x, &y);
@@ -86,7 +75,7 @@ static void look_at(const struct gbuffer *g, const struct range *range, size_t t
     for (int k = 0; k < 4; k++) {
         if (place_of(g, range, around[k]) != place)
             return;
-        is_edge |= apart(g->normals + texel * 4, g->normals + around[k] * 4) > other;
+        is_edge |= gbuffer_apart(g->normals + texel * 4, g->normals + around[k] * 4) > other;
     }
     limits[place].texels++;
     limits[place].turned += is_turned(g, texel);
@@ -143,6 +132,7 @@ void gbuffer_warn_of_limits(const struct gbuffer *g, const char *path, struct re
         for (size_t x = 1; x + 1 < g->width; x++)
             look_at(g, &range, y * g->width + x, limits);
     for (int k = 0; k < PLACES; k++)
-        if (goes_on(g, &limits[k], (enum place)k))
+        if ((k != AT_NOTHING || g->background.reason != BACKGROUND_GIVEN_VALUE) &&
+            goes_on(g, &limits[k], (enum place)k))
             warn_of_limit(g, &range, &limits[k], (enum place)k, path, report);
 }

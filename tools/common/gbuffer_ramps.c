@@ -31,7 +31,6 @@ struct borders {
 static struct point point_at(const struct gbuffer *g, size_t texel)
 {
     struct point p = {.is_known = gbuffer_is_foreground(g, texel)};
-    const float *n = g->normals + texel * 4, *m = g->view.normal_to_view;
     const double z = gbuffer_view_z(g, g->depth[texel], texel);
     const double scale = g->camera.type == CAMERA_ORTHOGRAPHIC ? 1.0 : z;
     double square = 0, x, y;
@@ -40,11 +39,9 @@ static struct point point_at(const struct gbuffer *g, size_t texel)
     p.place[0] = x * scale;
     p.place[1] = y * scale;
     p.place[2] = -z;
-    for (int c = 0; c < 3; c++) {
-        p.normal[c] = (double)m[c] * (double)n[0] + (double)m[3 + c] * (double)n[1] +
-                      (double)m[6 + c] * (double)n[2];
+    gbuffer_view_normal(g, texel, p.normal);
+    for (int c = 0; c < 3; c++)
         square += p.normal[c] * p.normal[c];
-    }
     for (int c = 0; c < 3; c++)
         p.normal[c] /= sqrt(square);
     /* Means of both sides of an edge are shorter than 1, and less than this points nowhere. */
