@@ -433,31 +433,38 @@ static void tell_later_hits(struct passing *p, enum role_kind kind)
     }
 }
 
-/* Those that look like depth to people. */
-static void tell_no_depths(struct passing *p)
+/* Why a channel of a part is not used though people see by its name what it is; NULL if they do not
+ * or if it is. */
+typedef const char *(*reason_finder)(const struct role_search *s, size_t part,
+                                     const struct role_channel *name);
+
+static const char *reason_against_depth(const struct role_search *s, size_t part,
+                                        const struct role_channel *name)
 {
-    const struct role_search *s = &p->search;
-    for (size_t i = 0; i < s->info->part_count; i++) {
-        const struct exr_part *part = &s->info->parts[i];
-        for (size_t c = 0; c < part->channel_count; c++) {
-            struct role_channel name;
-            const struct exr_channel *channel = &part->channels[c];
-            if (!role_channel_read(part, channel->name, s->view, s->info->part_count > 1, &name) ||
-                !(role_name_fits("Z|depth|distance", name.component) ||
-                  role_name_fits("~depth", name.leaf)))
-                continue;
-            const char *reason = part->deep                           ? "deep data"
-                                 : !role_part_has_view(part, s->view) ? "of another view"
-                                 : role_channel_is_never_depth(&name) ? "no distance by its name"
-                                 : role_channel_is_of_vector(s, i, &name) ? "component of a vector"
-                                                                          : "no name for depth";
-            tell(p, ROLE_DEPTH, channel, channel->name, reason);
-        }
-    }
+    if (!role_name_fits("Z|depth|distance", name->component) &&
+        !role_name_fits("~depth", name->leaf))
+        return NULL;
+    return s->info->parts[part].deep                             ? "deep data"
+           : !role_part_has_view(&s->info->parts[part], s->view) ? "of another view"
+           : role_channel_is_never_depth(name)                   ? "no distance by its name"
+           : role_channel_is_of_vector(s, part, name)            ? "component of a vector"
+                                                                 : "no name for depth";
 }
 
 /* Two components of what is called normals: the third cannot be told, as its sign is lost. */
-static void tell_no_normals(struct passing *p)
+static const char *reason_against_normal(const struct role_search *s, size_t part,
+                                         const struct role_channel *name)
+{
+    const bool is_xyz = role_name_fits("X", name->component);
+    if (s->info->parts[part].deep || (!is_xyz && !role_name_fits("R", name->component)) ||
+        !(role_name_fits("N|Ns|Nn", name->leaf) || role_name_fits("~normal", name->leaf)) ||
+        !role_channel_sibling(s, part, name, is_xyz ? "Y" : "G") ||
+        role_channel_sibling(s, part, name, is_xyz ? "Z" : "B"))
+        return NULL;
+    return "two components: a third is missing";
+}
+
+static void tell_by_name(struct passing *p, enum role_kind kind, reason_finder reason_of)
 {
     const struct role_search *s = &p->search;
     for (size_t i = 0; i < s->info->part_count; i++) {
@@ -465,15 +472,11 @@ static void tell_no_normals(struct passing *p)
         for (size_t c = 0; c < part->channel_count; c++) {
             struct role_channel name;
             const struct exr_channel *channel = &part->channels[c];
-            if (part->deep ||
-                !role_channel_read(part, channel->name, s->view, s->info->part_count > 1, &name) ||
-                !role_name_fits("X|R", name.component) ||
-                !(role_name_fits("N|Ns|Nn", name.leaf) || role_name_fits("~normal", name.leaf)))
-                continue;
-            const bool is_xyz = role_name_fits("X", name.component);
-            if (role_channel_sibling(s, i, &name, is_xyz ? "Y" : "G") &&
-                !role_channel_sibling(s, i, &name, is_xyz ? "Z" : "B"))
-                tell(p, ROLE_NORMAL, channel, channel->name, "two components: a third is missing");
+            const bool is_named =
+                role_channel_read(part, channel->name, s->view, s->info->part_count > 1, &name);
+            const char *reason = is_named ? reason_of(s, i, &name) : NULL;
+            if (reason)
+                tell(p, kind, channel, channel->name, reason);
         }
     }
 }
@@ -488,8 +491,8 @@ void roles_passed_over(const struct exr_info *info, const struct role_request *r
     tell_later_hits(&p, ROLE_DEPTH);
     tell_later_hits(&p, ROLE_NORMAL);
     tell_later_hits(&p, ROLE_COLOR);
-    tell_no_depths(&p);
-    tell_no_normals(&p);
+    tell_by_name(&p, ROLE_DEPTH, reason_against_depth);
+    tell_by_name(&p, ROLE_NORMAL, reason_against_normal);
 }
 
 void roles_list_colors(const struct exr_info *info, const struct role_request *request,
