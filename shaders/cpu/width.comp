@@ -76,7 +76,7 @@ uvec4 lowest(uvec4 bits)
  * than 32, which it is without any. */
 ivec4 free_ahead(uvec4 first, int most)
 {
-    return ivec4(min(uvec4(exponent_of(first) - 127), uint(most))); /* no exponent is negative */
+    return ivec4(min(uvec4(exponent_of(first) - 127), uint(most))); /* below 0 is more than all */
 }
 
 ivec4 free_behind(uvec4 bits, int most)
