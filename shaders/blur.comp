@@ -2,8 +2,9 @@
  *
  * One direction of the separable cross-bilateral blur (Petschnigg et al. 2004; Eisemann and Durand
  * 2004). The weight of tap k is blur_weight, times max(0, 1 - sharpness * |z_k - z - slope k| / z),
- * slope being the smaller of the two neighbour differences, times max(0, n.n_k)^normal_power. Where
- * next to nothing counts, all does a little, see leak_of; but bent normals of others are wrong.
+ * slope being the smaller of the two neighbour differences, times max(0, n.n_k)^normal_power, and
+ * less where the other side of the window is not on the surface, see more_across. Where next to
+ * nothing counts, all does a little, see leak_of; but bent normals of others are wrong.
  * Continuing the slope keeps tilted walls in one piece where a plain depth difference would cut
  * them up. AO is not clamped on the way: one slice per texel often sees more than its share, and a
  * clamp would turn that noise into bias. With VKAO_LAST the result is final. */
@@ -57,30 +58,36 @@ vec4 blurred(ivec2 texel, float z)
     float slope = local_slope(texel, z);
     float edge = edge_stop(z, params.sharpness, params.reference_z);
     vec4 normal = NORMAL_POWER > 0.0 ? stored_normal(texel << GRID_SHIFT) : vec4(0.0);
-    vec4 sum = load_source(texel) - ALL_OPEN;
-    float weights = 1.0, near = 0.0, all = 0.0, all_weights = 0.0;
+    vec4 sums[2] = vec4[](vec4(0.0), vec4(0.0));
+    vec2 weights = vec2(0.0);
+    float near = 0.0, all = 0.0, all_weights = 0.0;
     int k = -RADIUS;
     for (;;) {
         ivec2 at = texel + k * AXIS;
         float tap_z = k == 0 ? 0.0 : load_view_z(at);
         if (tap_z > 0.0) {
             float off = off_surface(z, slope, tap_z, local_slope(at, tap_z), float(k));
-            float full = blur_weight(k, RADIUS), w = full * max(0.0, 1.0 - edge * off);
+            float w = weight_alone(k, RADIUS) * max(0.0, 1.0 - edge * off);
             near += w;
             if (NORMAL_POWER > 0.0)
                 w *= normal_weight(normal, stored_normal(at << GRID_SHIFT), NORMAL_POWER);
             vec4 v = load_source(at) - ALL_OPEN;
-            sum += w * v;
-            weights += w;
+            int side = int(k > 0);
+            sums[side] += w * v;
+            weights[side] += w;
+            float full = blur_weight(k, RADIUS);
             all += full * v.w;
             all_weights += full;
         }
         if (++k > RADIUS)
             break;
     }
-    float leak = leak_of(near, weights - 1.0, RADIUS);
+    float leak = leak_of(near, weights.x + weights.y, RADIUS);
+    vec2 gain = 1.0 + more_across(weights, RADIUS);
+    vec4 sum = load_source(texel) - ALL_OPEN + gain.x * sums[0] + gain.y * sums[1];
     sum.w += leak * all;
-    return sum / vec4(vec3(weights), weights + leak * all_weights) + ALL_OPEN;
+    float total = 1.0 + dot(gain, weights);
+    return sum / vec4(vec3(total), total + leak * all_weights) + ALL_OPEN;
 }
 
 void main()

@@ -115,8 +115,9 @@ vec4 blurred(Texel window[2 * REACH + 3])
     Texel center = window[LEFT];
     float slope = local_slope(window[LEFT - 1].z, center.z, window[LEFT + 1].z);
     float edge = edge_stop(center.z, params.sharpness, ORTHOGRAPHIC ? params.reference_z : 0.0);
-    vec4 sum = center.v;
-    float weights = 1.0, near = 0.0, all = 0.0, all_weights = 0.0;
+    vec4 sums[2] = vec4[](vec4(0.0), vec4(0.0));
+    vec2 weights = vec2(0.0);
+    float near = 0.0, all = 0.0, all_weights = 0.0;
     [[unroll]] for (int k = -REACH; k <= REACH; ++k) {
         if (k == 0 || abs(k) > RADIUS)
             continue;
@@ -125,20 +126,25 @@ vec4 blurred(Texel window[2 * REACH + 3])
             GRID_SHIFT > 0u ? local_slope(window[LEFT + k - 1].z, tap.z, window[LEFT + k + 1].z)
                             : 0.0;
         float off = off_surface(center.z, slope, tap.z, tap_slope, float(k));
-        float full = blur_weight(k, RADIUS), w = clamp(full - full * edge * off, 0.0, 1.0);
+        float alone = weight_alone(k, RADIUS), w = clamp(alone - alone * edge * off, 0.0, 1.0);
         if (HAS_NORMALS) {
             near += w;
             w *= normal_weight(center.normal, tap.normal, NORMAL_POWER);
         }
-        sum += w * tap.v;
-        weights += w;
+        sums[int(k > 0)] += w * tap.v;
+        weights[int(k > 0)] += w;
+        float full = blur_weight(k, RADIUS);
         all += full * tap.v.w;
         all_weights += full * is_surface(tap.z);
     }
-    float leak = leak_of(HAS_NORMALS ? near : weights - 1.0, weights - 1.0, RADIUS);
+    float own = weights.x + weights.y;
+    float leak = leak_of(HAS_NORMALS ? near : own, own, RADIUS);
     leak *= is_surface(center.z); /* v of background stays 0 */
+    vec2 gain = 1.0 + more_across(weights, RADIUS);
+    vec4 sum = center.v + gain.x * sums[0] + gain.y * sums[1];
     sum.w += leak * all;
-    sum /= vec4(vec3(weights), weights + leak * all_weights);
+    float total = 1.0 + dot(gain, weights);
+    sum /= vec4(vec3(total), total + leak * all_weights);
     /* an ao_noisy of the caller's may hold anything */
     if (!NOISY_CODES)
         sum.w = is_sane(sum.w) ? sum.w : 0.0;

@@ -58,6 +58,27 @@ float blur_weights(int radius)
     return sum;
 }
 
+/* Beside an edge AO is steep, and the mean of one side of the window alone is that of a place
+ * farther in. So a side counts more the more of the other one lies on the surface as well: in the
+ * middle of a surface by 1 + across. Where normals keep the blur off edges, it does not pay. */
+float across()
+{
+    return NORMAL_POWER > 0.0 ? 0.0 : VKAO_BLUR_ACROSS;
+}
+
+/* What tap k counts alone; what it gains in the middle of a surface makes blur_weight of it. */
+float weight_alone(int k, int radius)
+{
+    return blur_weight(k, radius) * (1.0 / (1.0 + across()));
+}
+
+/* By how much more either side counts. weights: what the sides count alone. */
+vec2 more_across(vec2 weights, int radius)
+{
+    float of_a_side = 2.0 * across() * (1.0 + across());
+    return radius == 0 ? vec2(0.0) : weights.yx * (of_a_side / blur_weights(radius));
+}
+
 /* Is there a surface? As a number. */
 float is_surface(float z)
 {
@@ -67,14 +88,14 @@ float is_surface(float z)
 /* What all of the window but background counts besides, as a share of blur_weight. The mean of a
  * few texels alone, as of a bar or a leaf, is noise, which is seen as speckles that crawl when
  * things move. Beside the straight edge of anything wider half a window is left, and that is
- * enough. near: what the taps count by their depths, without the centre's 1; weights: by their
- * normals as well, which in a small blur may leave none. */
+ * enough. near: what the taps count alone by their depths; weights: by their normals as well, which
+ * in a small blur may leave none. */
 float leak_of(float near, float weights, int radius)
 {
     const float LEAK = VKAO_BLUR_LEAK;
     if (radius == 0)
         return 0.0;
-    float few = LEAK / (VKAO_BLUR_LEAK_BELOW * blur_weights(radius));
+    float few = LEAK * (1.0 + across()) / (VKAO_BLUR_LEAK_BELOW * blur_weights(radius));
     return clamp(LEAK - few * (radius < 3 ? weights : near), 0.0, 1.0);
 }
 

@@ -1,34 +1,52 @@
 /* SPDX-License-Identifier: MIT
  *
- * The weights of blur.comp for many texels at once: a window of texels is loaded once, and all of
- * its inner texels are blurred from it. */
+ * blur.comp for texels in a line: a window of them is loaded once, and all of its inner ones are
+ * blurred from it. The includer defines how many these are, VKAO_BLUR_COUNT, and how many texels a
+ * window has before and after them, VKAO_BLUR_REACH, at least RADIUS + MARGIN. */
 #ifndef VKAO_BLUR_WINDOW_GLSL_
 #define VKAO_BLUR_WINDOW_GLSL_
 
-#include "ring.glsl"
+#include "ring_texels.glsl"
 #include "surface.glsl"
 
 /* Texels beyond the radius whose depths tell slopes: see off_surface. */
 const int MARGIN = int(GRID_SHIFT);
+const int REACH = VKAO_BLUR_REACH, WINDOW = VKAO_BLUR_COUNT + 2 * REACH;
+#define USES_NORMALS (NORMAL_POWER > 0.0)
 
-/* Where the ring holds a texel. */
-int place_of(ivec2 texel)
+/* z: surface_z. What nothing uses costs nothing. No constant comes late into a result that is used
+ * once: a driver in software then takes lanes apart and goes on with each on its own. */
+void blur(float z[WINDOW], float v[WINDOW], vec4 normal[WINDOW], out float result[VKAO_BLUR_COUNT])
 {
-    return ring_row(texel.y) * VKAO_STRIDE + VKAO_BUFFER_PAD + texel.x;
-}
-
-/* A stored normal as rows of the ring have it: 10 bits of each coordinate, and one if there is none
- * to trust. */
-uint pack_normal(vec4 normal)
-{
-    uvec3 fields = uvec3(normal.xyz * 511.0 + 512.5);
-    return fields.x | fields.y << 10 | fields.z << 20 | (normal.w > 0.0 ? 1u << 31 : 0u);
-}
-
-vec4 unpack_normal(uint word)
-{
-    vec3 fields = vec3(ivec3(word, word >> 10, word >> 20) & 1023);
-    return vec4(fields * (1.0 / 511.0) - 512.0 / 511.0, float(word >> 31));
+    float slope[WINDOW];
+    [[unroll]] for (int i = 1; i < WINDOW - 1; ++i)
+        slope[i] = local_slope(z[i - 1], z[i], z[i + 1]);
+    [[unroll]] for (int i = 0; i < VKAO_BLUR_COUNT; ++i) {
+        int c = REACH + i;
+        float edge = edge_stop(z[c], params.sharpness, params.reference_z);
+        vec2 sums = vec2(0.0), weights = vec2(0.0);
+        float near = 0.0, all = 0.0, all_weights = 0.0;
+        [[unroll]] for (int k = -RADIUS; k <= RADIUS; ++k) {
+            if (k == 0)
+                continue;
+            float off = off_surface(z[c], slope[c], z[c + k], slope[c + k], float(k));
+            float alone = weight_alone(k, RADIUS), w = max(0.0, alone - alone * edge * off);
+            if (USES_NORMALS) {
+                near += w;
+                w *= normal_weight(normal[c], normal[c + k], NORMAL_POWER);
+            }
+            sums[int(k > 0)] += w * v[c + k];
+            weights[int(k > 0)] += w;
+            float full = blur_weight(k, RADIUS) * is_surface(z[c + k]);
+            all += full * v[c + k];
+            all_weights += full;
+        }
+        float total = 1.0 + weights.x + weights.y;
+        float leak = leak_of(USES_NORMALS ? near : total - 1.0, total - 1.0, RADIUS);
+        vec2 more = more_across(weights, RADIUS);
+        float sum = v[c] + sums.x + sums.y + dot(sums, more) + leak * all;
+        result[i] = sum / (total + dot(weights, more) + leak * all_weights);
+    }
 }
 
 #endif

@@ -17,10 +17,10 @@ layout(binding = VKAO_BINDING_HALFWAY_READ2, r32ui) uniform readonly uimageBuffe
 layout(binding = VKAO_BINDING_RING_NORMALS_READ4, rgba32ui) uniform readonly uimageBuffer normals;
 layout(binding = VKAO_BINDING_BLURRED_WORDS) writeonly buffer Blurred { uvec2 blurred_ao[]; };
 #include "view.glsl"
+#define VKAO_BLUR_COUNT VKAO_BLUR_Y_HEIGHT
+#define VKAO_BLUR_REACH (RADIUS + MARGIN)
 #include "blur_window.glsl"
 #include "staged.glsl"
-
-const int WINDOW = VKAO_BLUR_Y_HEIGHT + 2 * (RADIUS + MARGIN);
 
 vec4 load_z(ivec2 texel)
 {
@@ -39,25 +39,6 @@ vec4 load_codes(ivec2 texel)
         VKAO_CODE_OPEN);
 }
 
-vec4 slopes(vec4 before, vec4 z, vec4 after)
-{
-    vec4 slope;
-    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i)
-        slope[i] = local_slope(before[i], z[i], after[i]);
-    return slope;
-}
-
-vec4 tap_weights(int k, int radius, vec4 z, vec4 slope, vec4 tap_z, vec4 tap_slope)
-{
-    vec4 w;
-    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) {
-        float edge = edge_stop(z[i], params.sharpness, params.reference_z);
-        float off = off_surface(z[i], slope[i], tap_z[i], tap_slope[i], float(k));
-        w[i] = blur_weight(k, radius) * max(0.0, 1.0 - edge * off);
-    }
-    return w;
-}
-
 /* Four texels of a row. */
 void put(ivec2 texel, vec4 z, vec4 fine)
 {
@@ -71,50 +52,32 @@ void put(ivec2 texel, vec4 z, vec4 fine)
            greaterThanEqual(z, vec4(BACKGROUND_Z)));
 }
 
+/* Columns come one after the other: side by side they take four times the registers. */
 void blur(ivec2 texel)
 {
-    vec4 z[WINDOW], slope[WINDOW], fine[WINDOW], normal[WINDOW * VKAO_BLUR_Y_WIDTH];
-    bool use_normals = NORMAL_POWER > 0.0;
+    vec4 z[WINDOW], fine[WINDOW], blurred[VKAO_BLUR_Y_HEIGHT];
+    uvec4 words[WINDOW];
     [[unroll]] for (int j = 0; j < WINDOW; ++j) {
-        ivec2 at = texel + ivec2(0, j - RADIUS - MARGIN);
+        ivec2 at = texel + ivec2(0, j - REACH);
+        bool counts = j >= MARGIN && j < WINDOW - MARGIN;
         z[j] = load_z(at);
-        if (j >= MARGIN && j < WINDOW - MARGIN)
-            fine[j] = load_codes(at);
-        if (use_normals && j >= MARGIN && j < WINDOW - MARGIN) {
-            uvec4 words = imageLoad(normals, place_of(at) >> 2);
-            [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i)
-                normal[VKAO_BLUR_Y_WIDTH * j + i] = unpack_normal(words[i]);
-        }
+        fine[j] = counts ? load_codes(at) : vec4(0.0);
+        words[j] = USES_NORMALS && counts ? imageLoad(normals, place_of(at) >> 2) : uvec4(0u);
     }
-    /* Those that nothing uses cost nothing. */
-    [[unroll]] for (int j = 1; j < WINDOW - 1; ++j)
-        slope[j] = slopes(z[j - 1], z[j], z[j + 1]);
-    [[unroll]] for (int row = 0; row < VKAO_BLUR_Y_HEIGHT; ++row) {
-        int c = RADIUS + MARGIN + row;
-        vec4 sum = fine[c], weights = vec4(1.0);
-        vec4 near = vec4(0.0), all = vec4(0.0), all_weights = vec4(0.0);
-        [[unroll]] for (int k = -RADIUS; k <= RADIUS; ++k) {
-            if (k == 0)
-                continue;
-            vec4 w = tap_weights(k, RADIUS, z[c], slope[c], z[c + k], slope[c + k]);
-            if (use_normals)
-                near += w;
-            [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) if (use_normals) w[i] *=
-                normal_weight(normal[VKAO_BLUR_Y_WIDTH * c + i],
-                              normal[VKAO_BLUR_Y_WIDTH * (c + k) + i], NORMAL_POWER);
-            sum += w * fine[c + k];
-            weights += w;
-            vec4 full;
-            [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) full[i] =
-                blur_weight(k, RADIUS) * is_surface(z[c + k][i]);
-            all += full * fine[c + k];
-            all_weights += full;
+    [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) {
+        float column_z[WINDOW], column[WINDOW], result[VKAO_BLUR_Y_HEIGHT];
+        vec4 normal[WINDOW];
+        [[unroll]] for (int j = 0; j < WINDOW; ++j) {
+            column_z[j] = z[j][i];
+            column[j] = fine[j][i];
+            normal[j] = USES_NORMALS ? unpack_normal(words[j][i]) : vec4(0.0);
         }
-        vec4 leak;
-        [[unroll]] for (int i = 0; i < VKAO_BLUR_Y_WIDTH; ++i) leak[i] =
-            leak_of(use_normals ? near[i] : weights[i] - 1.0, weights[i] - 1.0, RADIUS);
-        put(texel + ivec2(0, row), z[c], (sum + leak * all) / (weights + leak * all_weights));
+        blur(column_z, column, normal, result);
+        [[unroll]] for (int row = 0; row < VKAO_BLUR_Y_HEIGHT; ++row)
+            blurred[row][i] = result[row];
     }
+    [[unroll]] for (int row = 0; row < VKAO_BLUR_Y_HEIGHT; ++row)
+        put(texel + ivec2(0, row), z[REACH + row], blurred[row]);
 }
 
 void main()

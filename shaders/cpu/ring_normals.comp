@@ -14,7 +14,8 @@ layout(push_constant) uniform Block { vkao_strip here; };
 #include "settings.glsl"
 layout(binding = VKAO_BINDING_RING_NORMALS_WORDS) writeonly buffer Normals { uvec4 normals[]; };
 #include "view.glsl"
-#include "blur_window.glsl"
+#include "ring_texels.glsl"
+#include "surface.glsl"
 
 void main()
 {

@@ -138,7 +138,7 @@ static void narrow_things_take_a_share_of_the_window(void **state)
     (void)state;
     static const struct {
         uint32_t radius;
-        double own, all; /* what the other texel of the bar counts, and the whole window */
+        double own, all; /* blur_weight of the other texel of the bar, and of the whole window */
         double behind;   /* depth */
     } rows[] = {{3, 0.75, 3.0, 4.0}, {4, 1.0, 5.0, 4.0}, {3, 0.75, 3.0, INFINITY}};
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
@@ -155,7 +155,8 @@ static void narrow_things_take_a_share_of_the_window(void **state)
         picture_run(&p);
         double leak = 0.15 * (1.0 - rows[i].own / (0.45 * rows[i].all)), want = 0.0;
         if (isfinite(rows[i].behind))
-            want = leak * (rows[i].all - rows[i].own) / (1.0 + rows[i].own + leak * rows[i].all);
+            want = leak * (rows[i].all - rows[i].own) /
+                   (1.0 + rows[i].own / 1.35 + leak * rows[i].all);
         for (size_t texel = 0; texel < picture_texels(&p); ++texel) {
             bool is_bar = texel % p.width / 2 == 20;
             double got = p.values[SLOT_AO][texel];

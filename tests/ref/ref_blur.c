@@ -34,10 +34,16 @@ static double slope(const struct blur *blur, int x, int y, int dx, int dy)
     return fabs(a) < fabs(b) ? a : b;
 }
 
+static bool compares_normals(const struct blur *blur)
+{
+    return blur->params->normal_power > 0.0f && blur->stored &&
+           blur->encoding != VKAO_NORMALS_FROM_DEPTH;
+}
+
 static double normal_weight(const struct blur *blur, size_t center, size_t tap)
 {
     double a[3], b[3];
-    if (blur->params->normal_power == 0.0f || !blur->stored ||
+    if (!compares_normals(blur) ||
         !ref_normal_decode(blur->encoding, &blur->stored[center * 4], a) ||
         !ref_normal_decode(blur->encoding, &blur->stored[tap * 4], b))
         return 1.0;
@@ -58,10 +64,11 @@ static double flat_weight(int k, int radius)
 /* flat_weight * max(0, 1 - sharpness |z_k - z - slope k| / z) * max(0, n.n_k)^normal_power;
  * at half resolution the larger of the distances by the centre's slope and by the tap's. Visibility
  * where this leaves less than .45 of the window: at most .15 of the flat mean besides; of a small
- * radius with what normals leave, of a large one without. */
+ * radius with what normals leave, of a large one without. Where normals are not compared, either
+ * side of the window counts (1 + .35 p) / 1.35 times, p being what is left of the other side. */
 static double blurred(const struct blur *blur, const double *ao, int x, int y, int dx, int dy)
 {
-    double z = ref_scene_z(blur->scene, x, y), sum = 0.0, weights = 0.0;
+    double z = ref_scene_z(blur->scene, x, y), sums[3] = {0}, weights[3] = {0};
     double near = 0.0, most = 0.0, flat = 0.0, others = 0.0;
     int radius = (int)blur->params->radius;
     if (isnan(z))
@@ -87,12 +94,18 @@ static double blurred(const struct blur *blur, const double *ao, int x, int y, i
         double normals = k ? normal_weight(blur, texel_index(blur, x, y), tap) : 1.0;
         if (k != 0)
             near += w * (radius < 3 ? normals : 1.0);
-        sum += w * normals * ao[tap];
-        weights += w * normals;
+        int side = (k > 0) - (k < 0) + 1;
+        sums[side] += w * normals * ao[tap];
+        weights[side] += w * normals;
     }
+    double across = compares_normals(blur) ? 0.0 : 0.35, side = most > 0.0 ? most / 2.0 : 1.0;
+    double before = (1.0 + across * weights[2] / side) / (1.0 + across),
+           behind = (1.0 + across * weights[0] / side) / (1.0 + across);
+    double sum = sums[1] + before * sums[0] + behind * sums[2];
+    double all = weights[1] + before * weights[0] + behind * weights[2];
     double leak =
         radius > 0 && blur->is_visibility ? fmax(0.0, 0.15 * (1.0 - near / (0.45 * most))) : 0.0;
-    return (sum + leak * flat) / (weights + leak * others);
+    return (sum + leak * flat) / (all + leak * others);
 }
 
 double ref_blur_finish(const struct ao_blur *params, double visibility)
