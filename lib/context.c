@@ -26,7 +26,8 @@ void vkao_free(const VkAllocationCallbacks *allocator, void *memory)
 
 void vkao_add_required_features(VkPhysicalDeviceFeatures *features)
 {
-    features->shaderStorageImageWriteWithoutFormat = VK_TRUE;
+    if (features)
+        features->shaderStorageImageWriteWithoutFormat = VK_TRUE;
 }
 
 void vkao_set_name(const vkao_context *ctx, VkObjectType type, uint64_t handle, const char *name)

@@ -51,7 +51,7 @@ static void set_constants(struct vkao_program *program)
 }
 
 /* What is touched of what the rows name. */
-static uint32_t needs_of(const struct vkao_program *program)
+static void find_touched(struct vkao_program *program)
 {
     const vkao_effect_info *e = &program->settings;
     const bool composite = e->stages & VKAO_STAGE_COMPOSITE, makes_ao = vkao_makes_ao(e);
@@ -80,10 +80,11 @@ static uint32_t needs_of(const struct vkao_program *program)
          VKAO_RESOURCE_ALBEDO},
         {lit && e->specular != VKAO_SPECULAR_NONE, VKAO_RESOURCE_SPECULAR},
     };
-    uint32_t needs = ~0u;
+    uint32_t touched = ~0u;
     for (size_t i = 0; i < sizeof facts / sizeof facts[0]; ++i)
-        needs &= facts[i].is ? ~0u : ~VKAO_BIT(facts[i].resource);
-    return needs;
+        touched &= facts[i].is ? ~0u : ~VKAO_BIT(facts[i].resource);
+    program->written = e->bent_normals ? touched : touched & ~VKAO_BIT(VKAO_RESOURCE_BENT_NORMALS);
+    program->read = reads_bent ? touched : touched & ~VKAO_BIT(VKAO_RESOURCE_BENT_NORMALS);
 }
 
 /* Nobody sees AO between SSAO and the blur, and 8 bits will do. Storing to them is optional in
@@ -107,7 +108,7 @@ void vkao_program_plan(struct vkao_program *program, const vkao_context *ctx,
         vkao_##name##_plan(program);
     VKAO_STAGES(PLAN)
 #undef PLAN
-    program->needs = needs_of(program);
+    find_touched(program);
     set_constants(program);
 }
 

@@ -112,9 +112,10 @@ static enum vkao_resource stand_in(const struct vkao_program *program, const str
     if (!use->writes)
         return vkao_makes_ao(&program->settings) ? VKAO_RESOURCE_DEPTH : VKAO_RESOURCE_AO;
     for (uint32_t k = 0; k < step->use_count; ++k) {
-        const enum vkao_resource r = step->uses[k].resource;
-        if (step->uses[k].writes && r < VKAO_IMAGE_COUNT && program->needs & VKAO_BIT(r))
-            return r;
+        const struct vkao_use *other = &step->uses[k];
+        if (other->writes && other->resource < VKAO_IMAGE_COUNT &&
+            vkao_use_is_touched(program, other))
+            return other->resource;
     }
     return VKAO_RESOURCE_AO;
 }
@@ -125,7 +126,7 @@ static vkao_image resolve(const vkao_frame *frame, const struct vkao_step *step,
 {
     const struct vkao_program *program = frame->program;
     enum vkao_resource r = use->resource;
-    if (!(program->needs & VKAO_BIT(r)))
+    if (!vkao_use_is_touched(program, use))
         r = stand_in(program, step, use);
     if (r < VKAO_SLOT_COUNT && vkao_slot_image(&frame->images, r)->format)
         return *vkao_slot_image(&frame->images, r);

@@ -135,13 +135,15 @@ enum { PARAMETER_COUNT = sizeof parameters / sizeof parameters[0] };
 
 const vkao_parameter *vkao_parameters(uint32_t *count)
 {
-    *count = PARAMETER_COUNT;
+    if (count)
+        *count = PARAMETER_COUNT;
     return parameters;
 }
 
 const vkao_method *vkao_methods(uint32_t *count)
 {
-    *count = METHOD_COUNT;
+    if (count)
+        *count = METHOD_COUNT;
     return methods;
 }
 

@@ -40,12 +40,18 @@ void vkao_program_add(struct vkao_program *program, const struct vkao_pass *row)
     }
 }
 
+bool vkao_use_is_touched(const struct vkao_program *program, const struct vkao_use *use)
+{
+    const uint32_t of = use->writes ? program->written : program->read;
+    return of & VKAO_BIT(use->resource);
+}
+
 static bool touches(const struct vkao_program *program, const struct vkao_step *step,
                     enum vkao_resource resource, bool writes)
 {
     for (uint32_t i = 0; i < step->use_count; ++i) {
         if (step->uses[i].resource == resource && step->uses[i].writes == writes)
-            return program->needs & VKAO_BIT(resource);
+            return vkao_use_is_touched(program, &step->uses[i]);
     }
     return false;
 }

@@ -131,8 +131,8 @@ struct vkao_program {
     VkSampler nearest; /* if any row names it; its coordinates are texels */
     uint32_t count;
     struct vkao_step steps[VKAO_MOST_PASSES];
-    /* VKAO_BIT of the resources that are touched; others of the rows are stand-ins */
-    uint32_t needs;
+    /* VKAO_BIT of the resources that may be; for others of the rows there are stand-ins */
+    uint32_t read, written;
 };
 
 /* Those of an effect, and PREPARE if others make AO. */
@@ -143,6 +143,8 @@ bool vkao_has_thickness(const vkao_effect_info *effect);
 
 /* Adds a row, yet to be compiled. */
 void vkao_program_add(struct vkao_program *program, const struct vkao_pass *row);
+/* Is it more than a stand-in? */
+bool vkao_use_is_touched(const struct vkao_program *program, const struct vkao_use *use);
 /* Does any pass read or write the resource? */
 bool vkao_program_reads(const struct vkao_program *program, enum vkao_resource resource);
 bool vkao_program_writes(const struct vkao_program *program, enum vkao_resource resource);

@@ -194,7 +194,7 @@ typedef struct vkao_context_info {
 
 VKAO_DEFAULT(vkao_context_info)
 
-/* Sets the members that vkao needs to VK_TRUE, leaves the others alone. Call before
+/* Sets the members that vkao needs to VK_TRUE, leaves the others alone; NULL is ignored. Call before
  * vkCreateDevice. */
 VKAO_API void vkao_add_required_features(VkPhysicalDeviceFeatures *features);
 
@@ -415,8 +415,8 @@ typedef struct vkao_image {
     VkImage image;
 } vkao_image;
 
-/* Image usage: read slots SAMPLED, written slots STORAGE; ao_noisy and ao both, where one stage of
- * the effect writes them and another reads them. All images have the frame's extent. */
+/* Image usage: read slots SAMPLED, written slots STORAGE; ao_noisy, ao and bent_normals both, where
+ * one stage of the effect writes them and another reads them. All images have the frame's extent. */
 typedef struct vkao_images {
     uint32_t struct_size;
     uint32_t padding; /* zero */
@@ -635,7 +635,7 @@ typedef struct vkao_parameter {
     uint32_t methods;           /* bits 1 << vkao_ssao_method of those that read it; 0 = any */
 } vkao_parameter;
 
-/* Static; *count: how many there are. Rows keep their size within 0.2. */
+/* Static; *count, unless NULL: how many there are. Rows keep their size within 0.2. */
 VKAO_API const vkao_parameter *vkao_parameters(uint32_t *count);
 
 typedef struct vkao_method {
@@ -645,7 +645,8 @@ typedef struct vkao_method {
     uint32_t padding; /* zero */
 } vkao_method;
 
-/* Static, by vkao_ssao_method; *count: how many there are. Rows keep their size within 0.2. */
+/* Static, by vkao_ssao_method; *count, unless NULL: how many there are. Rows keep their size within
+ * 0.2. */
 VKAO_API const vkao_method *vkao_methods(uint32_t *count);
 
 #ifdef __cplusplus

@@ -21,7 +21,8 @@ ivec2 tile_texel()
 
 int code_of(float open)
 {
-    return int(clamp((open + VKAO_CODE_OFFSET) * VKAO_CODE_SCALE, 0.0, 255.0) + 0.5);
+    float code = open * VKAO_CODE_SCALE + VKAO_CODE_OFFSET * VKAO_CODE_SCALE;
+    return int(clamp(code, 0.0, 255.0) + 0.5);
 }
 
 void store_codes(ivec2 texel, int codes)

@@ -106,6 +106,15 @@ def links_with_pkg_config(name, compiler, static):
     return name, case
 
 
+def the_package_wants_no_loader():
+    """Whoever loads Vulkan at run time has its headers and no vulkan.pc."""
+    need("pkg-config")
+    alone = {"PKG_CONFIG_LIBDIR": os.path.dirname(installed("**/vkao.pc")), "PKG_CONFIG_PATH": ""}
+    for options in (["--cflags"], ["--libs"], ["--libs", "--static"]):
+        said = execute(["pkg-config", *options, "vkao"], env=alone).stdout
+        assert "vulkan" not in said, said
+
+
 def static_consumers_get_their_define():
     """On Windows headers must know: VKAO_STATIC comes from pkg-config and from meson."""
     build = os.path.join(WORK, "static")
@@ -159,6 +168,21 @@ def cmake_consumer(name, *options):
 def cmake_finds_the_package():
     build = cmake_consumer("cmake-find", f"-DCMAKE_PREFIX_PATH={PREFIX}")
     assert loads_libvkao(os.path.join(build, "smoke"))
+
+
+def cmake_takes_the_library_beside_the_headers():
+    """In a build folder that has seen another package before."""
+    need("cmake")
+    build = folder("cmake-again")
+    moved = os.path.join(build, "moved")
+    shutil.copytree(PREFIX, moved, symlinks=True)
+    for prefix in (PREFIX, moved):
+        package = glob.glob(os.path.join(prefix, "**/cmake/vkao"), recursive=True)[0]
+        execute(["cmake", "-S", os.path.join(HERE, "cmake"), "-B", os.path.join(build, "build"),
+                 "-DCMAKE_BUILD_TYPE=Release", f"-Dvkao_DIR={package}"])
+    with open(os.path.join(build, "build", "CMakeCache.txt"), encoding="utf-8") as file:
+        library = re.search(r"^vkao_LIBRARY:\w+=(.*)$", file.read(), re.M).group(1)
+    assert library.startswith(moved + os.sep), library
 
 
 def cmake_builds_what_meson_builds():
@@ -327,6 +351,7 @@ if __name__ == "__main__":
                               True),
         *((case.__name__, case) for case in (
             static_consumers_get_their_define, meson_subproject_builds_the_library_alone,
+            the_package_wants_no_loader, cmake_takes_the_library_beside_the_headers,
             cmake_finds_the_package, cmake_builds_what_meson_builds, a_program_loads_the_library,
             python_takes_defaults_and_tables, rust_makes_an_effect_on_a_device_of_ash)),
         engine_is_timed("c11_engine_is_timed", ["cc", "-std=c11"]),

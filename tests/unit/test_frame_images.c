@@ -398,7 +398,7 @@ static void check_bindings(const struct world *w, vkao_images images)
     for (uint32_t i = 0; i < program->count; ++i) {
         for (uint32_t k = 0; k < program->steps[i].use_count; ++k) {
             const struct vkao_use *use = &program->steps[i].uses[k];
-            if (use->resource >= VKAO_SLOT_COUNT || !(program->needs & VKAO_BIT(use->resource)) ||
+            if (use->resource >= VKAO_SLOT_COUNT || !vkao_use_is_touched(program, use) ||
                 !world_slot(&images, use->resource)->format)
                 continue;
             assert_int_equal(bound_view(w, i, use->binding),
@@ -441,6 +441,33 @@ static void without_blur_ssao_writes_ao_itself(void **state)
     world_open_frame(&w, VKAO_STAGE_SSAO);
     assert_int_equal(bound_view(&w, 1, VKAO_BINDING_TARGET), (uint64_t)w.images.ao.view);
     world_close(&w);
+}
+
+/* The header asks for SAMPLED of what is read alone. */
+static void bent_normals_are_sampled_where_they_are_read(void **state)
+{
+    (void)state;
+    for (int reads_bent = 0; reads_bent < 2; ++reads_bent) {
+        struct world w;
+        world_open(&w);
+        set_case(&w, 2 * VKAO_STAGE_ALL + 1);
+        w.effect_info.specular = reads_bent ? VKAO_SPECULAR_FROM_BENT : VKAO_SPECULAR_FROM_AO;
+        world_create_frame(&w);
+        assert_int_equal(vkao_frame_update(w.frame, &w.images), VKAO_SUCCESS);
+        uint32_t sampled = 0, stored = 0;
+        for (uint32_t i = 0; i < fake_count(&w.fake, "vkUpdateDescriptorSets"); ++i) {
+            const struct fake_call *call = fake_nth(&w.fake, "vkUpdateDescriptorSets", i);
+            for (uint32_t k = 0; k < call->write_count; ++k) {
+                if (call->writes[k].view != (uint64_t)w.images.bent_normals.view)
+                    continue;
+                sampled += call->writes[k].type == VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
+                stored += call->writes[k].type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+            }
+        }
+        assert_true(stored > 0);
+        assert_int_equal(sampled > 0, reads_bent);
+        world_close(&w);
+    }
 }
 
 static void point_at_other_views(struct world *w)
@@ -518,6 +545,7 @@ int main(void)
         cmocka_unit_test(padding_is_refused),
         cmocka_unit_test(each_binding_holds_its_slot),
         cmocka_unit_test(without_blur_ssao_writes_ao_itself),
+        cmocka_unit_test(bent_normals_are_sampled_where_they_are_read),
         cmocka_unit_test(update_points_at_other_images_without_allocation),
         cmocka_unit_test(refused_update_leaves_the_frame),
     };

@@ -93,6 +93,15 @@ static void check_word(const vkao_parameter *p)
     expect_tried(p, &huge, false, value);
 }
 
+static void nobody_needs_to_count(void **state)
+{
+    (void)state;
+    uint32_t count;
+    assert_ptr_equal(vkao_parameters(NULL), vkao_parameters(&count));
+    assert_ptr_equal(vkao_methods(NULL), vkao_methods(&count));
+    vkao_add_required_features(NULL);
+}
+
 static void value_out_of_range_is_refused_and_named(void **state)
 {
     (void)state;
@@ -200,6 +209,7 @@ static void zero_means_the_default(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(nobody_needs_to_count),
         cmocka_unit_test(value_out_of_range_is_refused_and_named),
         cmocka_unit_test(every_channel_of_a_colour_is_checked),
         cmocka_unit_test(ranges_are_those_of_the_header),
