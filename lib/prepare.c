@@ -106,6 +106,12 @@ static double normal_scale(const float rows[3][3])
     return fabs(scale - 1.0) < 1e-3 || !(scale > 0.0) ? 1.0 : scale;
 }
 
+static uint32_t longer_side(struct vkao_rect area)
+{
+    const uint32_t width = area.x1 - area.x0, height = area.y1 - area.y0;
+    return width > height ? width : height;
+}
+
 static void normals_constants(const float rows[3][3], struct vkao_constants *out)
 {
     const double scale = normal_scale(rows);
@@ -142,4 +148,5 @@ void vkao_prepare_constants(const struct vkao_recording *r, const vkao_params *p
     out->reference_z = image->reference_z;
     vkao_rect_pack(image->valid, out->image_valid);
     vkao_rect_pack(grid->valid, out->valid);
+    out->farthest = (float)VKAO_STEP_FARTHEST * (float)longer_side(grid->valid);
 }

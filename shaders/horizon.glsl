@@ -75,8 +75,7 @@ struct Steps {
 
 Steps make_steps(Slice s, float jitter, float reach, float linear)
 {
-    /* Farther than any image is wide, but few enough texels for an integer. */
-    float most = min(s.texels * reach, 1.0e9);
+    float most = min(s.texels * reach, params.farthest);
     float n = 1.0 / float(step_count());
     float line = most * (linear * n), square = most * ((1.0 - linear) * n * n);
     vec2 moved = product(vec2(jitter), vec2(line + square * jitter, 2.0 * square));

@@ -167,6 +167,10 @@
 #define VKAO_STEP_LEAST 0.5
 #define VKAO_VBAO_STEP_LINEAR 0.2
 #define VKAO_VBAO_STEP_LEAST 0.375
+/* The reach is at most so many times the longer side of what is valid. What lies beyond the image is
+ * not known, and the farther samples went the less they would hide: at last all would be open. At
+ * once the side what a slab hides at 2000 texels comes out too large: the bounds are gpu-radius. */
+#define VKAO_STEP_FARTHEST 6
 
 /* What vbao guesses of the scene between its samples and behind them, and where it samples. Lengths
  * are fractions of the radius, cosines those of the angle to the eye. Found by coordinate search,
@@ -281,6 +285,7 @@ struct vkao_constants {
     VKAO_FLOAT(thickness_slope);
     VKAO_FLOAT(power);
     VKAO_FLOAT(debug_distance);
+    VKAO_FLOAT(farthest);     /* texels, see VKAO_STEP_FARTHEST */
     VKAO_FLOAT(view_z_pitch); /* see shaders/gpu/view_z.glsl */
     VKAO_FLOAT(view_z_last);
     VKAO_UINT(view_z_columns); /* of a block */

@@ -194,8 +194,8 @@ typedef struct vkao_context_info {
 
 VKAO_DEFAULT(vkao_context_info)
 
-/* Sets the members that vkao needs to VK_TRUE, leaves the others alone; NULL is ignored. Call before
- * vkCreateDevice. */
+/* Sets the members that vkao needs to VK_TRUE, leaves the others alone. NULL is ignored. Call
+ * before vkCreateDevice. */
 VKAO_API void vkao_add_required_features(VkPhysicalDeviceFeatures *features);
 
 /* Compiles nothing, allocates no device memory. Errors: INVALID_ARGUMENT, UNSUPPORTED,
@@ -416,7 +416,8 @@ typedef struct vkao_image {
 } vkao_image;
 
 /* Image usage: read slots SAMPLED, written slots STORAGE; ao_noisy, ao and bent_normals both, where
- * one stage of the effect writes them and another reads them. All images have the frame's extent. */
+ * one stage of the effect writes them and another reads them. All images have the frame's
+ * extent. */
 typedef struct vkao_images {
     uint32_t struct_size;
     uint32_t padding; /* zero */

@@ -83,10 +83,11 @@ struct Steps {
 /* q (linear + (1 - linear) q) of the reach, q = (t + jitter) / steps */
 Steps make_steps(Slice s, real jitter, float reach, float linear)
 {
-    float n = 1.0 / float(step_count()), square = reach * (1.0 - linear) * n * n;
-    float line = reach * linear * n;
-    return Steps(s.scale * (jitter * (line + square * jitter)),
-                 s.scale * (line + 2.0 * square * jitter), s.scale * square);
+    float n = 1.0 / float(step_count()), square = (1.0 - linear) * n * n, line = linear * n;
+    real most = s.scale * reach, farthest = s.per_texel * params.farthest;
+    most = choose(most, farthest, above(most, farthest));
+    return Steps(most * (jitter * (line + square * jitter)), most * (line + 2.0 * square * jitter),
+                 most * square);
 }
 
 /* At least 1 + least_rise t texels. */

@@ -196,8 +196,32 @@ static void as_dark_and_as_smooth_at_any_radius(void **state)
     assert_int_equal(failures, 0);
 }
 
+/* Samples beyond the image hide nothing: were most of them there, all would be open. */
+static void beyond_the_image_nothing_gets_lighter(void **state)
+{
+    (void)state;
+    static const vkao_ssao_method methods[] = {VKAO_SSAO_HBAO, VKAO_SSAO_GTAO, VKAO_SSAO_VBAO};
+    for (size_t i = 0; i < sizeof methods / sizeof methods[0]; ++i) {
+        double means[2];
+        for (int far = 0; far < 2; ++far) {
+            struct picture p;
+            render(&p, &slab);
+            picture_preset(&p, VKAO_QUALITY_DEFAULT);
+            p.ssao.method = methods[i];
+            p.ssao.radius = (far ? 1.0e5f : 100.0f) * (float)(floor_z * 2.0 * half_width);
+            picture_run(&p);
+            means[far] = mean_of(p.values[SLOT_AO], picture_texels(&p));
+            picture_free(&p);
+        }
+        print_message("    method %d: mean %.4f at 100 times the width, %.4f at 100000\n",
+                      (int)methods[i], means[0], means[1]);
+        assert_true(means[0] < 0.98 && fabs(means[1] - means[0]) < 0.01);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {gpu_test(as_dark_and_as_smooth_at_any_radius)};
+    const struct CMUnitTest tests[] = {gpu_test(as_dark_and_as_smooth_at_any_radius),
+                                       gpu_test(beyond_the_image_nothing_gets_lighter)};
     return fixture_run(tests);
 }

@@ -83,7 +83,8 @@ void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
     ref_slice_turn(slice, pi * (k + slice->noise.turn) / params->slice_count);
 }
 
-/* Distances crowd towards the point, but lie at least 1 + least t texels out. Where the point at
+/* Distances crowd towards the point, but lie at least 1 + least t texels out, and none farther than
+ * VKAO_STEP_FARTHEST has it. Where the point at
  * that distance along the slice's direction on screen lies is for the projection to say. */
 static void step_texel(const struct ref_slice *s, double side, uint32_t step, double reach,
                        int at[2])
@@ -92,13 +93,15 @@ static void step_texel(const struct ref_slice *s, double side, uint32_t step, do
     double linear = is_vbao ? VKAO_VBAO_STEP_LINEAR : VKAO_STEP_LINEAR;
     double least = is_vbao ? VKAO_VBAO_STEP_LEAST : VKAO_STEP_LEAST;
     double q = (step + s->noise.jitter) / s->params->step_count;
-    double distance = reach * q * (linear + (1.0 - linear) * q);
     double from[2], to[2];
     const double unit[3] = {s->p[0] + s->direction[0], s->p[1] + s->direction[1], s->p[2]};
     ref_view_project(&s->scene->view, s->p, from);
     ref_view_project(&s->scene->view, unit, to);
     double per_unit[2] = {to[0] - from[0], to[1] - from[1]};
-    double texels = distance * hypot(per_unit[0], per_unit[1]);
+    double length = hypot(per_unit[0], per_unit[1]);
+    double farthest = VKAO_STEP_FARTHEST * fmax(s->scene->width, s->scene->height) / length;
+    double distance = fmin(reach, farthest) * q * (linear + (1.0 - linear) * q);
+    double texels = distance * length;
     double scale = fmax(1.0, (1.0 + least * step) / texels) * distance * side;
     at[0] = (int)floor(fmax(-1e6, fmin(1e6, s->x + per_unit[0] * scale)) + 0.5);
     at[1] = (int)floor(fmax(-1e6, fmin(1e6, s->y + per_unit[1] * scale)) + 0.5);

@@ -49,7 +49,7 @@ static void check_dispatch(const struct world *w, const struct fake_call *dispat
             continue;
         if (!view)
             fail_msg("%s names binding %u, which holds nothing", step->row->name, use->binding);
-        if (!(w->frame->program->needs & VKAO_BIT(use->resource)))
+        if (!vkao_use_is_touched(w->frame->program, use))
             continue; /* a stand-in */
         if (!use->writes && holds(written, view))
             fail_msg("%s reads binding %u: no barrier after its producer", step->row->name,
@@ -61,7 +61,7 @@ static void check_dispatch(const struct world *w, const struct fake_call *dispat
     for (uint32_t i = 0; i < step->use_count; ++i) {
         const struct vkao_use *use = &step->uses[i];
         struct views *v = use->writes ? written : read;
-        if (w->frame->program->needs & VKAO_BIT(use->resource))
+        if (vkao_use_is_touched(w->frame->program, use))
             v->list[v->count++] = object->views[use->binding];
     }
 }
