@@ -354,6 +354,20 @@ def radius_in_pixels_is_rows_at_the_median_distance(scratch):
     equal(summary_radius(run), '3', 'orthographic')
 
 
+@cases([('1e-4', 'pixels at the median distance of 5: nothing so near is seen'),
+        ('40', 'times as long as the image at the median distance of 5'), ('0.3', None),
+        ('9', None)])
+def radius_that_the_image_cannot_show(scratch, radius, wanted):
+    """Depth in another unit than the radius gives white, or nearly."""
+    write_exr(scratch.path('in.exr'), {'Z': np.full((16, 32), 5, np.float32)})
+    run = scratch.render('in.exr', '-o', 'ao.exr', '-r', radius, '--fov', 90, '--depth-type',
+                         'planar')
+    if wanted:
+        matches(f'radius {float(radius):.3g} is .*{wanted}', run.stderr, 'the warning')
+    else:
+        check('radius' not in run.stderr.replace('radius=', ''), run.stderr)
+
+
 @cases(['auto', '25px', '7.77%'])
 def printed_radius_makes_the_same_of_other_frames(scratch, radius):
     for frame, eye in ((1, 0.0), (2, 0.4)):

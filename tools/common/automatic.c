@@ -28,6 +28,28 @@ float relative_radius_of(const struct relative_radius *relative, const struct gb
     return radius > 1e-18f ? fminf(radius, 1e18f) : 1e-18f;
 }
 
+void check_radius(const struct gbuffer *gbuffer, float radius, struct report *report)
+{
+    const struct exr_box *window = &gbuffer->display_window;
+    const double columns = (double)window->x_max - window->x_min + 1,
+                 rows = (double)window->y_max - window->y_min + 1;
+    const double pixels = (double)radius / row_height(gbuffer), longer = fmax(columns, rows);
+    if (!(gbuffer->median_z > 0) || !isfinite(pixels))
+        return;
+    if (pixels < 0.5)
+        report_warn(report, "radius",
+                    "radius %.3g is %.2g pixels at the median distance of %.3g: nothing so near is "
+                    "seen, and AO is white; is depth in another unit? --radius 5%% follows it",
+                    (double)radius, pixels, gbuffer->median_z);
+    else if (pixels > 2 * longer)
+        report_warn(
+            report, "radius",
+            "radius %.3g is %.3g times as long as the image at the median distance of %.3g: "
+            "what lies beyond the image is not seen, and AO is lighter than in truth; is "
+            "depth in another unit? --radius 5%% follows it",
+            (double)radius, pixels / longer, gbuffer->median_z);
+}
+
 float automatic_bias(const struct gbuffer *gbuffer, float radius, float bias)
 {
     float step = (float)(gbuffer->depth_step / (double)radius);

@@ -18,6 +18,8 @@ struct relative_radius {
 /* Scene units, in three digits, so that who reads them can ask for the same. 1 where nothing is
  * seen. */
 float relative_radius_of(const struct relative_radius *relative, const struct gbuffer *gbuffer);
+/* Warns where no image can show what is within the radius, at the median distance. */
+void check_radius(const struct gbuffer *gbuffer, float radius, struct report *report);
 /* bias, or what keeps steps of the depth from occluding one another if that is more. */
 float automatic_bias(const struct gbuffer *gbuffer, float radius, float bias);
 /* The same, with a warning if it is more. */

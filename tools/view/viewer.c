@@ -207,6 +207,8 @@ static void complete_settings(struct viewer *viewer)
             s->params.radius = live_scene_radius(viewer->live->kind);
         else if (!(s->params.radius > 0))
             s->params.radius = viewer->source.radius;
+        if (!viewer->live)
+            check_radius(g, s->params.radius, &viewer->report);
         if (!viewer->live && !viewer->bias_is_given[i])
             s->params.bias = settled_bias(g, s->params.radius, s->params.bias, &viewer->report);
         /* The colour of a live scene is its indirect light. */

@@ -195,7 +195,7 @@ static void add_missing(cJSON *object, const struct gbuffer_options *options,
 
 /* What a run would do with these options. */
 static void add_verdict(cJSON *object, const struct options *options, const struct gbuffer *g,
-                        bool ok)
+                        bool ok, struct report *report)
 {
     cJSON *entry = cJSON_AddObjectToObject(object, "verdict");
     cJSON_AddBoolToObject(entry, "can_be_processed", ok);
@@ -204,6 +204,7 @@ static void add_verdict(cJSON *object, const struct options *options, const stru
     const bool is_auto = options->radius_is_auto;
     const float radius =
         is_auto ? relative_radius_of(&options->relative_radius, g) : options->setting.params.radius;
+    check_radius(g, radius, report);
     cJSON_AddNumberToObject(entry, "radius", (double)radius);
     cJSON_AddBoolToObject(entry, "radius_is_auto", is_auto);
     cJSON_AddNumberToObject(entry, "bias",
@@ -247,7 +248,7 @@ static cJSON *describe_view(const struct options *options, const struct frame_so
         add_camera(object, &g.camera);
     }
     cJSON_AddItemToObject(object, "warnings", warnings);
-    add_verdict(object, options, &g, ok);
+    add_verdict(object, options, &g, ok, &listening);
     if (!ok) {
         cJSON_AddStringToObject(object, "problem", err.message);
         cJSON_AddStringToObject(object, "hint", err.hint);

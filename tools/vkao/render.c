@@ -268,6 +268,7 @@ static bool render_view(struct session *s, const struct options *frame_options,
         compare_makers(s, view->record);
     out->setting = options.setting;
     out->setting.params.radius = choose_radius(s, &options, g);
+    check_radius(g, out->setting.params.radius, s->report);
     if (!options.bias_is_given)
         out->setting.params.bias =
             settled_bias(g, out->setting.params.radius, out->setting.params.bias, s->report);
