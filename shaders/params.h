@@ -100,8 +100,8 @@
 #define VKAO_BLUR_LEAK_BELOW 0.45
 
 /* What a side of a blur's window counts more where all of the other side lies on the surface as
- * well. Chosen by hand on the scenes that vbao is fitted to: RMSE is 1 % more without it. More of it
- * flickers more, and at twice as much the noise that is left outweighs what is gained. */
+ * well. Chosen by hand on the scenes that vbao is fitted to: without it RMSE is 1 % more. More of
+ * it flickers more, and at twice as much the noise that is left outweighs what is gained. */
 #define VKAO_BLUR_ACROSS 0.35
 
 /* blur_tile.comp: radii that it is for; texels of a row that a group blurs; rows in its shared
@@ -167,9 +167,10 @@
 #define VKAO_STEP_LEAST 0.5
 #define VKAO_VBAO_STEP_LINEAR 0.2
 #define VKAO_VBAO_STEP_LEAST 0.375
-/* The reach is at most so many times the longer side of what is valid. What lies beyond the image is
- * not known, and the farther samples went the less they would hide: at last all would be open. At
- * once the side what a slab hides at 2000 texels comes out too large: the bounds are gpu-radius. */
+/* The reach is at most so many times the longer side of what is valid. What lies beyond the image
+ * is not known, and the farther samples went the less they would hide: at last all would be open.
+ * At once the side what a slab hides at 2000 texels comes out too large: the bounds are
+ * gpu-radius. */
 #define VKAO_STEP_FARTHEST 6
 
 /* What vbao guesses of the scene between its samples and behind them, and where it samples. Lengths
