@@ -394,6 +394,19 @@ def a_zoom_is_followed(scratch):
     matches('another camera than that of the frames before', said, 'the warning')
 
 
+@cases([('header', (), [('cameraFov', 'float', 60.0)]), ('option', ('--fov', 60), []),
+        ('file', ('--camera', 'camera.json'), [])])
+def a_zoom_that_nobody_tells_is_said_where_it_begins(scratch, _, options, attributes):
+    write_camera(scratch.path('camera.json'), camera(fov=60))
+    for i, fov in enumerate((60, 60, 40, 40, 60, 40)):
+        scene = Scene(160, 90, fov, eye=0.02 * i)
+        write_exr(scratch.path(f'in.{i + 1:04}.exr'),
+                  {'Z': scene.depth(), **scene.normals(space='world')}, attributes=attributes)
+    said = scratch.render('in.####.exr', '-o', 'ao.####.exr', *BASE, *options).stderr
+    equal(re.findall(r'in\.(\d+)\.exr: .* says 60 degrees .*, but depth and normals (?:40|39\.9)',
+                     said), ['0003', '0006'], f'doubted frames in {said}')
+
+
 # --- Written ---
 
 @case

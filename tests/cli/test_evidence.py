@@ -3,6 +3,8 @@
 """What depth means is decided by what it shows: files of one scene as programs write them, in any
 unit and with any background, give its AO, or are refused or warned of with the option that
 helps."""
+import re
+
 import numpy as np
 
 from cli import CHANNELS, case, cases, check, equal, main, matches, read_ao, write_exr
@@ -195,6 +197,37 @@ def flat_things_tell_the_kind_of_depth(scratch, kind):
         found = inspect(scratch, '--fov', fov)['conventions']
         equal((found['depth_type'], found['depth_source']), (kind, 'flat things are flat so'),
               'kind')
+
+
+KINDS = [('radial', 'radial', 1.0, 'is taken as radial, and as planar in the frames before'),
+         ('inverse', 'inverse', 10.0, 'is taken as inverse, and as planar in the frames before'),
+         ('cm', 'planar', 100.0, 'all distances .* are about 100 times those of the frames before'),
+         ('km', 'planar', 1e-3, 'all distances .* are about 0.001 times')]
+
+
+@cases(KINDS)
+def frame_of_another_kind_is_said_where_it_begins(scratch, _, kind, unit, message):
+    for i in range(6):
+        scene, is_odd = Scene(eye=0.02 * i), i in (2, 3, 5)
+        depth = scene.depth(kind) * unit if is_odd else scene.depth()
+        write_exr(scratch.path(f'in.{i + 1}.exr'),
+                  {'Z': depth.astype(np.float32), **scene.normals()})
+    said = scratch.render('in.%d.exr', '-o', 'ao.%d.exr', *OPTIONS, '--fov', FOV).stderr
+    equal(re.findall(rf"in\.(\d)\.exr: (?:depth 'Z' )?{message}", said), ['3', '6'],
+          f'odd frames in {said}')
+
+
+@case
+def frames_of_one_kind_are_not_odd(scratch):
+    # From a metre before the ball to far away, and nothing at all between.
+    for i, unit in enumerate((1.0, 2.0, 0, 4.0, 7.0)):
+        scene = Scene()
+        depth = scene.depth() * unit if unit else np.full_like(scene.depth(), 1e10)
+        write_exr(scratch.path(f'in.{i + 1}.exr'),
+                  {'Z': depth.astype(np.float32), **scene.normals()})
+    said = scratch.render('in.%d.exr', '-o', 'ao.%d.exr', *OPTIONS, '--fov', FOV, '--depth-type',
+                          'planar').stderr
+    check('frames before' not in said, said)
 
 
 @case

@@ -522,6 +522,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         !gbuffer_prepare_normals(g, options, normals->path, report, err))
         goto failed;
     warn_about_assumption(g, report);
+    gbuffer_warn_of_frame(g, options->memory, depth->info->path, report);
     if (!gbuffer_warn_of_move(g, depth->info->path, report, &is_moved)) {
         fail(err, EXIT_MEMORY, "%s: out of memory", depth->info->path);
         goto failed;

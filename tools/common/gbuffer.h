@@ -69,14 +69,21 @@ struct depth_range {
 
 enum normal_encoding { NORMAL_ENCODING_AUTO, NORMAL_ENCODING_SIGNED, NORMAL_ENCODING_UNSIGNED };
 
-/* What was estimated of the camera of one view of a sequence, from frame to frame: AO must not
- * flicker with the estimate. Zero-initialise. */
-struct camera_memory {
+/* What is kept of one view of a sequence, from frame to frame. Zero-initialise. */
+struct frame_memory {
+    /* The camera as it was estimated: AO must not flicker with the estimate. */
     bool is_known;
     struct camera camera; /* its projection */
     enum depth_type depth_type;
-    unsigned models;    /* as camera_fit takes them: what it was */
-    struct camera told; /* that of header or options which was held against the image */
+    unsigned models; /* as camera_fit takes them: what it was */
+    /* That of header or options which was held against the image, and how many normals agreed. */
+    struct camera told;
+    double told_agreement; /* [0,1] */
+    bool is_doubted;
+    /* Of the last frame whose depth was not odd. */
+    bool has_depth, is_odd_type, is_odd_unit;
+    enum depth_type usual_type;
+    double usual_z[3]; /* nearest, median and farthest, scene units */
 };
 
 struct gbuffer_options {
@@ -89,7 +96,7 @@ struct gbuffer_options {
     enum normal_space normal_space;
     enum normal_encoding normal_encoding;
     bool want_color; /* colour is an error if it is missing, and is not read otherwise */
-    struct camera_memory *memory; /* of the view, or NULL = a frame of its own */
+    struct frame_memory *memory; /* of the view, or NULL = a frame of its own */
     struct budget budget;
     /* What the caller will take per texel, counted against the budget: in any case, and more if
      * there are normals. */

@@ -120,7 +120,7 @@ static bool is_unscaled(enum fit_model model)
 
 /* --- From frame to frame --- */
 
-static void take_remembered(struct gbuffer *g, const struct camera_memory *memory)
+static void take_remembered(struct gbuffer *g, const struct frame_memory *memory)
 {
     struct camera *c = &g->camera;
     const struct camera *from = &memory->camera;
@@ -137,23 +137,25 @@ static void take_remembered(struct gbuffer *g, const struct camera_memory *memor
 
 /* The camera of the frames before, where this one agrees with it; else this one's from now on. */
 static void remember(struct gbuffer *g, const struct fit *fit, const char *path,
-                     struct camera_memory *memory, struct report *report)
+                     struct frame_memory *memory, struct report *report)
 {
     const struct camera *c = &g->camera, *before = &memory->camera;
-    const bool same = memory->is_known && memory->depth_type == g->depth_type &&
-                      before->type == c->type &&
-                      fabs(log(before->half_width / c->half_width)) <= before->bound + c->bound;
-    if (same) {
+    const bool is_same_camera =
+        memory->is_known && before->type == c->type &&
+        fabs(log(before->half_width / c->half_width)) <= before->bound + c->bound;
+    if (is_same_camera && memory->depth_type == g->depth_type) {
         take_remembered(g, memory);
         return;
     }
-    if (memory->is_known)
+    if (memory->is_known && !is_same_camera)
         report_warn(report, "camera change",
                     "%s: another camera than that of the frames before: half the width at distance "
                     "1 is %.4g, was %.4g",
                     path, c->half_width, before->half_width);
-    *memory = (struct camera_memory){
-        .is_known = true, .camera = *c, .depth_type = g->depth_type, .models = 1u << fit->model};
+    memory->is_known = true;
+    memory->camera = *c;
+    memory->depth_type = g->depth_type;
+    memory->models = 1u << fit->model;
 }
 
 /* --- Estimates --- */
@@ -197,7 +199,7 @@ static bool estimate_as(const struct gbuffer *g, unsigned models, bool known,
 static bool estimate(const struct gbuffer *g, const struct gbuffer_options *options,
                      struct fit *fit, struct tool_error *err)
 {
-    const struct camera_memory *memory = options->memory;
+    const struct frame_memory *memory = options->memory;
     *fit = (struct fit){0};
     if (memory && memory->is_known &&
         !estimate_as(g, memory->models, false, memory->camera.half_width, fit, err))
@@ -377,51 +379,86 @@ static bool is_same_view(const struct camera *a, const struct camera *b)
            fabs(a->shift_x - b->shift_x) <= 0 && fabs(a->shift_y - b->shift_y) <= 0;
 }
 
+static bool is_doubtful(const struct camera *c, const struct fit *told, const struct fit *seen)
+{
+    const double gain = seen->agreement - told->agreement;
+    return seen->is_usable && gain >= needed_gain(seen) && is_other_view(c, seen);
+}
+
 /* Where the image says another thing than header or options, which are believed all the same. */
-static void weigh(const struct gbuffer *g, const struct fit *told, const struct fit *seen,
-                  const char *path, struct report *report)
+static void tell_doubt(const struct gbuffer *g, const struct fit *told, const struct fit *seen,
+                       const char *path, struct report *report)
 {
     const struct camera *c = &g->camera;
-    const double gain = seen->agreement - told->agreement;
     char by_told[VIEW_BYTES], by_seen[VIEW_BYTES], shift[VIEW_BYTES];
-    if (!seen->is_usable || gain < needed_gain(seen) || !is_other_view(c, seen))
-        return;
     describe(c->type, c->half_width, by_told);
     describe(seen->model == FIT_ORTHO ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE, seen->half_width,
              by_seen);
     describe_shift(seen, shift);
-    report_warn(report, "doubted camera",
-                "%s: %s says %s, but depth and normals %s%s%s (%.0f %% of normals agree then, and "
-                "%.0f %% as it says): that of %s is taken (--fov or --camera overrides)",
-                path, c->source, by_told, seen->is_sure ? "" : "perhaps ", by_seen, shift,
-                seen->agreement * 100.0, told->agreement * 100.0, c->source);
+    report_warn_of_frame(
+        report, "doubted camera",
+        "%s: %s says %s, but depth and normals %s%s%s (%.0f %% of normals agree then, and "
+        "%.0f %% as it says): that of %s is taken (--fov or --camera overrides)",
+        path, c->source, by_told, seen->is_sure ? "" : "perhaps ", by_seen, shift,
+        seen->agreement * 100.0, told->agreement * 100.0, c->source);
+}
+
+/* The camera was held against a frame before, and of this one as many normals agree with it. To ask
+ * for another takes 0.2 s, twice as long as all else of reading a small frame. */
+static bool was_asked(struct frame_memory *memory, const struct camera *c, const struct fit *told)
+{
+    static const double other_agreement = 0.01;
+    if (!memory || !is_same_view(&memory->told, c))
+        return false;
+    const double gain = told->agreement - memory->told_agreement;
+    /* Doubts end where more agree, and begin where less do: slowly, too. */
+    if (memory->is_doubted ? gain < 0 : gain > 0)
+        memory->told_agreement = told->agreement;
+    return memory->is_doubted ? gain < other_agreement : gain > -other_agreement;
+}
+
+/* Says so where doubts begin. */
+static bool doubt(const struct gbuffer *g, const struct gbuffer_options *options, struct fit *told,
+                  const char *path, struct report *report, struct tool_error *err)
+{
+    struct frame_memory *memory = options->memory;
+    struct fit seen = {0};
+    bool is_doubted = false;
+    if (told->agreement < doubtful_agreement) {
+        if (!estimate_as(g, possible_models(g, options, false), false, 0, &seen, err))
+            return false;
+        told->tone = seen.tone;
+        told->curve = seen.curve;
+        tell_tone(g, told, path, report);
+        is_doubted = !(told->tone > 0) && is_doubtful(&g->camera, told, &seen);
+    }
+    if (is_doubted && !(memory && memory->is_doubted))
+        tell_doubt(g, told, &seen, path, report);
+    if (memory) {
+        memory->told = g->camera;
+        memory->told_agreement = told->agreement;
+        memory->is_doubted = is_doubted;
+    }
+    return true;
 }
 
 static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *options,
                                const char *path, struct report *report, struct tool_error *err)
 {
     const struct role *depth = &g->roles.kind[ROLE_DEPTH];
-    struct fit told, seen;
+    struct fit told;
     if (!estimate_as(g, possible_models(g, options, true), true, 0, &told, err))
         return false;
     const bool is_exact = strcmp(g->camera.source, "positions") == 0;
     tell_pixels(g, &told, path, report);
-    const bool was_asked = options->memory && is_same_view(&options->memory->told, &g->camera);
-    if (options->memory)
-        options->memory->told = g->camera;
-    if (told.half_width > 0 && told.agreement < doubtful_agreement && !is_exact && !was_asked) {
-        if (!estimate_as(g, possible_models(g, options, false), false, 0, &seen, err))
-            return false;
-        told.tone = seen.tone;
-        told.curve = seen.curve;
-        tell_tone(g, &told, path, report);
-        if (!(told.tone > 0))
-            weigh(g, &told, &seen, path, report);
-    }
+    const bool is_new = told.half_width > 0 && !is_exact &&
+                        !(options->memory && is_same_view(&options->memory->told, &g->camera));
+    if (told.half_width > 0 && !is_exact && !was_asked(options->memory, &g->camera, &told) &&
+        !doubt(g, options, &told, path, report, err))
+        return false;
     const bool lacks_near = options->depth_type == DEPTH_AUTO &&
                             depth->depth_type == DEPTH_RADIAL_NEAR && !(g->camera.near_plane > 0);
-    if (told.half_width > 0 && !told.tells_view && !is_exact && !was_asked &&
-        !gbuffer_camera_is_explicit(&g->camera))
+    if (is_new && !told.tells_view && !gbuffer_camera_is_explicit(&g->camera))
         report_warn(report, "unchecked camera",
                     "%s: the normals are nearly the same in any field of view: nothing checks that "
                     "of %s",

@@ -129,6 +129,10 @@ void gbuffer_warn_of_ramps(struct gbuffer *g, const char *path, struct report *r
 /* Of depth as prepared and the normals that are used, if any: values that all beyond them was set
  * to. */
 void gbuffer_warn_of_limits(const struct gbuffer *g, const char *path, struct report *report);
+/* Of depth as prepared, of another kind or unit than that of the frames before, where that begins;
+ * memory may be NULL. */
+void gbuffer_warn_of_frame(const struct gbuffer *g, struct frame_memory *memory, const char *path,
+                           struct report *report);
 /* Of depth as prepared and the normals that are used, if any. */
 void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct report *report);
 /* By how many widths of a texel depth, as prepared, bends where stored normals are alike: a median,

@@ -34,22 +34,59 @@ void report_error(const struct tool_error *err)
         print_line("      ", "", err->hint);
 }
 
-void report_warn(struct report *report, const char *key, const char *format, ...)
+/* False if there is no room for another. */
+static bool find_key(struct report *report, const char *key, bool *is_new, size_t *index)
 {
-    for (size_t i = 0; i < report->said_count; i++)
-        if (strcmp(report->said[i], key) == 0)
-            return;
-    if (report->said_count < sizeof report->said / sizeof *report->said)
+    size_t i = 0;
+    while (i < report->said_count && strcmp(report->said[i], key) != 0)
+        i++;
+    *is_new = i == report->said_count;
+    *index = i;
+    if (*is_new && i == sizeof report->said / sizeof *report->said)
+        return false;
+    if (*is_new)
         report->said[report->said_count++] = key;
+    return true;
+}
+
+static void warn(struct report *report, const char *format, va_list args) TOOL_PRINTF(2, 0);
+static void warn(struct report *report, const char *format, va_list args)
+{
     char line[LINE_BYTES];
-    va_list args;
-    va_start(args, format);
     vsnprintf(line, sizeof line, format, args);
-    va_end(args);
     if (report->heard)
         report->heard(report->heard_data, line);
     if (report->verbosity >= REPORT_NORMAL)
         print_line("vkao: ", "warning: ", line);
+}
+
+void report_warn(struct report *report, const char *key, const char *format, ...)
+{
+    bool is_new;
+    size_t index;
+    if (find_key(report, key, &is_new, &index))
+        report->said_in[index] = report->frame;
+    if (!is_new)
+        return;
+    va_list args;
+    va_start(args, format);
+    warn(report, format, args);
+    va_end(args);
+}
+
+void report_warn_of_frame(struct report *report, const char *key, const char *format, ...)
+{
+    bool is_new;
+    size_t index;
+    const bool has_room = find_key(report, key, &is_new, &index);
+    if (!is_new && report->said_in[index] == report->frame)
+        return;
+    if (has_room)
+        report->said_in[index] = report->frame;
+    va_list args;
+    va_start(args, format);
+    warn(report, format, args);
+    va_end(args);
 }
 
 void report_note(const struct report *report, const char *format, ...)

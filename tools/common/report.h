@@ -15,7 +15,9 @@ enum verbosity { REPORT_QUIET = -1, REPORT_NORMAL = 0, REPORT_VERBOSE = 1 };
 struct report {
     enum verbosity verbosity;
     const char *said[64]; /* keys of the warnings given so far; the strings are static */
+    unsigned said_in[64]; /* the frame of each, the last one */
     size_t said_count;
+    unsigned frame; /* of a sequence, counted by who goes through it */
     /* Hears warnings too, and however quiet the report is; NULL: nobody. */
     void (*heard)(void *data, const char *warning);
     void *heard_data;
@@ -26,6 +28,9 @@ void report_error(const struct tool_error *err);
 /* Once per key, which must be a string literal; silent when quiet. Warnings of a sequence would be
  * noise otherwise. */
 void report_warn(struct report *report, const char *key, const char *format, ...) TOOL_PRINTF(3, 4);
+/* Once per key and frame, which may be too much as well: for what the caller knows to begin there. */
+void report_warn_of_frame(struct report *report, const char *key, const char *format, ...)
+    TOOL_PRINTF(3, 4);
 /* Progress and summaries, at normal verbosity. */
 void report_note(const struct report *report, const char *format, ...) TOOL_PRINTF(2, 3);
 /* Details, with -v. */

@@ -40,7 +40,7 @@ struct source {
     const char *reference_given; /* --reference or dropped, or NULL */
     char reference_dropped[4096];
     float radius; /* what vkao would take for all frames; 0 = not known yet */
-    struct camera_memory cameras[MAX_VIEWS]; /* by view, as estimated of the first frame */
+    struct frame_memory cameras[MAX_VIEWS]; /* by view, as estimated of the first frame */
 };
 
 /* options->input may be NULL: an empty window. Nothing is loaded yet. */
@@ -53,7 +53,7 @@ struct source_undo {
     struct plan plan;
     size_t frame;
     float radius;
-    struct camera_memory cameras[MAX_VIEWS];
+    struct frame_memory cameras[MAX_VIEWS];
     const char *reference_given;
     char reference_dropped[4096];
 };

@@ -26,7 +26,7 @@ struct session {
     struct gpu gpu;
     struct ao_session *ao; /* NULL until the driver has started, beside the first view */
     float auto_radius;     /* 0 = not known yet */
-    struct camera_memory cameras[MAX_VIEWS]; /* by view, as estimated */
+    struct frame_memory memory[MAX_VIEWS]; /* by view */
     bool summarised, is_sequence;
 };
 
@@ -185,7 +185,7 @@ static void open_part(void *data, uint32_t part)
     struct gbuffer_options options = view_options(o->options, o->view);
     view_reserve_work(&options, &o->options->setting.effect);
     options.held_bytes = o->held_bytes;
-    options.memory = &o->session->cameras[o->view - o->source->views];
+    options.memory = &o->session->memory[o->view - o->source->views];
     const double start = now_ms();
     o->is_read = gbuffer_load(&o->source->info, &options, o->view->camera, o->session->report,
                               o->gbuffer, &o->read_err);
@@ -351,6 +351,7 @@ static int render_plan(struct session *s, const struct plan *plan)
     for (size_t i = 0; i < plan->count; i++) {
         const struct plan_frame *frame = &plan->frames[i];
         struct tool_error err = {0};
+        s->report->frame++;
         if (plan->is_sequence)
             report_note(s->report, "frame %zu/%zu (%" PRId64 "): %s", i + 1, plan->count,
                         frame->number, frame->output);
