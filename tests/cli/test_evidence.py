@@ -512,6 +512,17 @@ def normals_do_not_tell_reversed_depth_from_inverse(scratch):
             str(inspect(scratch)['warnings']), 'the warnings')
 
 
+@cases([('35', 35), ('1000', 1000)])
+def scale_of_inverse_depth_is_not_in_the_file(scratch, _, k):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene, '--radius', 0.5)
+    channels = {'Z': (scene.depth('inverse') * k).astype(np.float32), **scene.normals()}
+    ao, said = run(scratch, channels, '--fov', FOV, '--radius', 0.5 / k)
+    check_same(ao, wanted, 'AO with the radius divided by k')
+    matches("depth 'Z' is up to .*, taken as 1/z; k/z looks the same .*divide --radius by k", said,
+            'stderr')
+
+
 @cases([('0', 0), ('1', 1), ('inf', np.inf), ('nan', np.nan), ('5', 5.0), ('1e10', 1e10)])
 def depth_without_shape_is_an_error(scratch, _, value):
     write_exr(scratch.path('in.exr'), {'Z': np.full((20, 30), value, np.float32)})

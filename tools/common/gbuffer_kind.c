@@ -146,14 +146,20 @@ static void warn_small(const struct gbuffer *g, const struct value_facts *f, con
 }
 
 /* Normals tell what depth measures but not in which unit: parts of a far plane and buffers of
- * reversed depth have the same shape as distances and 1/z. */
+ * reversed depth have the same shape as distances and 1/z, and so has k/z. */
 static bool check_scale(const struct gbuffer *g, const struct exr_info *info,
                         const struct value_facts *f, struct report *report, struct tool_error *err)
 {
     const struct role *role = &g->roles.kind[ROLE_DEPTH];
-    if (!is_within_one(f) || (g->depth_type == DEPTH_INVERSE && is_of_nuke(info, role)))
+    const bool is_inverse = g->depth_type == DEPTH_INVERSE;
+    if (is_inverse ? is_of_nuke(info, role) : !is_within_one(f))
         return true;
-    if (g->depth_type == DEPTH_INVERSE)
+    if (is_inverse && !is_within_one(f))
+        report_warn(report, "inverse depth",
+                    "%s: depth '%s' is up to %.4g, taken as 1/z; k/z looks the same and is in "
+                    "another unit: divide --radius by k then, or write 1/z",
+                    info->path, role->label, f->high);
+    else if (is_inverse)
         report_warn(report, "inverse depth",
                     "%s: depth '%s' is from %.4g to %.4g, taken as 1/z; a reversed depth buffer "
                     "differs in scale alone (--depth-type device with --near and --far)",
