@@ -362,6 +362,27 @@ def radial_depth_from_a_near_plane_needs_no_name_for_it(scratch):
     check(abs(view['camera']['near'] / NEAR - 1) < 0.05, f'near is {view["camera"]["near"]}')
 
 
+@cases([('right', NEAR, NEAR, False), ('too far', NEAR, 2 * NEAR, True),
+        ('too near', NEAR, 0.1, True), ('of another file', 0.0, NEAR, True),
+        ('nearly right', NEAR, 1.02 * NEAR, False)])
+def near_plane_that_the_image_contradicts_is_said(scratch, _, true, told, is_said):
+    scene = Scene()
+    for channel in ('dd.y.T', 'Z'):
+        if channel == 'Z' and not true > 0:
+            continue  # radial then, whatever is told
+        write_exr(scratch.path('in.exr'), {channel: scene.depth('radial-near', near=true),
+                                           **scene.normals(space='world')})
+        write_camera(scratch.path('camera.json'), camera(near=told))
+        view, said = inspect(scratch, '--camera', 'camera.json')
+        equal((view['conventions']['depth_type'], view['camera']['near']), ('radial-near', told),
+              'depth type and near plane')
+        doubts = re.findall(r'said to be at (\S+), but depth and normals are those of one at '
+                            r'(\S+): \1 is taken \(--near, or a camera file without', said)
+        equal([float(by_told) for by_told, _ in doubts], [told] if is_said else [],
+              f'doubts in {said}')
+        check(all(abs(float(by_seen) - true) < 0.02 for _, by_seen in doubts), said)
+
+
 # --- Sequences ---
 
 def frames_of(scratch, fovs):

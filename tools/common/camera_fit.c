@@ -348,6 +348,8 @@ static void settle_offset(const struct fit_samples *s, const struct fit_input *i
     const double apart = fabs(plain.p[FIT_LN_K] - offset.p[FIT_LN_K]);
     *best = sharpened(s, earned ? &offset : &plain);
     best->near_known = earned;
+    best->near = earned ? best->p[FIT_C] : offset.p[FIT_C];
+    best->near_deviation = earned ? best->deviation[FIT_C] : offset.deviation[FIT_C];
     /* Where the name says that there is one, not to see it is no proof of none. */
     if (!earned && (input->models >> FIT_RADIAL_NEAR & 1u))
         best->doubt += apart;
@@ -554,6 +556,11 @@ static void describe(const struct fit_samples *s, const struct fit_input *input,
                           ? best->p[FIT_C] * s->median
                           : 0;
     fit->near_known = best->near_known;
+    if (without_offset(best->model) == FIT_RADIAL) {
+        fit->seen_near = best->near * s->median;
+        fit->near_bound = 2.5 * best->near_deviation * s->median;
+    }
+    fit->median = s->median;
     fit->in_unit_range = is_in_unit_range(s);
     for (int i = 0; i < 3; i++) {
         fit->rotation[i * 3] = rows[i].x;

@@ -61,7 +61,10 @@ struct fit {
     double half_width;       /* at distance 1; FIT_ORTHO: scene units */
     double shift_x, shift_y; /* as struct camera has them */
     double near_plane;       /* of FIT_RADIAL_NEAR and FIT_PLANAR_NORMALIZED, units of depth */
+    double seen_near;        /* of FIT_RADIAL too, whether near_known or not; units of depth */
+    double near_bound;       /* error of seen_near that is not exceeded; 0: none was seen */
     double rotation[9];      /* of the stored normals to view space, m[row * 3 + column] */
+    double median;           /* of depth as stored */
     double bound;            /* relative error of half_width that is not exceeded, surely not */
     double agreement;        /* [0,1] of the stored normals with those of depth */
     double pixel_aspect;     /* 0, or what is seen if it is not that of the input */

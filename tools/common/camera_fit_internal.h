@@ -60,7 +60,8 @@ struct fit_solution {
     double deviation[FIT_SHAPE]; /* standard errors of p */
     double rotation_deviation;   /* degrees */
     bool shifted, hand_unknown, near_known;
-    double doubt; /* of ln k: by a shift that is not accepted, and not excluded */
+    double near, near_deviation; /* c of FIT_RADIAL and FIT_RADIAL_NEAR, whether it counts or not */
+    double doubt;                /* of ln k: by a shift that is not accepted, and not excluded */
 };
 
 bool fit_model_is_ortho(enum fit_model model);

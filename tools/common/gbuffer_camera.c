@@ -268,6 +268,20 @@ static void tell_offset(const struct gbuffer *g, const struct fit *fit, const ch
                     path, g->roles.kind[ROLE_DEPTH].label, fit->near_plane);
 }
 
+/* What is told is believed, as a field of view is. A hundredth of the distances is what AO shows. */
+static void tell_near(const struct gbuffer *g, const struct fit *fit, const char *path,
+                      struct report *report)
+{
+    const double told = g->camera.near_plane, seen = fmax(fit->seen_near, 0);
+    const double least = 0.01 * fit->median + 3.0 * fit->near_bound;
+    if (g->depth_type == DEPTH_RADIAL_NEAR && fit->near_bound > 0 && fabs(told - seen) > least)
+        report_warn(report, "doubted near plane",
+                    "%s: the near plane that depth '%s' is measured from is said to be at %.4g, "
+                    "but depth and normals are those of one at %.4g: %.4g is taken (--near, or a "
+                    "camera file without \"near\", overrides)",
+                    path, g->roles.kind[ROLE_DEPTH].label, told, seen, told);
+}
+
 /* Nothing else makes all of a scene wider or higher. */
 static void tell_pixels(const struct gbuffer *g, const struct fit *fit, const char *path,
                         struct report *report)
@@ -470,6 +484,7 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
         see_rotation(g, &told);
         g->depth_range.is_radial = told.model == FIT_RADIAL_NORMALIZED;
         tell_offset(g, &told, path, report);
+        tell_near(g, &told, path, report);
     }
     return true;
 }
