@@ -268,7 +268,7 @@ static void tell_offset(const struct gbuffer *g, const struct fit *fit, const ch
                     path, g->roles.kind[ROLE_DEPTH].label, fit->near_plane);
 }
 
-/* What is told is believed, as a field of view is. A hundredth of the distances is what AO shows. */
+/* What is told is believed, as a field of view is. AO shows a hundredth of the distances. */
 static void tell_near(const struct gbuffer *g, const struct fit *fit, const char *path,
                       struct report *report)
 {

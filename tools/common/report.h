@@ -28,7 +28,7 @@ void report_error(const struct tool_error *err);
 /* Once per key, which must be a string literal; silent when quiet. Warnings of a sequence would be
  * noise otherwise. */
 void report_warn(struct report *report, const char *key, const char *format, ...) TOOL_PRINTF(3, 4);
-/* Once per key and frame, which may be too much as well: for what the caller knows to begin there. */
+/* Once per key and frame, which may be too much: for what the caller knows to begin there. */
 void report_warn_of_frame(struct report *report, const char *key, const char *format, ...)
     TOOL_PRINTF(3, 4);
 /* Progress and summaries, at normal verbosity. */
