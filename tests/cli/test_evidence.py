@@ -504,6 +504,46 @@ def normals_of_what_is_at_one_value_may_be_its_own(scratch, _, value, normal):
     check('clamped' not in said and 'has nothing' not in said, said)
 
 
+@cases([('all of them', 0, False), ('a few', 0.005, False), ('a third', 0.3, True)])
+def surface_without_normals_is_said(scratch, _, share, is_said):
+    scene = Scene()
+    wanted = scene.normals()
+    there = np.arange(160) >= round(160 * share)
+    left = {n: np.where(there, v, 0).astype(np.float32) for n, v in wanted.items()}
+    write_exr(scratch.path('in.exr'), {'Z': depth_of(scene, 1e10), **left})
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    equal("of the surface has no normals 'N': they are 0" in said, is_said, f'whether in {said}')
+    # In a part or a file that is cut to some box.
+    begin = int(160 * share)
+    layout = {'x': begin, 'display': (0, 0, 159, 89)}
+    cut = {n: np.ascontiguousarray(v[:, begin:]) for n, v in wanted.items()}
+    write_exr(scratch.path('in.exr'), ({'Z': depth_of(scene, 1e10)}, {'name': 'depth'}),
+              (cut, {'name': 'N', **layout}))
+    write_exr(scratch.path('n.exr'), cut, **layout)
+    for path, options in ('in.exr', ()), ('n.exr', ('--normal-file', 'n.exr')):
+        said = [w for w in inspect(scratch, '--fov', FOV, *options)['warnings']
+                if f'data window ({begin} 0) - (159 89) covers a part only' in w]
+        equal([w.split(':')[0] for w in said], [path] * is_said, 'the file that is named')
+
+
+@cases([('0', 0), ('inf', np.inf), ('nan', np.nan)])
+def holes_in_surfaces_are_said(scratch, _, value):
+    scene, random = Scene(), np.random.default_rng(3)
+    channels = {'Z': depth_of(scene, 1e10), **scene.normals()}
+    write_exr(scratch.path('in.exr'), channels)
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    check('has nothing' not in said, said)
+    channels['Z'][(random.random(scene.z.shape) < 0.02) & ~scene.sky] = value
+    write_exr(scratch.path('in.exr'), channels)
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    matches('are NaN, negative' if np.isnan(value) else
+            "has nothing at .* in the middle of surfaces that normals 'N' show", said, 'warnings')
+    equal('has nothing' in said, not np.isnan(value), f'whether it is said once in {said}')
+    # What lies behind a given distance is meant to be nothing.
+    said = str(inspect(scratch, '--fov', FOV, '--background', 9)['warnings'])
+    check('has nothing' not in said, said)
+
+
 @case
 def normals_do_not_tell_reversed_depth_from_inverse(scratch):
     scene = Scene()

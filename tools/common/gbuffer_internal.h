@@ -135,6 +135,9 @@ void gbuffer_warn_of_frame(const struct gbuffer *g, struct frame_memory *memory,
                            struct report *report);
 /* Of depth as prepared and the normals that are used, if any. */
 void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct report *report);
+/* Of depth as prepared, with its alpha, and the normals that are used, if any: where only one of
+ * the two is there. */
+void gbuffer_warn_of_holes(const struct gbuffer *g, const char *path, struct report *report);
 /* By how many widths of a texel depth, as prepared, bends where stored normals are alike: a median,
  * 0 where there are few of them. False if memory ran out. */
 bool gbuffer_measure_noise(const struct gbuffer *g, double *noise);
