@@ -73,6 +73,36 @@ def depth_is_found_by_all_its_names(scratch, name):
         equal(view['conventions']['depth_type'], 'radial', 'type')
 
 
+@cases([('twice', 2, np.float32, True), ('negative', -1, np.float32, False),
+        ('the same', 1, np.float32, False), ('halves', 1, np.float16, False),
+        ('other halves', 1.5, np.float16, True)], name=lambda row: row[0])
+def one_of_two_depths_is_said_if_they_differ(scratch, _, times, kind, is_said):
+    scene = Scene()
+    first = scene.depth()
+    with np.errstate(over='ignore'):
+        other = (np.where(scene.sky, np.inf, first * times)).astype(kind)
+    for channels in ([{'depth.Z': first, 'Z': other}], [{'Z': first, 'VRayZDepth': other}],
+                     [({'Z': other, **scene.color()}, {'name': 'rgba'}),
+                      ({'Z': first}, {'name': 'depth'})]):
+        write_exr(scratch.path('in.exr'), *channels)
+        view = inspect(scratch, '--fov', FOV)
+        taken, said = view['roles']['depth']['name'], str(view['warnings'])
+        equal(f"depth '{taken}' and '" in said, is_said, f'whether two are in {said}')
+        check(np.isclose(view['conventions']['min_z'], scene.z.min()), 'another is taken')
+        said = str(inspect(scratch, '--fov', FOV, '--depth', taken)['warnings'])
+        check(' differ: ' not in said, f'{taken} was named: {said}')
+
+
+@case
+def depth_of_another_part_is_its_own(scratch):
+    scene = Scene()
+    write_exr(scratch.path('in.exr'), (scene.color(), {'name': 'rgba'}),
+              ({'Z': scene.depth()}, {'name': 'depth'}),
+              ({'Z': scene.depth() * 2}, {'name': 'character'}))
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    check(' differ: ' not in said, said)
+
+
 @case
 def component_stands_for_its_layer(scratch):
     scene = Scene(48, 27)

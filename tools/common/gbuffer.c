@@ -117,6 +117,43 @@ static bool check_grey(const struct gbuffer *g, struct report *report, struct to
                 depth->info->path, depth->channels[0]->name, depth->twin->name);
 }
 
+/* Halves end at 65504. Of what the other lacks nothing is known. */
+static bool is_same_depth(float depth, float other, bool is_half)
+{
+    static const float most_half = 65504.0f, tolerance = 0.01f;
+    const float a = fabsf(depth), b = fabsf(other);
+    const float x = is_half ? fminf(a, most_half) : a, y = is_half ? fminf(b, most_half) : b;
+    const bool is_nothing = !gbuffer_is_measurable((double)a) && !gbuffer_is_measurable((double)b);
+    return isnan(other) || is_nothing || fabsf(x - y) <= tolerance * fmaxf(x, y);
+}
+
+/* Z and depth.Z are mostly one thing under two names. Where they are two, only the user knows which
+ * is meant. The other is not needed: if it cannot be read, nothing is said. */
+static void compare_depths(const struct gbuffer *g, const struct gbuffer_options *options,
+                           struct report *report)
+{
+    const struct role *depth = &g->roles.kind[ROLE_DEPTH];
+    struct role other;
+    struct tool_error unread = {0};
+    size_t different = 0;
+    if (!roles_other_depth(&options->roles, &g->roles, &other))
+        return;
+    const struct exr_channel *a = depth->channels[0], *b = other.channels[0];
+    if (b->x_sampling != 1 || b->y_sampling != 1)
+        return;
+    const bool is_half = a->type == EXR_HALF || b->type == EXR_HALF;
+    float *values = gbuffer_read_role(g, &other, 1, NAN, &unread);
+    for (size_t i = 0; values && i < gbuffer_texels(g); i++)
+        different += !is_same_depth(g->depth[i], values[i], is_half);
+    if (different * 100 > gbuffer_texels(g))
+        report_warn(report, "two depths",
+                    "%s: depth '%s' and '%s' differ: '%s' is taken (--depth '%s' takes the other, "
+                    "--depth '%s' says that it is right)",
+                    depth->info->path, depth->label, other.label, depth->label, other.label,
+                    depth->label);
+    free(values);
+}
+
 /* Whole numbers are units, millimetres say, or parts of the largest that fits into 8, 16, 24 or 32
  * bits. Of a depth buffer or a range that somebody names they are the latter, and become 0 to 1. */
 static bool settle_whole_numbers(struct gbuffer *g, const struct gbuffer_options *options,
@@ -502,8 +539,10 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     bool is_moved;
     if (g->camera.remark[0])
         report_warn(report, "camera remark", "%s: %s", info->path, g->camera.remark);
-    if (!read_depth(g, err) || !check_grey(g, report, err) ||
-        !settle_whole_numbers(g, options, report, err))
+    if (!read_depth(g, err) || !check_grey(g, report, err))
+        goto failed;
+    compare_depths(g, options, report);
+    if (!settle_whole_numbers(g, options, report, err))
         goto failed;
     if (normal->found) {
         g->normals = gbuffer_read_role(g, normal, 4, 0.0f, err);

@@ -383,6 +383,37 @@ bool roles_resolve(const struct exr_info *info, const struct role_request *reque
 
 /* --- What was not taken --- */
 
+/* Parts of their own, of a character say, may have a depth of their own. */
+static bool is_of_picture(const struct roles *roles, const struct role_search *s, size_t part)
+{
+    const struct role *color = &roles->kind[ROLE_COLOR];
+    return color->found && color->info == s->info && color->part == part;
+}
+
+bool roles_other_depth(const struct role_request *request, const struct roles *roles,
+                       struct role *other)
+{
+    const struct role *depth = &roles->kind[ROLE_DEPTH];
+    struct role_search s = {.info = depth->info, .view = request->view ? request->view : ""};
+    const struct role_row *first = NULL;
+    if (request->name[ROLE_DEPTH] || depth->depth_type == DEPTH_POSITION)
+        return false;
+    for (size_t i = 0; i < role_table_count; i++) {
+        const struct role_row *row = &role_table[i];
+        if (row->kind != ROLE_DEPTH || !row->is_plain)
+            continue;
+        role_search_row(&s, row);
+        for (size_t h = 0; first && h < s.count; h++)
+            if (s.hits[h].part == depth->part || is_of_picture(roles, &s, s.hits[h].part)) {
+                take_hit(&s, &s.hits[h], row, other);
+                return true;
+            }
+        if (s.count > 0 && s.hits[0].channels[0] == depth->channels[0])
+            first = row;
+    }
+    return false;
+}
+
 struct passing {
     struct role_search search;
     const struct roles *roles;

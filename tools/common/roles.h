@@ -78,6 +78,7 @@ struct role_row {
     const char *companion, *attribute;
     enum depth_type depth_type;
     enum normal_space normal_space;
+    bool is_plain; /* a name of the depth itself, as good as those of other rows like it */
 };
 
 extern const struct role_row role_table[];
@@ -133,6 +134,11 @@ const char *roles_view_name(const struct exr_info *info, size_t index);
  * EXIT_INPUT if all there is is deep data. */
 bool roles_resolve(const struct exr_info *info, const struct role_request *request,
                    struct roles *roles, struct tool_error *err);
+
+/* Another depth of the part or of the part of the colour, whose name is as good as that of the one
+ * that was taken, unless the request names it: *other is filled if true. */
+bool roles_other_depth(const struct role_request *request, const struct roles *roles,
+                       struct role *other);
 
 /* Tells of channels that might be taken for depth, normals or colour and were not, and why; label
  * is in the form that the options take. At most some dozen. */

@@ -21,12 +21,12 @@ const struct role_row role_table[] = {
     {.kind = ROLE_DEPTH,
      .layers = "depth|z|linearDepth|cameraDepth|camera_depth|ZDepth|VRayZDepth|CGeometry_ZDepth|"
                "Z-depth|Z depth|Z_depth",
-     .sets = DEPTH_COMPONENTS},
+     .sets = DEPTH_COMPONENTS, .is_plain = true},
     /* RenderMan, Arnold, V-Ray, Redshift, OSPRay, old Blender; Karma; Mantra; V-Ray */
-    {.kind = ROLE_DEPTH, .sets = {{"Z"}}},
-    {.kind = ROLE_DEPTH, .sets = {{"depth"}}},
+    {.kind = ROLE_DEPTH, .sets = {{"Z"}}, .is_plain = true},
+    {.kind = ROLE_DEPTH, .sets = {{"depth"}}, .is_plain = true},
     {.kind = ROLE_DEPTH, .sets = {{"Pz"}, {"hitPz"}}},
-    {.kind = ROLE_DEPTH, .sets = {{"zDepth"}, {"VRayZDepth"}}},
+    {.kind = ROLE_DEPTH, .sets = {{"zDepth"}, {"VRayZDepth"}}, .is_plain = true},
     /* Unreal: FinalImageMovieRenderQueue_WorldDepth.R and relatives */
     {.kind = ROLE_DEPTH, .layers = "~worlddepth", .sets = {{"R"}, {"Z"}}},
     {.kind = ROLE_DEPTH, .layers = "ImageDepth|SceneDepth", .sets = DEPTH_COMPONENTS},
