@@ -8,6 +8,7 @@ import numpy as np
 
 from cli import (CHANNELS, INPUT, OUTPUT, USAGE, case, cases, check, check_close, equal, main,
                  matches, read_ao, read_parts, write_exr)
+from evidence import hidden
 from scene import FOV, MOVE, NEAR, RADIUS, TURN, Scene, camera, write_camera
 
 BASE = ('--radius', RADIUS, '--pixel-type', 'float', '--overwrite', 'always')
@@ -188,6 +189,35 @@ def positions_give_depth_and_camera(scratch, name, space, z):
     check((ao[scene.sky] == 1).all(), 'the background is not 1')
     scratch.render('in.exr', '-o', 'again.exr', '--like', 'ao.exr')
     check_close(read_ao(scratch.path('again.exr')), ao, 0, 0, '--like')
+
+
+@cases([('0', 0), ('inf', np.inf), ('nan', np.nan), ('1e10', 1e10), ('-1', -1), ('the eye', None)])
+def positions_may_have_any_background(scratch, _, value):
+    scene = hidden(0.4)
+    value = [value] * 3 if value is not None else -MOVE @ TURN
+    normals = scene.normals(space='world')
+    write_camera(scratch.path('c.json'))
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **normals})
+    scratch.render('in.exr', '-o', 'wanted.exr', *BASE, '--camera', 'c.json')
+    planes = {n: np.where(scene.sky, v, plane).astype(np.float32)
+              for (n, plane), v in zip(positions(scene).items(), value)}
+    for depth in {}, {'Z': scene.depth()}:
+        write_exr(scratch.path('in.exr'), {**planes, **depth, **normals})
+        scratch.render('in.exr', '-o', 'ao.exr', *BASE)
+        ao = read_ao(scratch.path('ao.exr'))
+        check_close(ao, read_ao(scratch.path('wanted.exr')), 0.07, 2e-4, 'AO')
+        check((ao[scene.sky] == 1).all(), 'the background is not 1')
+
+
+@case
+def positions_that_all_repeat_are_no_background(scratch):
+    # Enlarged without interpolation: each position is that of 16 texels.
+    scene = Scene(64, 36)
+    blocks = {n: p[1::4, 1::4].repeat(4, 0).repeat(4, 1) for n, p in positions(scene).items()}
+    write_camera(scratch.path('c.json'))
+    write_exr(scratch.path('in.exr'), blocks)
+    share = inspect(scratch, '--camera', 'c.json')[0]['conventions']['background_share']
+    check(np.isclose(share, scene.sky[1::4, 1::4].mean()), f'{share} is background')
 
 
 @case

@@ -80,10 +80,10 @@ float *gbuffer_read_role(const struct gbuffer *g, const struct role *role, size_
 /* Alpha is 1 where there is none. */
 void gbuffer_complete_alpha(const struct gbuffer *g, float *color, size_t texels);
 
-/* The camera by positions, width * height * 4, and depth from them if it is DEPTH_POSITION, which
- * it is no longer then. Errors: EXIT_CHANNELS, EXIT_MEMORY. */
+/* The camera by positions, width * height * 4, whose background becomes 0, and depth from them if
+ * it is DEPTH_POSITION, which it is no longer then. Errors: EXIT_CHANNELS, EXIT_MEMORY. */
 bool gbuffer_use_positions(struct gbuffer *g, const struct gbuffer_options *options,
-                           const float *positions, const char *path, struct report *report,
+                           float *positions, const char *path, struct report *report,
                            struct tool_error *err);
 /* What is not known of the camera by now, and of the type of depth, from depth and normals as read;
  * and says so. Errors: EXIT_MEMORY. */

@@ -231,6 +231,61 @@ static bool settle_depth_type(struct gbuffer *g, const struct position_camera *c
     return true;
 }
 
+/* --- Background --- */
+
+static int compare_points(const void *a, const void *b)
+{
+    const float *p = a, *q = b;
+    for (int c = 0; c < 3; c++)
+        if (p[c] < q[c] || p[c] > q[c])
+            return p[c] < q[c] ? -1 : 1;
+    return 0;
+}
+
+/* The most frequent of sorted points, if it is that by far: no camera sees one point in many
+ * texels. Steps of halves, and enlarging, repeat all points alike. */
+static bool find_repeated(const float *points, size_t count, float repeated[3])
+{
+    static const double least_share = 0.002;
+    enum { FEW = 16, BY_FAR = 10 };
+    size_t most = 0, second = 0;
+    for (size_t i = 0, run; i < count; i += run) {
+        for (run = 1;
+             i + run < count && compare_points(points + i * 3, points + (i + run) * 3) == 0;)
+            run++;
+        if (run > most) {
+            second = most;
+            most = run;
+            memcpy(repeated, points + i * 3, 3 * sizeof *repeated);
+        } else if (run > second) {
+            second = run;
+        }
+    }
+    return most >= FEW && (double)most >= least_share * (double)count && most >= BY_FAR * second;
+}
+
+/* Of a value that some program writes where there is nothing, as -1, it becomes 0. False if memory
+ * ran out. */
+static bool clear_background(const struct gbuffer *g, float *positions)
+{
+    enum { MOST = 1 << 16 };
+    const size_t step = gbuffer_texels(g) / MOST + 1;
+    float *points = malloc((gbuffer_texels(g) / step + 1) * 3 * sizeof *points), repeated[3];
+    size_t count = 0;
+    if (!points)
+        return false;
+    for (size_t i = 0; i < gbuffer_texels(g); i += step)
+        if (positions_are_there(positions + i * 4))
+            memcpy(points + 3 * count++, positions + i * 4, 3 * sizeof *points);
+    qsort(points, count, 3 * sizeof *points, compare_points);
+    const bool is_found = find_repeated(points, count, repeated);
+    for (size_t i = 0; is_found && i < gbuffer_texels(g); i++)
+        if (compare_points(positions + i * 4, repeated) == 0)
+            memset(positions + i * 4, 0, 3 * sizeof *positions);
+    free(points);
+    return true;
+}
+
 static bool fail_positions(const struct gbuffer *g, const char *why, const char *path,
                            struct tool_error *err)
 {
@@ -242,7 +297,7 @@ static bool fail_positions(const struct gbuffer *g, const char *why, const char 
 }
 
 bool gbuffer_use_positions(struct gbuffer *g, const struct gbuffer_options *options,
-                           const float *positions, const char *path, struct report *report,
+                           float *positions, const char *path, struct report *report,
                            struct tool_error *err)
 {
     const struct positions p = {
@@ -255,6 +310,8 @@ bool gbuffer_use_positions(struct gbuffer *g, const struct gbuffer_options *opti
     };
     struct position_camera camera;
     bool found;
+    if (!clear_background(g, positions))
+        return fail_memory(err);
     if (!camera_from_positions(&p, &camera, err))
         return false;
     found = camera.is_sure;
