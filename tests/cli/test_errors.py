@@ -283,6 +283,12 @@ CAMERAS = [
      'without shear'),
     ('views', {'views': 3}, "'views' must be"),
     ('view', {'views': {'left': {}}}, "left: 'fov_x_deg' must be given"),
+    ('one key twice', '{"fov_x_deg": 50, "_": 1, "_": 2, "near": 1, "fov_x_deg": 30}',
+     r"camera\.json: key 'fov_x_deg' is given twice"),
+    ('one view twice', '{"views": {"left": {"fov_x_deg": 50}, "left": {"fov_x_deg": 30}}}',
+     r"camera\.json: view 'left' is given twice"),
+    ('views twice', '{"views": {"left": {"fov_x_deg": 50}}, "views": {}}',
+     r"camera\.json: key 'views' is given twice"),
 ]
 
 
@@ -292,6 +298,16 @@ def camera_files_are_checked(scratch, _, content, message):
     text = content if isinstance(content, str) else json.dumps(content)
     scratch.write('camera.json', text)
     scratch.fails(INPUT, message, 'in.exr', '-o', 'out.exr', '--camera', 'camera.json')
+
+
+@cases([('fov', 'fov_x_deg'), ('fovX', 'fov_x_deg'), ('hfov', 'fov_x_deg'), ('fr', 'far'),
+        ('near_plane', 'near'), ('shift', 'shift_x'), ('shiftY', 'shift_y'), ('tpye', 'type'),
+        ('orthoWidth', 'ortho_width'), ('worldToView', 'world_to_view'), ('focal', None)])
+def key_that_was_meant_is_hinted_at(scratch, wrong, right):
+    gbuffer(scratch)
+    write_camera(scratch.path('c.json'), {wrong: 1})
+    scratch.fails(INPUT, f"c.json: unknown key '{wrong}'", 'in.exr', '-o', 'out.exr', '--camera',
+                  'c.json', hint=f'did you mean "{right}"' if right else 'lists the keys')
 
 
 @case

@@ -10,6 +10,7 @@
 #include "text.h"
 
 #include <cjson/cJSON.h>
+#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -102,25 +103,51 @@ static bool read_placement(const struct reader *r, const cJSON *object, struct c
     return true;
 }
 
-/* A letter wrong in a key, and what it says would be lost without a word. Keys that begin with '_'
- * are comments. */
-static bool check_keys(const struct reader *r, const cJSON *object, const char *const *known,
+/* What a key is about tells it apart however it is spelt. */
+struct known_key {
+    const char *name, *stem;
+};
+
+/* The known key that was meant, or NULL. Of short words all are alike. */
+static const char *meant_key(const char *key, const struct known_key *known, size_t count)
+{
+    char lower[64];
+    const char *nearest = known[0].name;
+    snprintf(lower, sizeof lower, "%s", key);
+    for (char *c = lower; *c; c++)
+        *c = (char)tolower((unsigned char)*c);
+    for (size_t i = 0; i < count; i++)
+        if (text_distance(lower, known[i].name) < text_distance(lower, nearest))
+            nearest = known[i].name;
+    const unsigned distance = text_distance(lower, nearest);
+    if (distance <= 3 && distance * 2 <= strlen(lower))
+        return nearest;
+    for (size_t i = 0; i < count; i++)
+        if (strstr(lower, known[i].stem))
+            return known[i].name;
+    return NULL;
+}
+
+/* A letter wrong in a key, or one key twice, and what it says would be lost without a word. Keys
+ * that begin with '_' are comments. */
+static bool check_keys(const struct reader *r, const cJSON *object, const struct known_key *known,
                        size_t count)
 {
     const cJSON *item;
     cJSON_ArrayForEach(item, object)
     {
-        const char *nearest = known[0];
         bool is_known = item->string[0] == '_';
-        for (size_t i = 0; i < count; i++) {
-            is_known |= strcmp(item->string, known[i]) == 0;
-            if (text_distance(item->string, known[i]) < text_distance(item->string, nearest))
-                nearest = known[i];
+        for (size_t i = 0; !is_known && i < count; i++) {
+            is_known = strcmp(item->string, known[i].name) == 0;
+            if (is_known && cJSON_GetObjectItemCaseSensitive(object, item->string) != item)
+                return fail(r->err, EXIT_INPUT, "%s: %s%skey '%s' is given twice", r->path, r->view,
+                            r->view[0] ? ": " : "", item->string);
         }
         if (is_known)
             continue;
-        if (text_distance(item->string, nearest) <= 3)
-            fail_hint(r->err, "did you mean \"%s\"?", nearest);
+        const char *meant = meant_key(item->string, known, count);
+        if (meant)
+            fail_hint(r->err, "did you mean \"%s\"?", meant);
         else
             fail_hint(r->err, "vkao(1) lists the keys; one that begins with _ is a comment");
         return fail(r->err, EXIT_INPUT, "%s: %s%sunknown key '%s'", r->path, r->view,
@@ -160,8 +187,11 @@ static bool read_camera(const struct reader *r, const cJSON *object, struct came
     *camera = (struct camera){0};
     if (!cJSON_IsObject(object))
         return fail(r->err, EXIT_INPUT, "%s: a camera must be an object { ... }", r->path);
-    static const char *const keys[] = {"type",    "fov_x_deg", "ortho_width",   "near",       "far",
-                                       "shift_x", "shift_y",   "world_to_view", "left_handed"};
+    static const struct known_key keys[] = {{"type", "type"},         {"fov_x_deg", "fov"},
+                                            {"ortho_width", "ortho"}, {"near", "near"},
+                                            {"far", "far"},           {"shift_x", "shift"},
+                                            {"shift_y", "shift_y"},   {"world_to_view", "world"},
+                                            {"left_handed", "hand"}};
     if (!check_keys(r, object, keys, sizeof keys / sizeof *keys) || !read_type(r, object, camera))
         return false;
     static const char positive[] = "a number > 0", shift[] = "a number between -10 and 10";
@@ -194,13 +224,15 @@ static bool read_views(const cJSON *root, struct reader *r, struct camera_set *s
         return fail(r->err, EXIT_MEMORY, "%s: out of memory", r->path);
     if (!views)
         return add_view(set, r, root);
-    static const char *const keys[] = {"views"};
+    static const struct known_key keys[] = {{"views", "view"}};
     if (!check_keys(r, root, keys, 1))
         return false;
     const cJSON *object;
     cJSON_ArrayForEach(object, views)
     {
         r->view = object->string;
+        if (cJSON_GetObjectItemCaseSensitive(views, object->string) != object)
+            return fail(r->err, EXIT_INPUT, "%s: view '%s' is given twice", r->path, r->view);
         if (!add_view(set, r, object))
             return false;
     }
