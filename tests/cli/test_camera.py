@@ -371,6 +371,17 @@ def lens_shift_that_the_header_lacks_is_said(scratch):
           'doubts with its display window')
 
 
+@cases([('to the side', (0.1, 0)), ('upwards', (0, 0.2))])
+def lens_shift_that_the_image_contradicts_is_named(scratch, _, shift):
+    scene = Scene(200, 120, 66)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **scene.normals(space='world')})
+    write_camera(scratch.path('c.json'), camera(66, shift_x=shift[0], shift_y=shift[1]))
+    said = str(inspect(scratch, '--camera', 'c.json')[0]['warnings'])
+    matches(rf'says 66 degrees .*, shift {shift[0]:g} {shift[1]:g}, but depth and normals '
+            r'6[56].* degrees .*, shift \S+ \S+ .* is taken \("shift_x" and "shift_y" in a camera file',
+            said, 'the warnings')
+
+
 @cases([('alone', '0.2', {}, 72.7), ('as per cent', '20', {}, 72.7),
         ('outside of the display', '0.2', {'display': (10, 5, 149, 84)}, 63.0)])
 def overscan_of_unreal_widens_the_view(scratch, _, percentage, layout, fov):

@@ -221,12 +221,19 @@ static void describe(enum camera_type type, double half_width, char view[VIEW_BY
                  camera_fov_x_deg(&camera));
 }
 
-/* Of a lens, if it is more than rounding. */
-static void describe_shift(const struct fit *fit, char shift[VIEW_BYTES])
+/* More than rounding. */
+static bool is_shift(double x, double y)
+{
+    return fabs(x) + fabs(y) > 0.01;
+}
+
+/* Of a lens, and never as -0. */
+static void describe_shift(bool is_wanted, double x, double y, char shift[VIEW_BYTES])
 {
     shift[0] = '\0';
-    if (fabs(fit->shift_x) + fabs(fit->shift_y) > 0.01)
-        snprintf(shift, VIEW_BYTES, ", shift %.3g %.3g", fit->shift_x, fit->shift_y);
+    if (is_wanted)
+        snprintf(shift, VIEW_BYTES, ", shift %.3g %.3g", fabs(x) < 1e-4 ? 0.0 : x,
+                 fabs(y) < 1e-4 ? 0.0 : y);
 }
 
 static void tell_unknown(struct gbuffer *g, const struct fit *fit, const char *path,
@@ -246,7 +253,7 @@ static void tell_estimate(struct gbuffer *g, const struct fit *fit, const char *
 {
     char view[VIEW_BYTES], shift[VIEW_BYTES];
     describe(g->camera.type, g->camera.half_width, view);
-    describe_shift(fit, shift);
+    describe_shift(is_shift(fit->shift_x, fit->shift_y), fit->shift_x, fit->shift_y, shift);
     report_warn(report, "camera",
                 "%s: no camera in the header; by depth and normals it is %s%s%s (%s%s%s), depth %s "
                 "(--fov or --camera overrides)",
@@ -371,7 +378,7 @@ static bool find_unknown(struct gbuffer *g, const struct gbuffer_options *option
  * widths, or of shifts, cameras are others. A median error of half a degree, which AO shows, leaves
  * 0.997 agreeing. */
 static const double doubtful_agreement = 0.998, sure_gain = 0.002, clear_gain = 0.15,
-                    other_view = 0.03;
+                    other_view = 0.03, same_width = 0.01;
 
 static double needed_gain(const struct fit *seen)
 {
@@ -379,10 +386,15 @@ static double needed_gain(const struct fit *seen)
     return seen->is_sure || is_exact ? sure_gain : clear_gain;
 }
 
-static bool is_other_view(const struct camera *c, const struct fit *fit)
+static bool is_other_width(const struct camera *c, const struct fit *fit, double tolerance)
 {
     return (c->type == CAMERA_ORTHOGRAPHIC) != (fit->model == FIT_ORTHO) ||
-           fabs(log(c->half_width / fit->half_width)) > other_view + 3.0 * fit->bound ||
+           fabs(log(c->half_width / fit->half_width)) > tolerance;
+}
+
+static bool is_other_view(const struct camera *c, const struct fit *fit)
+{
+    return is_other_width(c, fit, other_view + 3.0 * fit->bound) ||
            fabs(c->shift_x - fit->shift_x) > other_view ||
            fabs(c->shift_y - fit->shift_y) > other_view;
 }
@@ -404,17 +416,23 @@ static void tell_doubt(const struct gbuffer *g, const struct fit *told, const st
                        const char *path, struct report *report)
 {
     const struct camera *c = &g->camera;
-    char by_told[VIEW_BYTES], by_seen[VIEW_BYTES], shift[VIEW_BYTES];
+    char by_told[VIEW_BYTES], by_seen[VIEW_BYTES], told_shift[VIEW_BYTES], shift[VIEW_BYTES];
     describe(c->type, c->half_width, by_told);
     describe(seen->model == FIT_ORTHO ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE, seen->half_width,
              by_seen);
-    describe_shift(seen, shift);
+    const bool is_shifted =
+        is_shift(c->shift_x, c->shift_y) || is_shift(seen->shift_x, seen->shift_y);
+    describe_shift(is_shifted, c->shift_x, c->shift_y, told_shift);
+    describe_shift(is_shifted, seen->shift_x, seen->shift_y, shift);
     report_warn_of_frame(
         report, "doubted camera",
-        "%s: %s says %s, but depth and normals %s%s%s (%.0f %% of normals agree then, and "
-        "%.0f %% as it says): that of %s is taken (--fov or --camera overrides)",
-        path, c->source, by_told, seen->is_sure ? "" : "perhaps ", by_seen, shift,
-        seen->agreement * 100.0, told->agreement * 100.0, c->source);
+        "%s: %s says %s%s, but depth and normals %s%s%s (%.0f %% of normals agree then, and "
+        "%.0f %% as it says): that of %s is taken (%s)",
+        path, c->source, by_told, told_shift, seen->is_sure ? "" : "perhaps ", by_seen, shift,
+        seen->agreement * 100.0, told->agreement * 100.0, c->source,
+        is_other_width(c, seen, same_width)
+            ? "--fov or --camera overrides"
+            : "\"shift_x\" and \"shift_y\" in a camera file override its shift");
 }
 
 /* The camera was held against a frame before, and of this one as many normals agree with it. To ask
