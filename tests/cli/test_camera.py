@@ -378,7 +378,7 @@ def lens_shift_that_the_image_contradicts_is_named(scratch, _, shift):
     write_camera(scratch.path('c.json'), camera(66, shift_x=shift[0], shift_y=shift[1]))
     said = str(inspect(scratch, '--camera', 'c.json')[0]['warnings'])
     matches(rf'says 66 degrees .*, shift {shift[0]:g} {shift[1]:g}, but depth and normals '
-            r'6[56].* degrees .*, shift \S+ \S+ .* is taken \("shift_x" and "shift_y" in a camera file',
+            r'6[56].* degrees .*, shift \S+ \S+ .* is taken \("shift_x" and "shift_y" in a camera',
             said, 'the warnings')
 
 

@@ -135,6 +135,12 @@ def command_lines_are_checked(scratch, _, arguments, message):
     fails(scratch, message, *arguments)
 
 
+@cases([('-r', '.3'), ('--bias', '.1'), ('-m', 'gtao')])
+def inspect_says_which_options_it_takes(scratch, *option):
+    fails(scratch, "has no meaning for 'vkao inspect'", 'inspect', 'in.exr', *option,
+          hint='takes the options that say what the file holds')
+
+
 @case
 def help_explains_every_option(scratch):
     for arguments in (('--help',), ('-h',), ('render', '--help'), ('inspect', '--help'),

@@ -104,6 +104,14 @@ static bool apply_defaults(struct options *options, struct tool_error *err)
     return true;
 }
 
+static bool fail_command(const struct option_row *row, enum command command, struct tool_error *err)
+{
+    if (command == COMMAND_INSPECT)
+        fail_hint(err, "'vkao inspect' takes the options that say what the file holds");
+    return fail(err, EXIT_USAGE, "option '--%s' has no meaning for 'vkao %s'", row->name,
+                command_name(command));
+}
+
 static bool parse_options(int argc, char **argv, struct options *options, struct tool_error *err)
 {
     struct option longs[MAX_OPTIONS + 1];
@@ -121,8 +129,7 @@ static bool parse_options(int argc, char **argv, struct options *options, struct
         if (!row)
             return fail(err, EXIT_BUG, "option %d is not in the table", code);
         if (!(row->commands & (unsigned)options->command))
-            return fail(err, EXIT_USAGE, "option '--%s' has no meaning for 'vkao %s'", row->name,
-                        command_name(options->command));
+            return fail_command(row, options->command, err);
         if (!row->apply(options, row, optarg, err)) {
             fail_hint(err, "'vkao --help' explains the options");
             return false;
