@@ -136,6 +136,16 @@ def grey_images_are_hinted_at(scratch):
 
 
 @case
+def results_of_vkao_are_no_depth(scratch):
+    scene = Scene(48, 27)
+    write_exr(scratch.path('shot.exr'), {'Z': scene.depth(), **scene.color()})
+    for mode in 'ao', 'comp':
+        scratch.render('shot.exr', '-o', f'{mode}.exr', '--fov', FOV, '--mode', mode)
+        scratch.fails(CHANNELS, 'no depth channel found', f'{mode}.exr', '-o', 'x.exr',
+                      hint="a result, which vkao made of 'shot.exr': give that")
+
+
+@case
 def grey_files_called_depth_are_depth(scratch):
     scene = Scene()
     wanted, _ = clean(scratch, scene, normals=False)

@@ -156,11 +156,32 @@ static void list_channels(const struct exr_info *info, const char *view, struct 
     }
 }
 
+/* Of a file that vkao wrote: the name of what it was made of, or NULL. */
+static const char *source_of_result(const struct exr_info *info)
+{
+    const char *source = NULL;
+    for (size_t p = 0; p < info->part_count; p++)
+        for (size_t i = 0; i < info->parts[p].attribute_count; i++) {
+            const struct exr_attribute *a = &info->parts[p].attributes[i];
+            if (strcmp(a->name, "vkao/source") == 0 && a->text)
+                source = a->text;
+        }
+    return source;
+}
+
 /* Depth is often written as a picture of its own. */
 static void hint_at_depth(const struct exr_info *info, struct tool_error *err)
 {
     const struct exr_part *part = &info->parts[0];
+    const char *source = source_of_result(info);
     bool grey = false;
+    if (source) {
+        fail_hint(err,
+                  "this is a result, which vkao made of '%s': give that; --like takes the settings "
+                  "of a result",
+                  source);
+        return;
+    }
     for (size_t i = 0; i < part->channel_count; i++)
         grey |= strcmp(part->channels[i].name, "R") == 0;
     if (info->part_count == 1 && part->channel_count == 1)
