@@ -566,8 +566,9 @@ def scale_of_inverse_depth_is_not_in_the_file(scratch, _, k):
 @cases([('0', 0), ('1', 1), ('inf', np.inf), ('nan', np.nan), ('5', 5.0), ('1e10', 1e10)])
 def depth_without_shape_is_an_error(scratch, _, value):
     write_exr(scratch.path('in.exr'), {'Z': np.full((20, 30), value, np.float32)})
-    scratch.fails(CHANNELS, "in.exr: depth 'Z' is .*no picture of anything", 'in.exr', '-o',
-                  'x.exr', hint='--depth NAME')
+    result = scratch.fails(CHANNELS, "in.exr: depth 'Z' is .*no picture of anything", 'in.exr',
+                           '-o', 'x.exr', hint='--depth NAME')
+    check('normalised?' not in result.stderr, result.stderr)
     said = scratch.render('in.exr', '-o', 'x.exr', '--depth-type', 'planar').stderr
     matches("warning: in.exr: depth 'Z' is .*AO is 1 everywhere", said, 'stderr')
 

@@ -42,6 +42,11 @@ static bool is_view_z(const struct value_facts *f)
     return f->negative > 0 && f->negative + f->zero == f->count;
 }
 
+static bool is_constant(const struct value_facts *f)
+{
+    return !(f->low < f->high);
+}
+
 /* --- What the planes say --- */
 
 enum planes_say { SAY_NOTHING, SAY_PLANAR, SAY_RADIAL, SAY_LINEAR, SAY_OFFSET };
@@ -209,7 +214,7 @@ static void take_seen(struct gbuffer *g, const struct value_facts *f, enum plane
         take(g, DEPTH_PLANAR, DEPTH_BY_PLANES);
         return;
     case SAY_NOTHING:
-        if (f->high <= 1.5 && !f->is_endless)
+        if (f->high <= 1.5 && !f->is_endless && !is_constant(f))
             report_warn(report, "normalised depth",
                         "%s: depth '%s' is from %.4g to %.4g: normalised? (--depth-type normalized "
                         "--depth-range NEAR,FAR[,inverted])",
@@ -235,11 +240,6 @@ static bool settle_range(struct gbuffer *g, const char *path, struct report *rep
                     "view axis: %s only then",
                     path, g->roles.kind[ROLE_DEPTH].label, by);
     return true;
-}
-
-static bool is_constant(const struct value_facts *f)
-{
-    return !(f->low < f->high);
 }
 
 void gbuffer_turn_depth(struct gbuffer *g, const struct gbuffer_options *options,
