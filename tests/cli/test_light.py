@@ -172,6 +172,25 @@ def objects_are_named_by_cryptomatte(scratch, _, letters, layer, manifest):
 
 
 @case
+def commas_in_names_of_objects_are_escaped(scratch):
+    names, covered = ('ball, red', 'a\\b'), (BALL, OBJECTS['küche/floor'] > 0)
+    planes = {f'CryptoObject00.{c}': p.astype(np.float32) for c, p in
+              zip('RG', (sum(np.where(c, identifier(n), 0) for n, c in zip(names, covered)),
+                         sum(covered)))}
+    manifest = json.dumps({n: f'{murmur3(n):08x}' for n in names})
+    write_exr(scratch.path('in.exr'), {**COLOR, 'Z': SCENE.depth(), **planes},
+              attributes=[*crypto_attributes(manifest=False),
+                          ('cryptomatte/6b4a1c2/manifest', manifest)])
+    for given, matte in ((r'ball\, red', covered[0]), (r'ball\, red,a\b', sum(covered))):
+        scratch.render('in.exr', '-o', 'held.exr', *VIEW, '--holdout', f'crypto:{given}')
+        check((read_ao(scratch.path('held.exr'))[matte > 0] == 1).all(), f'{given} has AO')
+    scratch.fails(CHANNELS, "no object 'ball'", 'in.exr', '-o', 'x.exr', '--holdout',
+                  'crypto:ball, red', hint=r'there are ball\\, red, ')
+    scratch.fails(CHANNELS, "no object 'x{511}'", 'in.exr', '-o', 'x.exr', '--holdout',
+                  'crypto:' + 'x' * 600)
+
+
+@case
 def cryptomatte_may_be_a_part_and_objects_need_not_cast(scratch):
     parts = ({**COLOR, 'Z': SCENE.depth(), **SCENE.normals()}, {'name': 'beauty'}), \
         ({k[-1]: v for k, v in crypto().items()}, {'name': 'CryptoObject00'})

@@ -153,6 +153,14 @@ struct manifest {
     struct text some;
 };
 
+/* As it is given. */
+static void add_name(struct text *list, const char *name)
+{
+    text_add(list, "%s", list->length ? ", " : "");
+    for (; *name; name++)
+        text_add(list, "%s%c", *name == ',' ? "\\" : "", *name);
+}
+
 static void look_up(const struct exr_info *info, const char *name, struct manifest *m)
 {
     enum { ENOUGH = 200 };
@@ -164,7 +172,7 @@ static void look_up(const struct exr_info *info, const char *name, struct manife
             for (const cJSON *item = root ? root->child : NULL; item; item = item->next) {
                 m->has_name |= item->string && strcmp(item->string, name) == 0;
                 if (item->string && m->some.length < ENOUGH)
-                    text_add(&m->some, "%s%s", m->some.length ? ", " : "", item->string);
+                    add_name(&m->some, item->string);
             }
             cJSON_Delete(root);
         }
@@ -183,6 +191,19 @@ static bool check_name(const struct exr_info *info, const char *name, struct too
     return ok;
 }
 
+/* Up to the next comma that no backslash precedes; *at is moved there. Returns its length. */
+static size_t read_name(const char **at, char *name, size_t size)
+{
+    size_t length = 0;
+    for (; **at && **at != ','; (*at)++) {
+        *at += (*at)[0] == '\\' && (*at)[1] == ',';
+        if (length + 1 < size)
+            name[length++] = **at;
+    }
+    name[length] = '\0';
+    return length;
+}
+
 bool cryptomatte_find(const struct exr_info *info, const char *view, const char *names,
                       struct cryptomatte *matte, struct tool_error *err)
 {
@@ -198,9 +219,7 @@ bool cryptomatte_find(const struct exr_info *info, const char *view, const char 
                         info->path, matte->ranks[i].id->name);
     for (const char *at = names; *at; at += *at == ',') {
         char name[512];
-        const size_t length = strcspn(at, ",");
-        snprintf(name, sizeof name, "%.*s", (int)length, at);
-        at += length;
+        const size_t length = read_name(&at, name, sizeof name);
         if (!length || matte->id_count == CRYPTOMATTE_MAX_NAMES)
             continue;
         if (!check_name(info, name, err))
