@@ -3,12 +3,13 @@
 """Files of real renderers against ray-traced ground truth, and awkward files against what is
 expected of them. The corpus lies outside the repository: without it all cases are skipped."""
 import csv
+import json
 import os
 
 import numpy as np
 
 from cli import (CHANNELS, INPUT, OK, case, cases, check, check_ao, check_close, corpus, equal,
-                 find_corpus, main, matches, read_ao, read_parts)
+                 find_corpus, main, matches, read_ao, read_parts, write_exr)
 from exr_raw import read_raw
 
 # Root mean square differences to the ground truth with the radius of the ground truth and the
@@ -276,6 +277,29 @@ def awkward_file(scratch, name, expected):
     check_rejected(scratch, name, expected)
     if 'with --depth' in expected:
         check(name in WITH_DEPTH, f'nothing is known about {name}: {expected}')
+
+
+@case
+def crop_far_off_the_axis_is_not_squeezed(scratch):
+    """Its lens shift is beyond what is looked for; the camera is right all the same."""
+    channels = {name: plane for part in read_parts(corpus('b5_suzannes_a.exr'))
+                for name, plane in part.channels.items()}
+    with open(corpus('b5_suzannes_a.camera.json'), encoding='utf-8') as file:
+        camera = json.load(file)
+    x, y, width, height = 811, 609, 160, 90
+    rows, columns = channels['ViewLayer.Depth.Z'].shape
+    across = 2 * np.tan(np.radians(camera['fov_x_deg']) / 2) * width / columns
+    camera.update(fov_x_deg=2 * np.degrees(np.arctan(across / 2)),
+                  shift_x=(x + width / 2 - columns / 2) / width,
+                  shift_y=(rows / 2 - y - height / 2) / height)
+    with open(scratch.path('camera.json'), 'w', encoding='utf-8') as file:
+        json.dump(camera, file)
+    kept = [name for name in channels if name.startswith(('ViewLayer.Depth.', 'ViewLayer.Normal.'))]
+    write_exr(scratch.path('in.exr'),
+              {name: channels[name][y:y + height, x:x + width] for name in kept})
+    stderr = scratch.render('in.exr', '-o', 'out.exr', *PLAIN, '--radius', RADIUS, '--camera',
+                            'camera.json').stderr
+    equal('warning' in stderr, False, stderr)
 
 
 @cases(WITH_DEPTH.items())

@@ -449,6 +449,13 @@ static bool was_asked(struct frame_memory *memory, const struct camera *c, const
     return memory->is_doubted ? gain < other_agreement : gain > -other_agreement;
 }
 
+/* A crop far off the axis has a lens shift that is not looked for. If fewer normals agree with what
+ * is found, that is no camera, and nothing follows from a curve that betters it. */
+static bool is_out_of_sight(const struct camera *c, const struct fit *told, const struct fit *seen)
+{
+    return fabs(c->shift_x) + fabs(c->shift_y) > 0.5 && told->agreement > seen->agreement;
+}
+
 /* Says so where doubts begin. */
 static bool doubt(const struct gbuffer *g, const struct gbuffer_options *options, struct fit *told,
                   const char *path, struct report *report, struct tool_error *err)
@@ -459,8 +466,10 @@ static bool doubt(const struct gbuffer *g, const struct gbuffer_options *options
     if (told->agreement < doubtful_agreement) {
         if (!estimate_as(g, possible_models(g, options, false), false, 0, &seen, err))
             return false;
-        told->tone = seen.tone;
-        told->curve = seen.curve;
+        if (!is_out_of_sight(&g->camera, told, &seen)) {
+            told->tone = seen.tone;
+            told->curve = seen.curve;
+        }
         tell_tone(g, told, path, report);
         is_doubted = !(told->tone > 0) && is_doubtful(&g->camera, told, &seen);
     }
