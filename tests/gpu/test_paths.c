@@ -171,7 +171,7 @@ static void both_paths_agree(void **state)
         print_message("    %-28s max %.2e  mean %.2e of %.3f, %zu flips\n", row->name, d.max,
                       d.mean, spread, flips);
         failed += !(spread < 0.98) || !(d.max <= most + sector * tone);
-        /* It counts samples: codes tie where shares of 16 end on a half, and alike on both paths. */
+        /* It counts samples. Shares of 16 may end on half a code, which both paths round alike. */
         failed += row->method == VKAO_SSAO_SPHERE && !(d.max <= 1e-4);
         failed += flips > (row->method == VKAO_SSAO_VBAO ? WIDTH * HEIGHT / 1000 : 0);
         if (row->bent) {
