@@ -166,7 +166,7 @@
 #define VKAO_STEP_LINEAR 0.5 /* hbao, gtao */
 #define VKAO_STEP_LEAST 0.5
 #define VKAO_VBAO_STEP_LINEAR 0.2
-#define VKAO_VBAO_STEP_LEAST 0.375
+#define VKAO_VBAO_STEP_LEAST 0.34
 /* The reach is at most so many times the longer side of what is valid. What lies beyond the image
  * is not known, and the farther samples went the less they would hide: at last all would be open.
  * At once the side what a slab hides at 2000 texels comes out too large: the bounds are
@@ -178,14 +178,16 @@
  * as tools/bench/fit-vbao does it, on solid and thin scenes together; but THICKNESS_GIVEN_GAP on
  * the scenes of tests/gpu/test_layers.c, THICKNESS_WIDER on those of test_radius.c. These moved
  * THICKNESS_GAP as well, from the 2.5 of the search, which could not tell the two apart.
- * THICKNESS_LENGTH and _BASE were chosen by hand on the scenes of the search; more of _BASE is
- * better there, and worse for bent normals behind the fence of test_truth.c. */
+ * THICKNESS_LENGTH was chosen by hand on the scenes of the search. STEP_LEAST, GAP_FRONT, GAP_BACK,
+ * the shares of WIDTH and THICKNESS_WIDTH, _WIDE, _BASE and _SLOPE were moved after that on these
+ * scenes, as far as test_planes.c, test_truth.c, test_radius.c and test_noise.c let them: more of
+ * SLOPE is better there, and worse for bent normals behind a fence and below a slab. */
 #define VKAO_VBAO_REACH_SMOOTH 0.82    /* end of the last step: the smooth falloff hides the rest */
 #define VKAO_VBAO_REACH_THRESHOLD 1.08 /* samples beyond stand for what lies before them */
 /* Rise over the surface's plane, per run, up to which two samples join. */
 #define VKAO_VBAO_JOIN 0.7
-#define VKAO_VBAO_GAP_FRONT 0.35 /* share of the gap by which a separate surface's front moves in */
-#define VKAO_VBAO_GAP_BACK 0.6   /* share of the gap by which its back moves out */
+#define VKAO_VBAO_GAP_FRONT 0.29 /* share of the gap by which a separate surface's front moves in */
+#define VKAO_VBAO_GAP_BACK 0.66  /* share of the gap by which its back moves out */
 #define VKAO_VBAO_ROUND 0.9      /* added before a sector bound is cut to an integer */
 /* Taken off that at the upper edge of what all joins to the shaded point: its own plane. */
 #define VKAO_VBAO_ROUND_LESS 0.3
@@ -194,16 +196,22 @@
  * by LENGTH of the difference, as it may be the edge of a board; WIDTH of that, at least GAP of the
  * way from the sample before, for whose gap it stands, and at most BASE + SLOPE of its lateral
  * distance. */
-#define VKAO_VBAO_THICKNESS_WIDTH 0.9
+#define VKAO_VBAO_THICKNESS_WIDTH 0.95
 #define VKAO_VBAO_THICKNESS_LENGTH 0.05
 /* Of what goes on on all sides, but at most WIDER of the width that is seen of it: where the radius
  * is most of the view, and what is seen a sliver of it, that says little. */
-#define VKAO_VBAO_THICKNESS_WIDE 0.75
+#define VKAO_VBAO_THICKNESS_WIDE 1.0
 #define VKAO_VBAO_THICKNESS_WIDER 10.0
 #define VKAO_VBAO_THICKNESS_GAP 2.35
 #define VKAO_VBAO_THICKNESS_GIVEN_GAP 0.5 /* where thickness is an input, which has no cap */
-#define VKAO_VBAO_THICKNESS_BASE 0.40
-#define VKAO_VBAO_THICKNESS_SLOPE 0.80
+#define VKAO_VBAO_THICKNESS_BASE 0.384
+#define VKAO_VBAO_THICKNESS_SLOPE 0.79
+/* A texel of a row or of a column counts ENDS of so many SHARES where the surface ends on both
+ * sides, as what stands free is often less deep than wide, and HIDDEN where something nearer hides
+ * how far it goes on. */
+#define VKAO_VBAO_WIDTH_SHARES 8
+#define VKAO_VBAO_WIDTH_ENDS 7
+#define VKAO_VBAO_WIDTH_HIDDEN 12
 /* Depth breaks between two texels if it changes by more than RISE of the smaller change beside them
  * plus LEAST. Surfaces are followed to REACH on each side. Both are tangents of angles that the eye
  * sees, and radii in orthographic views: what is cropped or has more texels is the same. */

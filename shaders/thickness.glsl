@@ -49,18 +49,19 @@ real with_code(real z, real thickness)
     return intBitsToFloat((floatBitsToInt(z) & ~THICKNESS_MASK) | code);
 }
 
-/* The same with what is seen. along_x, along_y: steps of the surface to both sides in the row and
- * in the column; where they end nowhere, it goes on, to how far is unknown. */
+/* The same with what is seen. along_x, along_y: shares of a step that the surface goes on for to
+ * both sides in the row and in the column; where it ends nowhere, to how far is unknown. */
 real with_thickness(real z, whole along_x, whole along_y, Reach reach)
 {
     vec2 texel = params.inverse_radius * abs(params.unproject.xy);
-    vec2 step = texel * vec2(ivec2(1) << reach.shift);
-    real width_x = texel.x + step.x * real(along_x), width_y = texel.y + step.y * real(along_y);
+    vec2 share = texel * vec2(ivec2(1) << reach.shift) * (1.0 / VKAO_VBAO_WIDTH_SHARES);
+    real width_x = texel.x + share.x * real(along_x), width_y = texel.y + share.y * real(along_y);
     real width =
         mix(min(width_x, width_y), max(width_x, width_y), real(VKAO_VBAO_THICKNESS_LENGTH));
     width *= VKAO_VBAO_THICKNESS_WIDTH * (ORTHOGRAPHIC ? real(1.0) : z);
     /* 0 where none is left. */
-    real left = real(min(2 * (reach.steps.x + reach.steps.y) - along_x - along_y, whole(1)));
+    whole all = whole(2 * VKAO_VBAO_WIDTH_SHARES * (reach.steps.x + reach.steps.y));
+    real left = real(min(all - along_x - along_y, whole(1)));
     width *= VKAO_VBAO_THICKNESS_WIDER - (VKAO_VBAO_THICKNESS_WIDER - 1.0) * left;
     return with_code(z, min(width, real(VKAO_VBAO_THICKNESS_WIDE)));
 }

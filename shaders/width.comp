@@ -2,9 +2,10 @@
  *
  * How wide the surface is that a texel is seen of: texels without a break of depth, in its row or
  * in its column, the fewer. What ends behind something nearer goes on unseen: to that side it is
- * taken to be as long as to the other, if that is longer. As thick as wide it is taken to be, and
- * view z gets that in its last bits: what samples it has it without another load. An invocation
- * takes two by two texels, whose words are the same. */
+ * taken to be as long as to the other, if that is longer, and the whole to be wider than is seen;
+ * what stands free on both sides, narrower. As thick as wide it is taken to be, and view z gets
+ * that in its last bits: what samples it has it without another load. An invocation takes two by
+ * two texels, whose words are the same. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -89,8 +90,8 @@ uint steps_to(uint bits)
     return uint(findLSB(bits));
 }
 
-/* Steps of the surface to both sides of bit k of a line, at most so many to each. own: 1 if a bit
- * stands for several texels. */
+/* Shares of a step that the surface goes on for to both sides of bit k of a line, at most so many
+ * steps to each. own: 1 if a bit stands for several texels. */
 uint run_of(Breaks b, int line, int k, uint most, uint own)
 {
     uint farther = bits_ahead(b.farther, line, k), nearer = bits_ahead(b.nearer, line, k);
@@ -100,10 +101,17 @@ uint run_of(Breaks b, int line, int k, uint most, uint own)
          hidden_start = steps_to(bits_behind(b.farther, line, k));
     uint behind = min(min(start, hidden_start), most), longer = max(ahead, behind);
     uint run = (hidden < end ? longer : ahead) + (hidden_start < start ? longer : behind);
+    bool is_hidden = hidden < min(end, most) || hidden_start < min(start, most);
+    uint each = longer < most ? VKAO_VBAO_WIDTH_ENDS : VKAO_VBAO_WIDTH_SHARES;
+    each = is_hidden ? VKAO_VBAO_WIDTH_HIDDEN : each;
+    /* What is hidden does not count as going on for being wide alone. */
+    uint shares = min(run * each, max(VKAO_VBAO_WIDTH_SHARES * run,
+                                      2u * VKAO_VBAO_WIDTH_SHARES * most - 1u));
     /* Some of these texels lie before the break that their bit has, some behind it. Which is not
      * known: all get the narrower of both sides, and none is left between two breaks. */
     uint beyond = min(min(steps_to((farther | nearer) >> 1), behind), most);
-    return ahead < own ? hidden == end ? 0 : beyond : run;
+    beyond = hidden == end ? 0u : VKAO_VBAO_WIDTH_SHARES * beyond;
+    return ahead < own ? beyond : shares;
 }
 
 void main()

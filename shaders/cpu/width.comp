@@ -85,8 +85,8 @@ ivec4 free_behind(uvec4 bits, int most)
     return min(157 - exponent_of(high & ~(high >> 1u)), most);
 }
 
-/* Steps of the surface to both sides, at most so many to each. at: of the texels, along the line;
- * they lie in one word. own: 1 if a bit stands for several texels. */
+/* Shares of a step that the surface goes on for to both sides, at most so many steps to each. at:
+ * of the texels, along the line; they lie in one word. own: 1 if a bit has several texels. */
 ivec4 run_of(Line line, ivec4 at, int most, int own)
 {
     uvec4 k = uvec4(at & 31);
@@ -98,17 +98,25 @@ ivec4 run_of(Line line, ivec4 at, int most, int own)
     uvec4 first = lowest(breaks);
     ivec4 ahead = free_ahead(first, most), behind = free_behind(breaks_behind, most);
     ivec4 longer = max(ahead, behind);
-    /* What has both kinds of breaks in one bit ends there; without any both sides are `most`. */
-    ivec4 run = mix(ahead, longer, equal(first & farther, uvec4(0u))) +
-                mix(behind, longer, greaterThanEqual(ivec4(starts << behind), ivec4(0)));
+    /* What has both kinds of breaks in one bit ends there. */
+    bvec4 open_ahead = equal(first & farther, uvec4(0u)),
+          open_behind = greaterThanEqual(ivec4(starts << behind), ivec4(0));
+    ivec4 run = mix(ahead, longer, open_ahead) + mix(behind, longer, open_behind);
+    ivec4 hidden = VKAO_VBAO_WIDTH_HIDDEN * run, seen = VKAO_VBAO_WIDTH_SHARES * run;
+    ivec4 shares = mix(seen, VKAO_VBAO_WIDTH_ENDS * run, lessThan(longer, ivec4(most)));
+    shares = mix(shares, mix(shares, hidden, lessThan(ahead, ivec4(most))), open_ahead);
+    shares = mix(shares, mix(shares, hidden, lessThan(behind, ivec4(most))), open_behind);
+    /* What is hidden does not count as going on for being wide alone. */
+    shares = min(shares, max(seen, 2 * VKAO_VBAO_WIDTH_SHARES * most - 1));
     if (own > 0) {
         /* Some of these texels lie before the break that their bit has, some behind it. Which is
          * not known: all get the narrower of both sides, and none is left between two breaks. */
         ivec4 beyond = min(free_ahead(lowest(breaks >> 1u), most), behind);
         bvec4 has_both = notEqual(first & farther & nearer, uvec4(0u));
-        run = mix(run, mix(beyond, ivec4(0), has_both), equal(ahead, ivec4(0)));
+        shares = mix(shares, mix(VKAO_VBAO_WIDTH_SHARES * beyond, ivec4(0), has_both),
+                     equal(ahead, ivec4(0)));
     }
-    return run;
+    return shares;
 }
 
 void main()

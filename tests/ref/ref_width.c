@@ -48,9 +48,10 @@ static enum break_kind break_of(const struct ref_scene *scene, double radius, in
     return next < here ? NEXT_IS_NEARER : NEXT_IS_FARTHER;
 }
 
-/* Texels without a break, to both sides; 2 * most if it goes on. A side that is hidden by what is
- * nearer is as long as the other, if that is longer. */
-static int run(const struct ref_scene *scene, double radius, int axis, int x, int y, int most)
+/* Texels without a break, to both sides, in shares; all of 2 * most if it goes on. A side that is
+ * hidden by what is nearer is as long as the other, if that is longer. */
+static int shares_of_run(const struct ref_scene *scene, double radius, int axis, int x, int y,
+                         int most)
 {
     int ahead = 0, back = 0;
     enum break_kind end = GOES_ON, start = GOES_ON;
@@ -59,7 +60,16 @@ static int run(const struct ref_scene *scene, double radius, int axis, int x, in
     while (back < most && !(start = break_of(scene, radius, axis, x, y, -back - 1)))
         ++back;
     const int longer = ahead > back ? ahead : back;
-    return (end == NEXT_IS_NEARER ? longer : ahead) + (start == NEXT_IS_FARTHER ? longer : back);
+    const int texels =
+        (end == NEXT_IS_NEARER ? longer : ahead) + (start == NEXT_IS_FARTHER ? longer : back);
+    const bool is_hidden = end == NEXT_IS_NEARER || start == NEXT_IS_FARTHER;
+    const int share = is_hidden       ? VKAO_VBAO_WIDTH_HIDDEN
+                      : longer < most ? VKAO_VBAO_WIDTH_ENDS
+                                      : VKAO_VBAO_WIDTH_SHARES;
+    /* What is hidden does not count as going on for being wide alone. */
+    const int below_all = 2 * VKAO_VBAO_WIDTH_SHARES * most - 1;
+    const int seen = texels * VKAO_VBAO_WIDTH_SHARES, limit = seen > below_all ? seen : below_all;
+    return texels * share < limit ? texels * share : limit;
 }
 
 /* As few bits as view z has for it. */
@@ -98,14 +108,14 @@ double ref_width_thickness(const struct ref_scene *scene, double radius, int x, 
     for (int axis = 0; axis < 2; ++axis) {
         double texel = fabs(next[axis] - here[axis]);
         int most = (int)fmax(1.0, reach / texel + 0.5),
-            texels = run(scene, radius, axis, x, y, most);
-        goes_on = goes_on && texels == 2 * most;
-        width[axis] = (texels + 1) * texel;
+            shares = shares_of_run(scene, radius, axis, x, y, most);
+        goes_on = goes_on && shares == 2 * VKAO_VBAO_WIDTH_SHARES * most;
+        width[axis] = (1.0 + (double)shares / VKAO_VBAO_WIDTH_SHARES) * texel;
     }
     double least = fmin(width[0], width[1]), length = fmax(width[0], width[1]) - least;
     double thickness =
         VKAO_VBAO_THICKNESS_WIDTH * (least + VKAO_VBAO_THICKNESS_LENGTH * length) / radius;
     if (goes_on)
-        thickness = fmin(VKAO_VBAO_THICKNESS_WIDER * thickness, VKAO_VBAO_THICKNESS_WIDE);
-    return radius * coded(thickness, false);
+        thickness *= VKAO_VBAO_THICKNESS_WIDER;
+    return radius * coded(fmin(thickness, VKAO_VBAO_THICKNESS_WIDE), false);
 }
