@@ -24,14 +24,14 @@ with open(os.path.join(ROOT, 'shaders', 'params.h'), encoding='utf-8') as params
 class Search(unittest.TestCase):
     TARGET = {'a': 0.7, 'b': 0.2, 'c': 3.0}
 
-    def run_search(self, start, names, least=0.01):
+    def run_search(self, start, names, least=0.01, allowed=lambda values: True):
         self.asked, self.told = [], []
 
         def error_of(values):
             self.asked.append(tuple(values.values()))
             return 1 + sum(math.log(values[n] / self.TARGET[n]) ** 2 for n in self.TARGET)
 
-        return fit_vbao.search(start, names, error_of, 0.2, least, 1e-7,
+        return fit_vbao.search(start, names, error_of, allowed, 0.2, least, 1e-7,
                                lambda values, error: self.told.append(error))
 
     def test_finds_the_least_error(self):
@@ -48,9 +48,15 @@ class Search(unittest.TestCase):
         self.assertEqual((found['a'], found['c']), (0.4, 2.9))
         self.assertLess(abs(found['b'] / 0.2 - 1), 0.02)
 
+    def test_does_not_leave_its_bounds(self):
+        start = {'a': 0.4, 'b': 0.5, 'c': 2.9}
+        found, _ = self.run_search(start, ['a', 'b', 'c'], allowed=lambda v: v['a'] <= 0.55)
+        self.assertTrue(0.54 < found['a'] <= 0.55, found['a'])
+        self.assertLess(abs(found['b'] / 0.2 - 1), 0.02)
+
     def test_a_step_of_nothing_measures(self):
-        found, _ = fit_vbao.search({'a': 1.0}, ['a'], lambda values: 5.0, 0, 0.01, 0,
-                                   lambda values, error: None)
+        found, _ = fit_vbao.search({'a': 1.0}, ['a'], lambda values: 5.0, lambda values: True, 0,
+                                   0.01, 0, lambda values, error: None)
         self.assertEqual(found, {'a': 1.0})
 
 
