@@ -424,6 +424,64 @@ def near_plane_that_the_image_contradicts_is_said(scratch, _, true, told, is_sai
         check(all(abs(float(by_seen) - true) < 0.02 for _, by_seen in doubts), said)
 
 
+# Channel, what it holds, what --depth-type says or None: its name says it; what overrides it.
+TYPES = [
+    ('Z', 'radial', 'planar', 'radial'),
+    ('Z', 'radial-near', 'planar', 'radial-near'),
+    ('Z', 'inverse', 'planar', 'inverse'),
+    ('Z', 'device', 'planar', 'device with --near and --far'),
+    ('Z', 'planar', 'radial', 'planar'),
+    ('Z', 'planar', 'radial-near', 'planar'),
+    ('Z', 'radial', 'inverse', 'radial'),
+    ('Z', 'planar', 'device', 'planar'),
+    ('distance', 'planar', None, 'planar'),
+    ('dd.y.T', 'planar', None, 'planar'),
+    ('linearZ.R', 'radial', None, 'radial'),
+]
+
+
+@cases(TYPES, name=lambda row: ' '.join(str(x) for x in row[:3]))
+def depth_type_that_the_image_contradicts_is_said(scratch, channel, true, told, remedy):
+    scene = Scene()
+    write_exr(scratch.path('in.exr'), {channel: scene.depth(true), **scene.normals(space='world')})
+    write_camera(scratch.path('c.json'))
+    options = ('--depth-type', told) if told else ()
+    said = scratch.run('inspect', 'in.exr', '--camera', 'c.json', *options).stdout
+    by, name = ('--depth-type', told) if told else ('its name', r'\S+')
+    matches(rf"in\.exr: {by} says that depth '{channel}' is {name}, but by normals 'N' it is "
+            rf'{remedy.split()[0]} \((9\d|100) % of them agree then, and \d+ % as it says\): '
+            rf'{name} is taken \(--depth-type {remedy} overrides\)', said, 'the warnings')
+    for other in ('as wide as high', 'that of camera file is taken', 'looks squeezed'):
+        check(other not in said, f'{other}: {said}')
+    said = scratch.run('inspect', 'in.exr', '--camera', 'c.json', '--depth-type', true).stdout
+    check('says that' not in said, f'the right type is doubted: {said}')
+
+
+@case
+def near_plane_that_radial_leaves_out_is_said(scratch):
+    scene = Scene()
+    for kind, is_said in (('radial-near', True), ('radial', False)):
+        write_exr(scratch.path('in.exr'),
+                  {'Z': scene.depth(kind), **scene.normals(space='world')})
+        write_camera(scratch.path('c.json'))
+        said = inspect(scratch, '--camera', 'c.json', '--depth-type', 'radial')[1]
+        matched = re.search(r"depth 'Z' is said to be radial, but depth and normals are those of "
+                            r'distances from a near plane at 0\.(5|49)\d*: radial is taken '
+                            r'\(--depth-type radial-near with --near 0\.', said)
+        equal(matched is not None, is_said, f'{kind}: {said}')
+
+
+@cases([('planar', 'planar', 0.6), ('planar', 'planar', 1.6), ('planar', None, 1.6),
+        ('radial', 'radial', 0.6), ('radial', 'radial', 1.6), ('radial', 'radial', 1.25)])
+def wrong_field_of_view_is_no_squeeze_and_no_type(scratch, kind, told, times):
+    scene = Scene(320, 180)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(kind), **scene.normals(space='world')})
+    fov = np.degrees(2 * np.arctan(half_width(FOV) * times))
+    said = inspect(scratch, '--fov', fov, *(('--depth-type', told) if told else ()))[1]
+    matches(r'--fov says .*, but depth and normals (60|59\.9)\S* degrees', said, 'the warnings')
+    check('as wide as high' not in said and 'says that depth' not in said, said)
+
+
 # --- Sequences ---
 
 def frames_of(scratch, fovs):
@@ -467,6 +525,19 @@ def a_zoom_that_nobody_tells_is_said_where_it_begins(scratch, _, options, attrib
     said = scratch.render('in.####.exr', '-o', 'ao.####.exr', *BASE, *options).stderr
     equal(re.findall(r'in\.(\d+)\.exr: .* says 60 degrees .*, but depth and normals (?:40|39\.9)',
                      said), ['0003', '0006'], f'doubted frames in {said}')
+
+
+@case
+def another_depth_than_told_is_said_where_it_begins(scratch):
+    write_camera(scratch.path('camera.json'))
+    for i, kind in enumerate(('planar', 'planar', 'radial', 'radial', 'planar', 'radial')):
+        scene = Scene(eye=0.02 * i)
+        write_exr(scratch.path(f'in.{i + 1:04}.exr'),
+                  {'Z': scene.depth(kind), **scene.normals(space='world')})
+    said = scratch.render('in.####.exr', '-o', 'ao.####.exr', *BASE, '--camera', 'camera.json',
+                          '--depth-type', 'planar').stderr
+    equal(re.findall(r"in\.(\d+)\.exr: --depth-type says that depth 'Z' is planar, but", said),
+          ['0003', '0006'], f'doubted frames in {said}')
 
 
 # --- Written ---

@@ -12,8 +12,6 @@
 enum { MOST_FOUND = 64, MOST_RIVALS = 8, SEARCH_SAMPLES = 1500, FIELDS_OF_VIEW = 15 };
 
 static const double sharpest_sigma = 0.0005, least_sigma = 0.004, most_sigma = 0.12;
-/* Bumps and smooth shading turn normals by as much, as a sine: half of one agrees. */
-static const double half_agreement = 0.12;
 /* Of these nothing more is asked, unless the camera is found shifted. */
 static const double all_agree = 0.995;
 
@@ -574,19 +572,21 @@ static void describe(const struct fit_samples *s, const struct fit_input *input,
 static bool find_causes(const struct fit_samples *s, const struct fit_input *input,
                         const struct fit_solution *best, struct fit *fit)
 {
-    double times, tone = 0, by_stretch, by_tone = INFINITY;
-    if (!fit_find_stretch(s, best, &times, &by_stretch))
+    struct fit_stretch stretch;
+    double tone = 0, by_tone = INFINITY;
+    if (!fit_find_stretch(s, best, &stretch))
         return false;
     /* A field of view that is known may be wrong, and looks like it. */
     if (best->free[FIT_LN_K] && (input->models >> FIT_PLANAR & 1u) &&
         !fit_find_tone(s, best, &tone, &fit->curve, &by_tone))
         return false;
-    if (tone > 0 && by_tone < by_stretch)
+    if (tone > 0 && by_tone < stretch.cost)
         fit->tone = s->median / tone;
-    else if (isfinite(by_stretch))
-        fit->pixel_aspect = input->pixel_aspect / times;
-    else if (fabs(times - 1.0) > 0)
-        fit->other_aspect = input->pixel_aspect / times;
+    else if (isfinite(stretch.cost))
+        fit->pixel_aspect = input->pixel_aspect / stretch.times;
+    else if (fabs(stretch.times - 1.0) > 0)
+        fit->other_aspect = input->pixel_aspect / stretch.times;
+    fit->squeezed = stretch.agreement;
     return true;
 }
 
@@ -616,7 +616,7 @@ static bool attempt(const struct fit_input *input, unsigned blur, struct attempt
             settle_sign(&s, &a->best);
             a->near_share = find_shares(&s, &a->best).near;
             describe(&s, input, &a->best, &a->fit);
-            a->fit.agreement = 1.0 - fit_cost(&s, &a->best, half_agreement);
+            a->fit.agreement = 1.0 - fit_cost(&s, &a->best, FIT_HALF_AGREEMENT);
             a->fit.tells_view = unseen_change(&s, &a->best) < sure_bound;
             if ((a->fit.agreement < all_agree || a->best.shifted) && blur == 0)
                 ok = find_causes(&s, input, &a->best, &a->fit);
@@ -675,6 +675,7 @@ bool camera_fit(const struct fit_input *input, struct fit *fit, struct tool_erro
         return true;
     *fit = best->fit;
     fit->pixel_aspect = attempts[0].fit.pixel_aspect;
+    fit->squeezed = attempts[0].fit.squeezed;
     fit->other_aspect = best->best.shifted ? attempts[0].fit.other_aspect : 0;
     fit->tone = attempts[0].fit.tone;
     fit->curve = attempts[0].fit.curve;

@@ -68,6 +68,7 @@ struct fit {
     double bound;            /* relative error of half_width that is not exceeded, surely not */
     double agreement;        /* [0,1] of the stored normals with those of depth */
     double pixel_aspect;     /* 0, or what is seen if it is not that of the input */
+    double squeezed;         /* [0,1] of the stored normals then, if pixel_aspect is not 0 */
     double other_aspect;     /* 0, or what explains as much as the shift does, without one */
     double tone;             /* 0, or the value that depth seems squeezed towards: a */
     enum fit_model curve;    /* of tone */

@@ -99,13 +99,21 @@ void fit_refine(const struct fit_samples *s, struct fit_solution *at, double sig
 /* How surely one is better than the other, from their costs by tiles: in standard errors. */
 double fit_paired_z(const struct fit_solution *better, const struct fit_solution *worse);
 
-/* *times: by how much all is higher than it seems, if that is clear, or explains as much as the
- * lens shift of the best does, or 1; *cost: if it is clear, with a scale of 0.02 or more. False if
- * memory runs out. */
-bool fit_find_stretch(const struct fit_samples *all, const struct fit_solution *best, double *times,
-                      double *cost);
+/* Bumps and smooth shading turn normals by as much, as a sine: half of one agrees. */
+#define FIT_HALF_AGREEMENT 0.12
+
+struct fit_stretch {
+    double times; /* all is higher than it seems: if that is clear, or explains as much as the lens
+                   * shift of the best does; else 1 */
+    double cost;  /* if it is clear, with a scale of 0.02 or more; else INFINITY */
+    double agreement; /* [0,1] of normals, if it is clear; else 0 */
+};
+
+/* False if memory runs out. */
+bool fit_find_stretch(const struct fit_samples *all, const struct fit_solution *best,
+                      struct fit_stretch *stretch);
 /* *tone: median of depth over the value that depth nears far away, if that is clear, or 0; *curve
- * then, and *cost as above. False if memory runs out. */
+ * then, and *cost as that of a stretch. False if memory runs out. */
 bool fit_find_tone(const struct fit_samples *all, const struct fit_solution *best, double *tone,
                    enum fit_model *curve, double *cost);
 

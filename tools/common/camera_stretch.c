@@ -40,15 +40,14 @@ static bool is_as_good(const struct fit_solution *stretch, const struct fit_solu
     return stretch->cost < 1.5 * shift->cost + 0.01;
 }
 
-bool fit_find_stretch(const struct fit_samples *all, const struct fit_solution *best, double *times,
-                      double *cost)
+bool fit_find_stretch(const struct fit_samples *all, const struct fit_solution *best,
+                      struct fit_stretch *stretch)
 {
     static const double least = 0.08;
     /* What is exact for a few proves nothing. */
     const double sigma = fmax(best->sigma, 0.02);
     struct fit_samples s;
-    *times = 1.0;
-    *cost = INFINITY;
+    *stretch = (struct fit_stretch){.times = 1.0, .cost = INFINITY};
     if (!fit_samples_thin(all, ENOUGH_SAMPLES, &s))
         return false;
     struct fit_solution without = *best;
@@ -59,10 +58,12 @@ bool fit_find_stretch(const struct fit_samples *all, const struct fit_solution *
     /* Of clean renders none is stretched by more than 1.6 %, and none gains more than 0.0015. */
     const bool is_clear = is_other && with.cost < 0.9 * without.cost &&
                           without.cost - with.cost > 0.0015 && fit_paired_z(&with, &without) > 1.5;
-    if (is_clear)
-        *cost = with.cost;
+    if (is_clear) {
+        stretch->cost = with.cost;
+        stretch->agreement = 1.0 - fit_cost(&s, &with, FIT_HALF_AGREEMENT);
+    }
     if (is_clear || (is_other && best->shifted && is_as_good(&with, &without)))
-        *times = exp(with.p[FIT_LN_A]);
+        stretch->times = exp(with.p[FIT_LN_A]);
     fit_samples_free(&s);
     return true;
 }

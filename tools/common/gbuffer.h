@@ -69,6 +69,9 @@ struct depth_range {
 
 enum normal_encoding { NORMAL_ENCODING_AUTO, NORMAL_ENCODING_SIGNED, NORMAL_ENCODING_UNSIGNED };
 
+/* What the image says is wrong of what header and options tell. */
+enum told_doubt { DOUBT_NOTHING, DOUBT_CAMERA, DOUBT_TYPE, DOUBT_PIXELS };
+
 /* What is kept of one view of a sequence, from frame to frame. Zero-initialise. */
 struct frame_memory {
     /* The camera as it was estimated: AO must not flicker with the estimate. */
@@ -79,7 +82,7 @@ struct frame_memory {
     /* That of header or options which was held against the image, and how many normals agreed. */
     struct camera told;
     double told_agreement; /* [0,1] */
-    bool is_doubted;
+    enum told_doubt doubt;
     /* Of the last frame whose depth was not odd. */
     bool has_depth, is_odd_type, is_odd_unit;
     enum depth_type usual_type;

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static bool is_auto(const struct gbuffer *g, const struct gbuffer_options *options)
+bool gbuffer_type_is_auto(const struct gbuffer *g, const struct gbuffer_options *options)
 {
     return options->depth_type == DEPTH_AUTO && g->roles.kind[ROLE_DEPTH].depth_type == DEPTH_AUTO;
 }
@@ -29,7 +29,7 @@ static unsigned possible_models(const struct gbuffer *g, const struct gbuffer_op
     const unsigned parallel = known && !ortho ? 0 : 1u << FIT_ORTHO;
     if (known && ortho)
         return g->depth_type == DEPTH_PLANAR || g->depth_type == DEPTH_RADIAL_NEAR ? parallel : 0;
-    if (is_auto(g, options) && g->depth_type == DEPTH_PLANAR)
+    if (gbuffer_type_is_auto(g, options) && g->depth_type == DEPTH_PLANAR)
         return 1u << FIT_PLANAR | (known ? ALL_RADIAL : 1u << FIT_RADIAL) | 1u << FIT_INVERSE |
                parallel | UNSCALED;
     switch (g->depth_type) {
@@ -160,9 +160,7 @@ static void remember(struct gbuffer *g, const struct fit *fit, const char *path,
 
 /* --- Estimates --- */
 
-/* Through the camera of g, if it is known to be that; else near this half width, or 0: anywhere.
- * False only if memory runs out. */
-static bool estimate_as(const struct gbuffer *g, unsigned models, bool known,
+bool gbuffer_fit_camera(const struct gbuffer *g, unsigned models, bool known,
                         double near_half_width, struct fit *fit, struct tool_error *err)
 {
     const struct fit_input input = {
@@ -179,11 +177,19 @@ static bool estimate_as(const struct gbuffer *g, unsigned models, bool known,
         .shift_y = known ? g->camera.shift_y : 0,
         .near_half_width = near_half_width,
     };
-    const bool has_scale = g->depth_type != DEPTH_DEVICE && g->depth_type != DEPTH_NORMALIZED;
     *fit = (struct fit){0};
-    snprintf(fit->why, sizeof fit->why, "depth is of type %s", depth_type_name(g->depth_type));
-    if (input.models && !camera_fit(&input, fit, err))
+    return !models || camera_fit(&input, fit, err);
+}
+
+/* The same, and of scale: no more is sure than the type of depth allows. */
+static bool estimate_as(const struct gbuffer *g, unsigned models, bool known,
+                        double near_half_width, struct fit *fit, struct tool_error *err)
+{
+    const bool has_scale = g->depth_type != DEPTH_DEVICE && g->depth_type != DEPTH_NORMALIZED;
+    if (!gbuffer_fit_camera(g, models, known, near_half_width, fit, err))
         return false;
+    if (!models)
+        snprintf(fit->why, sizeof fit->why, "depth is of type %s", depth_type_name(g->depth_type));
     if (fit->model == FIT_PLANAR_NORMALIZED && !fit->in_unit_range) {
         fit->model = FIT_PLANAR;
     } else if (has_scale && is_unscaled(fit->model)) {
@@ -279,9 +285,19 @@ static void tell_offset(const struct gbuffer *g, const struct fit *fit, const ch
 static void tell_near(const struct gbuffer *g, const struct fit *fit, const char *path,
                       struct report *report)
 {
-    const double told = g->camera.near_plane, seen = fmax(fit->seen_near, 0);
+    const bool is_from_eye = g->depth_type == DEPTH_RADIAL && fit->near_known;
+    const double told = is_from_eye ? 0 : g->camera.near_plane, seen = fmax(fit->seen_near, 0);
     const double least = 0.01 * fit->median + 3.0 * fit->near_bound;
-    if (g->depth_type == DEPTH_RADIAL_NEAR && fit->near_bound > 0 && fabs(told - seen) > least)
+    if (!(fit->near_bound > 0) || !(fabs(told - seen) > least))
+        return;
+    if (is_from_eye)
+        report_warn(report, "doubted near plane",
+                    "%s: depth '%s' is said to be %s, but depth and normals are those of "
+                    "distances from a near plane at %.4g: %s is taken (--depth-type %s with --near "
+                    "%.4g overrides)",
+                    path, g->roles.kind[ROLE_DEPTH].label, depth_type_name(DEPTH_RADIAL), seen,
+                    depth_type_name(DEPTH_RADIAL), depth_type_name(DEPTH_RADIAL_NEAR), seen);
+    else if (g->depth_type == DEPTH_RADIAL_NEAR)
         report_warn(report, "doubted near plane",
                     "%s: the near plane that depth '%s' is measured from is said to be at %.4g, "
                     "but depth and normals are those of one at %.4g: %.4g is taken (--near, or a "
@@ -444,9 +460,10 @@ static bool was_asked(struct frame_memory *memory, const struct camera *c, const
         return false;
     const double gain = told->agreement - memory->told_agreement;
     /* Doubts end where more agree, and begin where less do: slowly, too. */
-    if (memory->is_doubted ? gain < 0 : gain > 0)
+    const bool is_doubted = memory->doubt != DOUBT_NOTHING;
+    if (is_doubted ? gain < 0 : gain > 0)
         memory->told_agreement = told->agreement;
-    return memory->is_doubted ? gain < other_agreement : gain > -other_agreement;
+    return is_doubted ? gain < other_agreement : gain > -other_agreement;
 }
 
 /* A crop far off the axis has a lens shift that is not looked for. If fewer normals agree with what
@@ -456,29 +473,54 @@ static bool is_out_of_sight(const struct camera *c, const struct fit *told, cons
     return fabs(c->shift_x) + fabs(c->shift_y) > 0.5 && told->agreement > seen->agreement;
 }
 
+/* One thing that is wrong looks like others: it is a wrong field of view if all agree with another
+ * one and pixels are square then, and a squeeze if more agree with that. */
+static enum told_doubt choose_cause(const struct camera *c, const struct fit *told,
+                                    const struct fit *seen, const struct fit *other)
+{
+    const bool is_view = is_doubtful(c, told, seen);
+    if (other->is_sure && !(is_view && seen->agreement > other->agreement))
+        return DOUBT_TYPE;
+    if (told->tone > 0)
+        return DOUBT_NOTHING;
+    if (told->pixel_aspect > 0 && told->squeezed > seen->agreement)
+        return DOUBT_PIXELS;
+    return is_view ? DOUBT_CAMERA : DOUBT_NOTHING;
+}
+
 /* Says so where doubts begin. */
-static bool doubt(const struct gbuffer *g, const struct gbuffer_options *options, struct fit *told,
-                  const char *path, struct report *report, struct tool_error *err)
+static bool doubt(const struct gbuffer *g, const struct gbuffer_options *options, bool is_exact,
+                  struct fit *told, const char *path, struct report *report, struct tool_error *err)
 {
     struct frame_memory *memory = options->memory;
-    struct fit seen = {0};
-    bool is_doubted = false;
+    const enum told_doubt before = memory ? memory->doubt : DOUBT_NOTHING;
+    enum told_doubt now = DOUBT_NOTHING;
+    struct fit seen = {0}, other = {0};
     if (told->agreement < doubtful_agreement) {
-        if (!estimate_as(g, possible_models(g, options, false), false, 0, &seen, err))
+        if (!gbuffer_find_type(g, options, told, &other, err))
+            return false;
+        if (!is_exact && told->half_width > 0 &&
+            !estimate_as(g, possible_models(g, options, false), false, 0, &seen, err))
             return false;
         if (!is_out_of_sight(&g->camera, told, &seen)) {
             told->tone = seen.tone;
             told->curve = seen.curve;
         }
-        tell_tone(g, told, path, report);
-        is_doubted = !(told->tone > 0) && is_doubtful(&g->camera, told, &seen);
+        now = choose_cause(&g->camera, told, &seen, &other);
     }
-    if (is_doubted && !(memory && memory->is_doubted))
+    const bool is_square = now == DOUBT_CAMERA && !(seen.pixel_aspect > 0);
+    if (now != DOUBT_TYPE && !is_square)
+        tell_pixels(g, told, path, report);
+    if (now != DOUBT_TYPE)
+        tell_tone(g, told, path, report);
+    if (now == DOUBT_CAMERA && now != before)
         tell_doubt(g, told, &seen, path, report);
+    if (now == DOUBT_TYPE && now != before)
+        gbuffer_tell_type(g, options, told, &other, path, report);
     if (memory) {
         memory->told = g->camera;
         memory->told_agreement = told->agreement;
-        memory->is_doubted = is_doubted;
+        memory->doubt = now;
     }
     return true;
 }
@@ -491,11 +533,10 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
     if (!estimate_as(g, possible_models(g, options, true), true, 0, &told, err))
         return false;
     const bool is_exact = strcmp(g->camera.source, "positions") == 0;
-    tell_pixels(g, &told, path, report);
     const bool is_new = told.half_width > 0 && !is_exact &&
                         !(options->memory && is_same_view(&options->memory->told, &g->camera));
-    if (told.half_width > 0 && !is_exact && !was_asked(options->memory, &g->camera, &told) &&
-        !doubt(g, options, &told, path, report, err))
+    if (!was_asked(options->memory, &g->camera, &told) &&
+        !doubt(g, options, is_exact, &told, path, report, err))
         return false;
     const bool lacks_near = options->depth_type == DEPTH_AUTO &&
                             depth->depth_type == DEPTH_RADIAL_NEAR && !(g->camera.near_plane > 0);
@@ -504,7 +545,8 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
                     "%s: the normals are nearly the same in any field of view: nothing checks that "
                     "of %s",
                     path, g->camera.source);
-    if (told.is_sure && g->depth_source == DEPTH_ASSUMED && (is_auto(g, options) || lacks_near))
+    if (told.is_sure && g->depth_source == DEPTH_ASSUMED &&
+        (gbuffer_type_is_auto(g, options) || lacks_near))
         take_depth_type(g, &told);
     if (told.is_sure) {
         take_rotation(g, &told);

@@ -4,6 +4,7 @@
 #ifndef VKAO_TOOLS_GBUFFER_INTERNAL_H_
 #define VKAO_TOOLS_GBUFFER_INTERNAL_H_
 
+#include "camera_fit.h"
 #include "gbuffer.h"
 
 #include <math.h>
@@ -89,6 +90,19 @@ bool gbuffer_use_positions(struct gbuffer *g, const struct gbuffer_options *opti
  * and says so. Errors: EXIT_MEMORY. */
 bool gbuffer_find_camera(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
                          struct report *report, struct tool_error *err);
+/* What depth measures is left to the image. */
+bool gbuffer_type_is_auto(const struct gbuffer *g, const struct gbuffer_options *options);
+/* Depth as these models, 1 << enum fit_model or-ed, through the camera of g, if it is known to be
+ * that; else near this half width, or 0: anywhere. False only if memory runs out. */
+bool gbuffer_fit_camera(const struct gbuffer *g, unsigned models, bool known,
+                        double near_half_width, struct fit *fit, struct tool_error *err);
+/* What else than somebody tells depth may be through the camera that is known; other->is_sure if
+ * normals say so. False only if memory runs out. */
+bool gbuffer_find_type(const struct gbuffer *g, const struct gbuffer_options *options,
+                       const struct fit *told, struct fit *other, struct tool_error *err);
+void gbuffer_tell_type(const struct gbuffer *g, const struct gbuffer_options *options,
+                       const struct fit *told, const struct fit *other, const char *path,
+                       struct report *report);
 /* No scene measures more or less than this, in whatever unit. Within, squares are finite and not
  * 0. */
 bool gbuffer_is_in_range(double distance);

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What options or the name of a channel say of depth, held against its normals. Through a camera
+ * that is known they are those of one type alone. What is told is believed all the same. */
+#include "gbuffer_internal.h"
+
+#include <stdio.h>
+
+enum { REMEDY_BYTES = 96 };
+
+/* Of right types none is bettered by another one that is sure. A narrow view looks much the same
+ * as any type, and so does its AO. */
+static const double least_gain = 0.02;
+
+/* What is told excludes itself. To see no near plane, or one that nobody tells, is no other type:
+ * that is said of the near plane. */
+static unsigned other_models(enum depth_type told)
+{
+    enum {
+        RADIAL = 1 << FIT_RADIAL | 1 << FIT_RADIAL_NEAR,
+        NORMALIZED =
+            1 << FIT_PLANAR_NORMALIZED | 1 << FIT_PLANAR_REVERSED | 1 << FIT_RADIAL_NORMALIZED,
+        ALL = 1 << FIT_PLANAR | RADIAL | 1 << FIT_INVERSE | 1 << FIT_DEVICE | NORMALIZED
+    };
+    switch (told) {
+    case DEPTH_PLANAR:
+        return ALL & ~(1u << FIT_PLANAR);
+    case DEPTH_RADIAL:
+    case DEPTH_RADIAL_NEAR:
+        return ALL & ~(unsigned)RADIAL;
+    case DEPTH_INVERSE:
+        return ALL & ~(1u << FIT_INVERSE);
+    case DEPTH_DEVICE:
+        return ALL & ~(1u << FIT_DEVICE | 1u << FIT_INVERSE);
+    case DEPTH_NORMALIZED:
+        return ALL & ~(1u << FIT_PLANAR | RADIAL | NORMALIZED);
+    default:
+        return 0;
+    }
+}
+
+bool gbuffer_find_type(const struct gbuffer *g, const struct gbuffer_options *options,
+                       const struct fit *told, struct fit *other, struct tool_error *err)
+{
+    const bool is_told = !gbuffer_type_is_auto(g, options) && g->depth_source == DEPTH_ASSUMED;
+    *other = (struct fit){0};
+    if (!is_told || g->camera.type != CAMERA_PERSPECTIVE)
+        return true;
+    if (!gbuffer_fit_camera(g, other_models(g->depth_type), true, 0, other, err))
+        return false;
+    other->is_sure &= other->agreement - told->agreement >= least_gain;
+    return true;
+}
+
+static void describe_remedy(const struct gbuffer *g, const struct fit *other,
+                            char remedy[REMEDY_BYTES])
+{
+    const bool lacks_near = !(g->camera.near_plane > 0);
+    switch (other->model) {
+    case FIT_PLANAR:
+        snprintf(remedy, REMEDY_BYTES, "planar");
+        break;
+    case FIT_RADIAL:
+        snprintf(remedy, REMEDY_BYTES, "radial");
+        break;
+    case FIT_RADIAL_NEAR:
+        if (lacks_near)
+            snprintf(remedy, REMEDY_BYTES, "radial-near with --near %.4g", other->near_plane);
+        else
+            snprintf(remedy, REMEDY_BYTES, "radial-near");
+        break;
+    case FIT_INVERSE:
+        snprintf(remedy, REMEDY_BYTES, "inverse");
+        break;
+    case FIT_DEVICE:
+        snprintf(remedy, REMEDY_BYTES, "device with --near and --far");
+        break;
+    default:
+        snprintf(remedy, REMEDY_BYTES, "normalized with --depth-range NEAR,FAR[,inverted]");
+    }
+}
+
+void gbuffer_tell_type(const struct gbuffer *g, const struct gbuffer_options *options,
+                       const struct fit *told, const struct fit *other, const char *path,
+                       struct report *report)
+{
+    const char *type = depth_type_name(g->depth_type);
+    char remedy[REMEDY_BYTES];
+    describe_remedy(g, other, remedy);
+    report_warn_of_frame(
+        report, "doubted depth",
+        "%s: %s says that depth '%s' is %s, but by normals '%s' it is %.*s (%.0f %% of them agree "
+        "then, and %.0f %% as it says): %s is taken (--depth-type %s overrides)",
+        path, options->depth_type != DEPTH_AUTO ? "--depth-type" : "its name",
+        g->roles.kind[ROLE_DEPTH].label, type, g->roles.kind[ROLE_NORMAL].label,
+        (int)strcspn(remedy, " "), remedy, other->agreement * 100.0, told->agreement * 100.0, type,
+        remedy);
+}
