@@ -424,6 +424,32 @@ def near_plane_that_the_image_contradicts_is_said(scratch, _, true, told, is_sai
         check(all(abs(float(by_seen) - true) < 0.02 for _, by_seen in doubts), said)
 
 
+def rough_crop(scratch, bumps, window):
+    """Of an image whose normals have bumps, with the right camera."""
+    (x, y, width, height), (columns, rows), fov = window, (400, 225), 66
+    scene = Scene(columns, rows, fov)
+    n = scene.normal + np.random.default_rng(0).normal(0, bumps, scene.normal.shape)
+    n = np.where(scene.sky[..., None], 0, n / np.linalg.norm(n, axis=-1, keepdims=True))
+    channels = {'Z': scene.depth(),
+                **{f'N.{c}': n[..., i].astype(np.float32) for i, c in enumerate('XYZ')}}
+    cut = slice(y, y + height), slice(x, x + width)
+    write_exr(scratch.path('in.exr'),
+              {k: np.ascontiguousarray(v[cut]) for k, v in channels.items()})
+    across = half_width(fov) * width / columns
+    write_camera(scratch.path('c.json'), {
+        'fov_x_deg': 2 * np.degrees(np.arctan(across)),
+        'shift_x': (x + (width - columns) / 2) / width,
+        'shift_y': ((rows - height) / 2 - y) / height})
+    return str(inspect(scratch, '--camera', 'c.json')[0]['warnings'])
+
+
+@case
+def patches_of_normals_do_not_outvote_single_ones(scratch):
+    # Bumps cancel out in patches, whichever camera they are held against.
+    said = rough_crop(scratch, 0.1, (100, 30, 200, 112))
+    check('depth and normals' not in said, said)
+
+
 # Channel, what it holds, what --depth-type says or None: its name says it; what overrides it.
 TYPES = [
     ('Z', 'radial', 'planar', 'radial'),

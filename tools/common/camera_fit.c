@@ -651,15 +651,18 @@ static bool tells_nothing(const struct attempt *a)
 bool camera_fit(const struct fit_input *input, struct fit *fit, struct tool_error *err)
 {
     /* The sure one of the least error counts; bump maps need patches. */
-    static const unsigned blurs[] = {0, 3, 8};
+    static const unsigned blurs[] = {[FIT_PATCH_SMALL] = 3, [FIT_PATCH_LARGE] = 8};
     struct attempt attempts[3], *best = NULL;
     size_t count = 0;
     *fit = (struct fit){.model = FIT_PLANAR};
     snprintf(fit->why, sizeof fit->why, "no smooth surface has normals");
-    for (size_t i = 0; i < 3; i++) {
+    for (int patch = FIT_PATCH_NONE; patch <= FIT_PATCH_LARGE; patch++) {
         bool tried;
-        if (!attempt(input, blurs[i], &attempts[count], &tried))
+        if (input->patch != FIT_PATCH_ANY && (int)input->patch != patch)
+            continue;
+        if (!attempt(input, blurs[patch], &attempts[count], &tried))
             return fail(err, EXIT_MEMORY, "out of memory for the estimate of the camera");
+        attempts[count].fit.patch = (enum fit_patch)patch;
         count += tried;
         if (tried && (is_settled(&attempts[count - 1]) || tells_nothing(&attempts[count - 1])))
             break;

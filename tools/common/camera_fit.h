@@ -38,6 +38,10 @@ enum fit_model {
     FIT_MODELS
 };
 
+/* Over how many texels normals are averaged: one; or patches of them, for bump maps. Of patches
+ * more normals agree, whatever they are held against. */
+enum fit_patch { FIT_PATCH_ANY, FIT_PATCH_NONE, FIT_PATCH_SMALL, FIT_PATCH_LARGE };
+
 struct fit_input {
     const float *depth;   /* width * height, as stored */
     const float *normals; /* width * height * 4, signed, as stored; 0: none */
@@ -47,6 +51,7 @@ struct fit_input {
     unsigned models; /* 1 << enum fit_model or-ed: what the depth may be */
     /* What of the camera is known, as struct camera has it; half_width 0: nothing. */
     double half_width, shift_x, shift_y;
+    enum fit_patch patch; /* ANY: that which tells most */
     /* Where to look first, and not far from it; 0: everywhere. */
     double near_half_width;
 };
@@ -67,6 +72,7 @@ struct fit {
     double median;           /* of depth as stored */
     double bound;            /* relative error of half_width that is not exceeded, surely not */
     double agreement;        /* [0,1] of the stored normals with those of depth */
+    enum fit_patch patch;    /* that agreement is of; never ANY */
     double pixel_aspect;     /* 0, or what is seen if it is not that of the input */
     double squeezed;         /* [0,1] of the stored normals then, if pixel_aspect is not 0 */
     double other_aspect;     /* 0, or what explains as much as the shift does, without one */

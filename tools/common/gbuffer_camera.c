@@ -160,8 +160,8 @@ static void remember(struct gbuffer *g, const struct fit *fit, const char *path,
 
 /* --- Estimates --- */
 
-bool gbuffer_fit_camera(const struct gbuffer *g, unsigned models, bool known,
-                        double near_half_width, struct fit *fit, struct tool_error *err)
+bool gbuffer_fit_camera(const struct gbuffer *g, const struct camera_search *search,
+                        struct fit *fit, struct tool_error *err)
 {
     const struct fit_input input = {
         .depth = g->depth,
@@ -171,24 +171,25 @@ bool gbuffer_fit_camera(const struct gbuffer *g, unsigned models, bool known,
         .data_window = g->data_window,
         .display_window = g->display_window,
         .pixel_aspect = (double)g->pixel_aspect,
-        .models = models,
-        .half_width = known ? g->camera.half_width : 0,
-        .shift_x = known ? g->camera.shift_x : 0,
-        .shift_y = known ? g->camera.shift_y : 0,
-        .near_half_width = near_half_width,
+        .models = search->models,
+        .half_width = search->is_known ? g->camera.half_width : 0,
+        .shift_x = search->is_known ? g->camera.shift_x : 0,
+        .shift_y = search->is_known ? g->camera.shift_y : 0,
+        .near_half_width = search->near_half_width,
+        .patch = search->patch,
     };
     *fit = (struct fit){0};
-    return !models || camera_fit(&input, fit, err);
+    return !search->models || camera_fit(&input, fit, err);
 }
 
 /* The same, and of scale: no more is sure than the type of depth allows. */
-static bool estimate_as(const struct gbuffer *g, unsigned models, bool known,
-                        double near_half_width, struct fit *fit, struct tool_error *err)
+static bool estimate_as(const struct gbuffer *g, const struct camera_search *search,
+                        struct fit *fit, struct tool_error *err)
 {
     const bool has_scale = g->depth_type != DEPTH_DEVICE && g->depth_type != DEPTH_NORMALIZED;
-    if (!gbuffer_fit_camera(g, models, known, near_half_width, fit, err))
+    if (!gbuffer_fit_camera(g, search, fit, err))
         return false;
-    if (!models)
+    if (!search->models)
         snprintf(fit->why, sizeof fit->why, "depth is of type %s", depth_type_name(g->depth_type));
     if (fit->model == FIT_PLANAR_NORMALIZED && !fit->in_unit_range) {
         fit->model = FIT_PLANAR;
@@ -201,16 +202,34 @@ static bool estimate_as(const struct gbuffer *g, unsigned models, bool known,
     return true;
 }
 
+static bool estimate_anywhere(const struct gbuffer *g, const struct gbuffer_options *options,
+                              struct fit *fit, struct tool_error *err)
+{
+    const struct camera_search search = {.models = possible_models(g, options, false)};
+    return estimate_as(g, &search, fit, err);
+}
+
+static bool estimate_known(const struct gbuffer *g, const struct gbuffer_options *options,
+                           enum fit_patch patch, struct fit *fit, struct tool_error *err)
+{
+    const struct camera_search search = {
+        .models = possible_models(g, options, true), .is_known = true, .patch = patch};
+    return estimate_as(g, &search, fit, err);
+}
+
 /* Near what it was in the frames before, and everywhere if it is not there. */
 static bool estimate(const struct gbuffer *g, const struct gbuffer_options *options,
                      struct fit *fit, struct tool_error *err)
 {
     const struct frame_memory *memory = options->memory;
     *fit = (struct fit){0};
-    if (memory && memory->is_known &&
-        !estimate_as(g, memory->models, false, memory->camera.half_width, fit, err))
-        return false;
-    return fit->is_sure || estimate_as(g, possible_models(g, options, false), false, 0, fit, err);
+    if (memory && memory->is_known) {
+        const struct camera_search near = {.models = memory->models,
+                                           .near_half_width = memory->camera.half_width};
+        if (!estimate_as(g, &near, fit, err))
+            return false;
+    }
+    return fit->is_sure || estimate_anywhere(g, options, fit, err);
 }
 
 /* --- A camera that nobody tells --- */
@@ -365,7 +384,7 @@ static bool find_unknown(struct gbuffer *g, const struct gbuffer_options *option
     tell_tone(g, &fit, path, report);
     if (!fit.is_sure && options->memory && options->memory->is_known && !g->camera.is_assumed) {
         keep_remembered(g, options, path, report);
-        if (g->normals && !estimate_as(g, possible_models(g, options, true), true, 0, &fit, err))
+        if (g->normals && !estimate_known(g, options, FIT_PATCH_ANY, &fit, err))
             return false;
         if (fit.is_sure)
             take_rotation(g, &fit);
@@ -474,11 +493,13 @@ static bool is_out_of_sight(const struct camera *c, const struct fit *told, cons
 }
 
 /* One thing that is wrong looks like others: it is a wrong field of view if all agree with another
- * one and pixels are square then, and a squeeze if more agree with that. */
+ * one and pixels are square then, and a squeeze if more agree with that. alike: what is told, of
+ * the patches that what is seen is of. */
 static enum told_doubt choose_cause(const struct camera *c, const struct fit *told,
-                                    const struct fit *seen, const struct fit *other)
+                                    const struct fit *alike, const struct fit *seen,
+                                    const struct fit *other)
 {
-    const bool is_view = is_doubtful(c, told, seen);
+    const bool is_view = is_doubtful(c, alike, seen);
     if (other->is_sure && !(is_view && seen->agreement > other->agreement))
         return DOUBT_TYPE;
     if (told->tone > 0)
@@ -495,18 +516,21 @@ static bool doubt(const struct gbuffer *g, const struct gbuffer_options *options
     struct frame_memory *memory = options->memory;
     const enum told_doubt before = memory ? memory->doubt : DOUBT_NOTHING;
     enum told_doubt now = DOUBT_NOTHING;
-    struct fit seen = {0}, other = {0};
+    struct fit seen = {0}, other = {0}, alike = *told;
     if (told->agreement < doubtful_agreement) {
         if (!gbuffer_find_type(g, options, told, &other, err))
             return false;
-        if (!is_exact && told->half_width > 0 &&
-            !estimate_as(g, possible_models(g, options, false), false, 0, &seen, err))
+        if (!is_exact && told->half_width > 0 && !estimate_anywhere(g, options, &seen, err))
             return false;
         if (!is_out_of_sight(&g->camera, told, &seen)) {
             told->tone = seen.tone;
             told->curve = seen.curve;
         }
-        now = choose_cause(&g->camera, told, &seen, &other);
+        /* Patches of normals have no say against single ones. */
+        if (seen.is_usable && seen.patch != told->patch && is_other_view(&g->camera, &seen) &&
+            !estimate_known(g, options, seen.patch, &alike, err))
+            return false;
+        now = choose_cause(&g->camera, told, &alike, &seen, &other);
     }
     const bool is_square = now == DOUBT_CAMERA && !(seen.pixel_aspect > 0);
     if (now != DOUBT_TYPE && !is_square)
@@ -514,7 +538,7 @@ static bool doubt(const struct gbuffer *g, const struct gbuffer_options *options
     if (now != DOUBT_TYPE)
         tell_tone(g, told, path, report);
     if (now == DOUBT_CAMERA && now != before)
-        tell_doubt(g, told, &seen, path, report);
+        tell_doubt(g, &alike, &seen, path, report);
     if (now == DOUBT_TYPE && now != before)
         gbuffer_tell_type(g, options, told, &other, path, report);
     if (memory) {
@@ -530,7 +554,7 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
 {
     const struct role *depth = &g->roles.kind[ROLE_DEPTH];
     struct fit told;
-    if (!estimate_as(g, possible_models(g, options, true), true, 0, &told, err))
+    if (!estimate_known(g, options, FIT_PATCH_ANY, &told, err))
         return false;
     const bool is_exact = strcmp(g->camera.source, "positions") == 0;
     const bool is_new = told.half_width > 0 && !is_exact &&

@@ -92,10 +92,16 @@ bool gbuffer_find_camera(struct gbuffer *g, const struct gbuffer_options *option
                          struct report *report, struct tool_error *err);
 /* What depth measures is left to the image. */
 bool gbuffer_type_is_auto(const struct gbuffer *g, const struct gbuffer_options *options);
-/* Depth as these models, 1 << enum fit_model or-ed, through the camera of g, if it is known to be
- * that; else near this half width, or 0: anywhere. False only if memory runs out. */
-bool gbuffer_fit_camera(const struct gbuffer *g, unsigned models, bool known,
-                        double near_half_width, struct fit *fit, struct tool_error *err);
+/* How a camera is looked for. */
+struct camera_search {
+    unsigned models;        /* what depth may be: 1 << enum fit_model or-ed; 0: nothing is found */
+    bool is_known;          /* through the camera that is known */
+    double near_half_width; /* else near this; 0: anywhere */
+    enum fit_patch patch;   /* ANY: that which tells most */
+};
+/* False only if memory runs out. */
+bool gbuffer_fit_camera(const struct gbuffer *g, const struct camera_search *search,
+                        struct fit *fit, struct tool_error *err);
 /* What else than somebody tells depth may be through the camera that is known; other->is_sure if
  * normals say so. False only if memory runs out. */
 bool gbuffer_find_type(const struct gbuffer *g, const struct gbuffer_options *options,

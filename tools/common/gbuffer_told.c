@@ -46,7 +46,9 @@ bool gbuffer_find_type(const struct gbuffer *g, const struct gbuffer_options *op
     *other = (struct fit){0};
     if (!is_told || g->camera.type != CAMERA_PERSPECTIVE)
         return true;
-    if (!gbuffer_fit_camera(g, other_models(g->depth_type), true, 0, other, err))
+    const struct camera_search search = {
+        .models = other_models(g->depth_type), .is_known = true, .patch = told->patch};
+    if (!gbuffer_fit_camera(g, &search, other, err))
         return false;
     other->is_sure &= other->agreement - told->agreement >= least_gain;
     return true;
