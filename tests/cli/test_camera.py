@@ -450,6 +450,12 @@ def patches_of_normals_do_not_outvote_single_ones(scratch):
     check('depth and normals' not in said, said)
 
 
+@case
+def curve_that_betters_a_wrong_camera_alone_is_none(scratch):
+    said = rough_crop(scratch, 0.03, (120, 100, 200, 112))
+    check('looks squeezed' not in said, said)
+
+
 # Channel, what it holds, what --depth-type says or None: its name says it; what overrides it.
 TYPES = [
     ('Z', 'radial', 'planar', 'radial'),

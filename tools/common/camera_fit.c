@@ -573,20 +573,22 @@ static bool find_causes(const struct fit_samples *s, const struct fit_input *inp
                         const struct fit_solution *best, struct fit *fit)
 {
     struct fit_stretch stretch;
-    double tone = 0, by_tone = INFINITY;
+    struct fit_tone tone = {.cost = INFINITY};
     if (!fit_find_stretch(s, best, &stretch))
         return false;
     /* A field of view that is known may be wrong, and looks like it. */
     if (best->free[FIT_LN_K] && (input->models >> FIT_PLANAR & 1u) &&
-        !fit_find_tone(s, best, &tone, &fit->curve, &by_tone))
+        !fit_find_tone(s, best, &tone))
         return false;
-    if (tone > 0 && by_tone < stretch.cost)
-        fit->tone = s->median / tone;
+    if (tone.share > 0 && tone.cost < stretch.cost)
+        fit->tone = s->median / tone.share;
     else if (isfinite(stretch.cost))
         fit->pixel_aspect = input->pixel_aspect / stretch.times;
     else if (fabs(stretch.times - 1.0) > 0)
         fit->other_aspect = input->pixel_aspect / stretch.times;
     fit->squeezed = stretch.agreement;
+    fit->curve = tone.curve;
+    fit->toned = tone.agreement;
     return true;
 }
 
@@ -682,6 +684,7 @@ bool camera_fit(const struct fit_input *input, struct fit *fit, struct tool_erro
     fit->other_aspect = best->best.shifted ? attempts[0].fit.other_aspect : 0;
     fit->tone = attempts[0].fit.tone;
     fit->curve = attempts[0].fit.curve;
+    fit->toned = attempts[0].fit.toned;
     for (size_t i = 0; i < count && fit->is_sure; i++)
         if (contradict(best, &attempts[i])) {
             fit->is_sure = false;

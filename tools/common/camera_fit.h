@@ -78,6 +78,7 @@ struct fit {
     double other_aspect;     /* 0, or what explains as much as the shift does, without one */
     double tone;             /* 0, or the value that depth seems squeezed towards: a */
     enum fit_model curve;    /* of tone */
+    double toned;            /* [0,1] agree then, if tone is not 0 */
     bool tells_view;         /* another half_width would be seen in the normals */
     char why[192];           /* not sure: because ... */
 };

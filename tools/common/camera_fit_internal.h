@@ -112,9 +112,15 @@ struct fit_stretch {
 /* False if memory runs out. */
 bool fit_find_stretch(const struct fit_samples *all, const struct fit_solution *best,
                       struct fit_stretch *stretch);
-/* *tone: median of depth over the value that depth nears far away, if that is clear, or 0; *curve
- * then, and *cost as that of a stretch. False if memory runs out. */
-bool fit_find_tone(const struct fit_samples *all, const struct fit_solution *best, double *tone,
-                   enum fit_model *curve, double *cost);
+/* If it is clear; else as of a stretch. */
+struct fit_tone {
+    double share; /* median of depth over the value that depth nears far away; 0: no tone */
+    enum fit_model curve;
+    double cost, agreement;
+};
+
+/* False if memory runs out. */
+bool fit_find_tone(const struct fit_samples *all, const struct fit_solution *best,
+                   struct fit_tone *tone);
 
 #endif

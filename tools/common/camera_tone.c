@@ -58,14 +58,13 @@ static struct fit_solution find_best(const struct fit_samples *s, const struct f
     return found;
 }
 
-bool fit_find_tone(const struct fit_samples *all, const struct fit_solution *best, double *tone,
-                   enum fit_model *curve, double *cost)
+bool fit_find_tone(const struct fit_samples *all, const struct fit_solution *best,
+                   struct fit_tone *tone)
 {
     static const double least = 0.03;
     const double sigma = fmax(best->sigma, 0.02);
     struct fit_samples s;
-    *tone = 0;
-    *cost = INFINITY;
+    *tone = (struct fit_tone){.cost = INFINITY};
     if (!fit_samples_thin(all, ENOUGH_SAMPLES, &s))
         return false;
     struct fit_solution without = *best;
@@ -78,9 +77,10 @@ bool fit_find_tone(const struct fit_samples *all, const struct fit_solution *bes
     /* Rough things keep their own error, whatever depth is. */
     const bool is_exact = c > 10.0 * with.deviation[FIT_C] && gain > 0.03 && z > 2;
     if (is_other && (ratio < 0.3 || (ratio < 0.7 && z > 1.5) || (ratio < 0.9 && is_exact))) {
-        *tone = c;
-        *curve = with.model;
-        *cost = with.cost;
+        *tone = (struct fit_tone){.share = c,
+                                  .curve = with.model,
+                                  .cost = with.cost,
+                                  .agreement = 1.0 - fit_cost(&s, &with, FIT_HALF_AGREEMENT)};
     }
     fit_samples_free(&s);
     return true;

@@ -492,6 +492,24 @@ static bool is_out_of_sight(const struct camera *c, const struct fit *told, cons
     return fabs(c->shift_x) + fabs(c->shift_y) > 0.5 && told->agreement > seen->agreement;
 }
 
+/* A curve betters a camera that is not the right one, as of a crop whose lens shift is not found;
+ * it is there if it betters what is told as well. Both are of single normals. */
+static bool take_tone(const struct gbuffer *g, const struct gbuffer_options *options,
+                      const struct fit *seen, struct fit *told, struct tool_error *err)
+{
+    struct fit single = *told;
+    if (!(seen->tone > 0) || is_out_of_sight(&g->camera, told, seen))
+        return true;
+    if (told->patch != FIT_PATCH_NONE && !estimate_known(g, options, FIT_PATCH_NONE, &single, err))
+        return false;
+    if (seen->toned < single.agreement + sure_gain)
+        return true;
+    told->tone = seen->tone;
+    told->curve = seen->curve;
+    told->toned = seen->toned;
+    return true;
+}
+
 /* One thing that is wrong looks like others: it is a wrong field of view if all agree with another
  * one and pixels are square then, and a squeeze if more agree with that. alike: what is told, of
  * the patches that what is seen is of. */
@@ -522,17 +540,16 @@ static bool doubt(const struct gbuffer *g, const struct gbuffer_options *options
             return false;
         if (!is_exact && told->half_width > 0 && !estimate_anywhere(g, options, &seen, err))
             return false;
-        if (!is_out_of_sight(&g->camera, told, &seen)) {
-            told->tone = seen.tone;
-            told->curve = seen.curve;
-        }
+        if (!take_tone(g, options, &seen, told, err))
+            return false;
         /* Patches of normals have no say against single ones. */
         if (seen.is_usable && seen.patch != told->patch && is_other_view(&g->camera, &seen) &&
             !estimate_known(g, options, seen.patch, &alike, err))
             return false;
         now = choose_cause(&g->camera, told, &alike, &seen, &other);
     }
-    const bool is_square = now == DOUBT_CAMERA && !(seen.pixel_aspect > 0);
+    const bool is_square = (now == DOUBT_CAMERA && !(seen.pixel_aspect > 0)) ||
+                           (told->tone > 0 && told->toned > told->squeezed);
     if (now != DOUBT_TYPE && !is_square)
         tell_pixels(g, told, path, report);
     if (now != DOUBT_TYPE)
