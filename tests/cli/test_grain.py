@@ -270,6 +270,29 @@ def narrow_faces_are_no_filter(scratch):
     check('filtered' not in str(inspect(scratch, '--fov', FOV)['warnings']), 'a third is a mean')
 
 
+@cases([('slanted faces', True), ('a mean', False)])
+def coarse_mouldings_are_no_filter(scratch, _, are_faces):
+    # Among posts a flight of faces, each of a texel, which slant away from the way across them.
+    scene, along = Scene(), np.arange(160) % 40
+    depth = np.full(scene.x.shape, 5.0)
+    depth[:, (along < 27) & (along % 4 < 2)] = 3.5
+    depth[:, along == 29], depth[:, along == 30] = 4.75, 4.5
+    depth[:, along > 30] = 4.25
+    place = np.stack([scene.x * depth, -depth], -1)
+    way = np.roll(place, -1, 1) - np.roll(place, 1, 1)
+    way /= np.linalg.norm(way, axis=-1, keepdims=True)
+    normal = np.zeros(depth.shape + (3,))
+    normal[..., 2] = 1
+    is_face = (along == 29) | (along == 30)
+    slant = np.stack([-way[..., 1], way[..., 0]], -1) * np.sqrt(1 - 0.33 ** 2) + way * 0.33
+    if are_faces:
+        normal[..., [0, 2]] = np.where(is_face[:, None], slant, normal[..., [0, 2]])
+    write_exr(scratch.path('in.exr'), {'Z': depth.astype(np.float32), **{
+        f'N.{c}': normal[..., i].astype(np.float32) for i, c in enumerate('XYZ')}})
+    said = str(inspect(scratch, '--fov', FOV, '--normal-space', 'camera')['warnings'])
+    equal('depth is filtered' in said, not are_faces, said)
+
+
 @cases([('b44', 'Z', np.float16, True), ('b44a', 'Z', np.float16, True),
         ('dwaa', 'Depth.R', np.float16, True), ('dwaa', 'Z', np.float16, False),
         ('b44a', 'Z', np.float32, False), ('piz', 'Z', np.float16, False)],

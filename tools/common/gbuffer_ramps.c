@@ -20,12 +20,13 @@ struct point {
 
 /* How depth goes on from one texel to the next. */
 struct stride {
-    double rise;
+    double rise, sine;      /* the least between it and the surfaces that it joins */
     bool is_known, is_step; /* that normals do not explain */
 };
 
 struct borders {
     size_t steps, ramps, others;
+    size_t slanted; /* ramps that a coarse image makes of flutes and mouldings, too */
 };
 
 static struct point point_at(const struct gbuffer *g, size_t texel)
@@ -68,15 +69,15 @@ static struct stride stride_between(const struct point *a, const struct point *b
     double way[3];
     for (int c = 0; c < 3; c++)
         way[c] = b->place[c] - a->place[c];
-    s.is_step = s.is_known && leaves(way, a->normal) > least_sine &&
-                leaves(way, b->normal) > least_sine &&
+    s.sine = fmin(leaves(way, a->normal), leaves(way, b->normal));
+    s.is_step = s.is_known && s.sine > least_sine &&
                 fabs(s.rise) > least_rise * fmin(-a->place[2], -b->place[2]);
     return s;
 }
 
 /* Steps of one sign, one after the other, and the normals where they begin and after the first. */
 struct run {
-    double sum, most, before, nearest;
+    double sum, most, before, nearest, sines;
     double first[3], second[3];
     size_t length;
 };
@@ -99,15 +100,16 @@ static bool is_third(const struct run *run, const struct point *last)
 static void end_run(struct borders *borders, const struct run *run, const struct point *last,
                     const struct stride *after)
 {
-    static const double least_sum = 0.1;
+    static const double least_sum = 0.1, upright = 0.5;
     const double sum = fabs(run->sum), mean = sum / (double)run->length;
+    const bool is_slanted = run->sines < upright * (double)run->length;
     if (run->length == 0 || !(sum > least_sum * run->nearest) || !after->is_known ||
         !(fabs(run->before) < 0.5 * mean) || !(fabs(after->rise) < 0.5 * mean))
         return;
     if (run->most > 0.85 * sum || is_third(run, last))
         borders->steps++;
     else if (run->length >= 3 && run->most < 0.6 * sum)
-        borders->ramps++;
+        *(is_slanted ? &borders->slanted : &borders->ramps) += 1;
     else
         borders->others++;
 }
@@ -129,6 +131,7 @@ static void look_along(struct borders *borders, const struct gbuffer *g, size_t 
         }
         if (s.is_step) {
             run.sum += s.rise;
+            run.sines += s.sine;
             run.most = fmax(run.most, fabs(s.rise));
             run.nearest = fmin(run.nearest, fmin(-here.place[2], -next.place[2]));
             if (run.length++ == 0) {
@@ -143,17 +146,20 @@ static void look_along(struct borders *borders, const struct gbuffer *g, size_t 
 
 /* Of clean renders, of fur and grass too, at most 1 of 100 borders is a ramp, and 11 have a texel
  * in between. Of blur and of what was enlarged 8 and more are ramps along one axis at least,
- * mostly 40 and more; of what was made smaller half have a texel in between. */
-static const double most_ramps = 0.05, most_between = 0.35;
+ * mostly 40 and more; of what was made smaller half have a texel in between. Where every fifth
+ * texel of columns and mouldings is left, 8 are slanted ramps; of slanted things that were blurred
+ * 80 and more. */
+static const double most_ramps = 0.05, most_slanted = 0.2, most_between = 0.35;
 
 /* Share of borders that are no steps; 0: it may be that of a clean render. */
 static double share_between(const struct borders *b)
 {
-    const double all = (double)(b->steps + b->ramps + b->others);
-    const double between = (double)(b->ramps + b->others);
+    const size_t ramps = b->ramps + b->slanted, betweens = ramps + b->others;
+    const double between = (double)betweens, all = (double)b->steps + between;
     const bool is_ramped = b->ramps >= FEW && (double)b->ramps > most_ramps * all;
-    const bool is_filtered = b->ramps + b->others >= FEW && between > most_between * all;
-    return is_ramped || is_filtered ? between / all : 0;
+    const bool is_slanted = ramps >= FEW && (double)ramps > most_slanted * all;
+    const bool is_filtered = betweens >= FEW && between > most_between * all;
+    return is_ramped || is_slanted || is_filtered ? between / all : 0;
 }
 
 void gbuffer_warn_of_ramps(struct gbuffer *g, const char *path, struct report *report)
