@@ -179,9 +179,9 @@
  * the scenes of tests/gpu/test_layers.c, THICKNESS_WIDER on those of test_radius.c. These moved
  * THICKNESS_GAP as well, from the 2.5 of the search, which could not tell the two apart.
  * THICKNESS_LENGTH was chosen by hand on the scenes of the search. STEP_LEAST, GAP_FRONT, GAP_BACK,
- * the shares of WIDTH and THICKNESS_WIDTH, _WIDE, _BASE and _SLOPE were moved after that on these
- * scenes, as far as test_planes.c, test_truth.c, test_radius.c and test_noise.c let them: more of
- * SLOPE is better there, and worse for bent normals behind a fence and below a slab. */
+ * WIDTH_HIDDEN, THICKNESS_WIDTH, _WIDE, _BASE and _SLOPE were moved after that on these scenes, as
+ * far as test_artifacts.c, test_noise.c, test_planes.c, test_radius.c and test_truth.c let them:
+ * more of SLOPE is better there, and worse for bent normals behind a fence and below a slab. */
 #define VKAO_VBAO_REACH_SMOOTH 0.82    /* end of the last step: the smooth falloff hides the rest */
 #define VKAO_VBAO_REACH_THRESHOLD 1.08 /* samples beyond stand for what lies before them */
 /* Rise over the surface's plane, per run, up to which two samples join. */
@@ -196,7 +196,7 @@
  * by LENGTH of the difference, as it may be the edge of a board; WIDTH of that, at least GAP of the
  * way from the sample before, for whose gap it stands, and at most BASE + SLOPE of its lateral
  * distance. */
-#define VKAO_VBAO_THICKNESS_WIDTH 0.95
+#define VKAO_VBAO_THICKNESS_WIDTH 0.92
 #define VKAO_VBAO_THICKNESS_LENGTH 0.05
 /* Of what goes on on all sides, but at most WIDER of the width that is seen of it: where the radius
  * is most of the view, and what is seen a sliver of it, that says little. */
@@ -206,11 +206,9 @@
 #define VKAO_VBAO_THICKNESS_GIVEN_GAP 0.5 /* where thickness is an input, which has no cap */
 #define VKAO_VBAO_THICKNESS_BASE 0.384
 #define VKAO_VBAO_THICKNESS_SLOPE 0.79
-/* A texel of a row or of a column counts ENDS of so many SHARES where the surface ends on both
- * sides, as what stands free is often less deep than wide, and HIDDEN where something nearer hides
- * how far it goes on. */
+/* A texel of a row or of a column counts so many SHARES, and HIDDEN where something nearer hides
+ * how far the surface goes on. */
 #define VKAO_VBAO_WIDTH_SHARES 8
-#define VKAO_VBAO_WIDTH_ENDS 7
 #define VKAO_VBAO_WIDTH_HIDDEN 12
 /* Depth breaks between two texels if it changes by more than RISE of the smaller change beside them
  * plus LEAST. Surfaces are followed to REACH on each side. Both are tangents of angles that the eye

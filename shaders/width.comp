@@ -2,10 +2,9 @@
  *
  * How wide the surface is that a texel is seen of: texels without a break of depth, in its row or
  * in its column, the fewer. What ends behind something nearer goes on unseen: to that side it is
- * taken to be as long as to the other, if that is longer, and the whole to be wider than is seen;
- * what stands free on both sides, narrower. As thick as wide it is taken to be, and view z gets
- * that in its last bits: what samples it has it without another load. An invocation takes two by
- * two texels, whose words are the same. */
+ * taken to be as long as to the other, if that is longer, and the whole to be wider than is seen.
+ * As thick as wide it is taken to be, and view z gets that in its last bits: what samples it has it
+ * without another load. An invocation takes two by two texels, whose words are the same. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require
@@ -102,8 +101,7 @@ uint run_of(Breaks b, int line, int k, uint most, uint own)
     uint behind = min(min(start, hidden_start), most), longer = max(ahead, behind);
     uint run = (hidden < end ? longer : ahead) + (hidden_start < start ? longer : behind);
     bool is_hidden = hidden < min(end, most) || hidden_start < min(start, most);
-    uint each = longer < most ? VKAO_VBAO_WIDTH_ENDS : VKAO_VBAO_WIDTH_SHARES;
-    each = is_hidden ? VKAO_VBAO_WIDTH_HIDDEN : each;
+    uint each = is_hidden ? VKAO_VBAO_WIDTH_HIDDEN : VKAO_VBAO_WIDTH_SHARES;
     /* What is hidden does not count as going on for being wide alone. */
     uint shares = min(run * each, max(VKAO_VBAO_WIDTH_SHARES * run,
                                       2u * VKAO_VBAO_WIDTH_SHARES * most - 1u));

@@ -549,11 +549,10 @@ typedef struct vkao_params {
      * acne from coarse depth or interpolated normals. Default 0.005 */
     float bias;
     /* [0,8] VBAO, RAYMARCH: how thick the scene is behind what is seen, relative to the measured
-     * default. VBAO: .95 of its width in the depth image and .048 of what it is longer, at most .38
-     * radius and .79 of the distance to the side; seven eighths of a width that ends on both sides;
-     * where something nearer hides a side, that counts as long as the other, and the width half as
-     * much again. RAYMARCH: .19 radius and .42 of that distance. With THRESHOLD 1.1 times these.
-     * 0 = 1. Default 1 */
+     * default. VBAO: .92 of its width in the depth image and .046 of what it is longer, at most .38
+     * radius and .79 of the distance to the side; where something nearer hides a side, that counts
+     * as long as the other, and the width half as much again. RAYMARCH: .19 radius and .42 of that
+     * distance. With THRESHOLD 1.1 times these. 0 = 1. Default 1 */
     float thickness;
     /* (0,inf) 1 / scene units; the constant 50 of SPHERE_LITERAL. Default 50 */
     float blocking_scale;

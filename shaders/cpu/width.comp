@@ -103,8 +103,7 @@ ivec4 run_of(Line line, ivec4 at, int most, int own)
           open_behind = greaterThanEqual(ivec4(starts << behind), ivec4(0));
     ivec4 run = mix(ahead, longer, open_ahead) + mix(behind, longer, open_behind);
     ivec4 hidden = VKAO_VBAO_WIDTH_HIDDEN * run, seen = VKAO_VBAO_WIDTH_SHARES * run;
-    ivec4 shares = mix(seen, VKAO_VBAO_WIDTH_ENDS * run, lessThan(longer, ivec4(most)));
-    shares = mix(shares, mix(shares, hidden, lessThan(ahead, ivec4(most))), open_ahead);
+    ivec4 shares = mix(seen, mix(seen, hidden, lessThan(ahead, ivec4(most))), open_ahead);
     shares = mix(shares, mix(shares, hidden, lessThan(behind, ivec4(most))), open_behind);
     /* What is hidden does not count as going on for being wide alone. */
     shares = min(shares, max(seen, 2 * VKAO_VBAO_WIDTH_SHARES * most - 1));

@@ -63,9 +63,7 @@ static int shares_of_run(const struct ref_scene *scene, double radius, int axis,
     const int texels =
         (end == NEXT_IS_NEARER ? longer : ahead) + (start == NEXT_IS_FARTHER ? longer : back);
     const bool is_hidden = end == NEXT_IS_NEARER || start == NEXT_IS_FARTHER;
-    const int share = is_hidden       ? VKAO_VBAO_WIDTH_HIDDEN
-                      : longer < most ? VKAO_VBAO_WIDTH_ENDS
-                                      : VKAO_VBAO_WIDTH_SHARES;
+    const int share = is_hidden ? VKAO_VBAO_WIDTH_HIDDEN : VKAO_VBAO_WIDTH_SHARES;
     /* What is hidden does not count as going on for being wide alone. */
     const int below_all = 2 * VKAO_VBAO_WIDTH_SHARES * most - 1;
     const int seen = texels * VKAO_VBAO_WIDTH_SHARES, limit = seen > below_all ? seen : below_all;
