@@ -131,6 +131,7 @@ vkao_result vkao_effect_create(const vkao_context *ctx, const vkao_effect_info *
         return vkao_refuse(&ctx->log, VKAO_ERROR_OUT_OF_HOST_MEMORY,
                            "no host memory for the effect");
     vkao_program_plan(&effect->program, ctx, &settings, ctx->is_cpu && vkao_cpu_has(&settings));
+    effect->frames = &effect->frame_count;
     atomic_fetch_add(ctx->live, 1);
     result = vkao_program_compile(&effect->program);
     if (result != VKAO_SUCCESS) {
@@ -156,6 +157,12 @@ void vkao_effect_destroy(vkao_effect *effect)
     if (!effect)
         return;
     const vkao_context *ctx = effect->program.ctx;
+    const unsigned live = atomic_load(effect->frames);
+    if (live) {
+        vkao_log(&ctx->log, VKAO_LOG_ERROR,
+                 "vkao_effect_destroy: %u frames of the effect live; destroy them first", live);
+        return;
+    }
     vkao_program_destroy(&effect->program);
     vkao_free(ctx->allocator, effect);
     atomic_fetch_sub(ctx->live, 1);

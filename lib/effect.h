@@ -6,6 +6,8 @@
 
 struct vkao_effect {
     struct vkao_program program;
+    /* Frames that live; a pointer, so that effects can be const. */
+    atomic_uint *frames, frame_count;
 };
 
 /* The rows for checked settings, not compiled. is_cpu: those of the CPU. */

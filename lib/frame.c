@@ -260,6 +260,7 @@ static vkao_result describe(const vkao_effect *effect, const vkao_frame_info *ca
                            "frame.extent is %ux%u, the limit is %u", info->extent.width,
                            info->extent.height, ctx->max_dimension);
     frame->ctx = ctx;
+    frame->effect = effect;
     frame->extent = info->extent;
     frame->program = program;
     if (program->is_cpu && !vkao_cpu_fits(program, info->extent)) {
@@ -335,6 +336,7 @@ vkao_result vkao_frame_create(const vkao_effect *effect, const vkao_frame_info *
                            "no host memory for the frame");
     *frame = described;
     atomic_fetch_add(ctx->live, 1);
+    atomic_fetch_add(effect->frames, 1);
     VkMemoryRequirements need;
     if (frame->program == &own)
         result = compile_own(frame, &own);
@@ -389,6 +391,7 @@ void vkao_frame_destroy(vkao_frame *frame)
     if (!frame)
         return;
     const vkao_context *ctx = frame->ctx;
+    atomic_uint *frames = frame->effect->frames;
     if (frame->pool)
         ctx->vk.DestroyDescriptorPool(ctx->device, frame->pool, ctx->allocator);
     vkao_scratch_destroy(ctx, &frame->scratch);
@@ -398,5 +401,6 @@ void vkao_frame_destroy(vkao_frame *frame)
         vkao_program_destroy(frame->own);
     vkao_free(ctx->allocator, frame->own);
     vkao_free(ctx->allocator, frame);
+    atomic_fetch_sub(frames, 1);
     atomic_fetch_sub(ctx->live, 1);
 }

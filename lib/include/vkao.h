@@ -392,7 +392,8 @@ VKAO_API VKAO_MUST_CHECK vkao_result vkao_effect_create(const vkao_context *ctx,
  * zero without an effect. */
 VKAO_API void vkao_effect_settings(const vkao_effect *effect, vkao_effect_info *out, uint32_t size);
 
-/* All frames of the effect must be destroyed first. NULL is ignored. Legal after device loss. */
+/* All frames of the effect must be destroyed first; if not, nothing happens but an error in the
+ * log. NULL is ignored. Legal after device loss. */
 VKAO_API void vkao_effect_destroy(vkao_effect *effect);
 
 /* --- Frame: the images that one frame in flight works on --- */

@@ -300,6 +300,19 @@ static void every_required_null_is_refused(void **state)
     world_close(&w);
 }
 
+/* Frames would be left with passes that are gone. */
+static void effect_with_living_frames_stays(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open_frame(&w, VKAO_STAGE_ALL);
+    vkao_effect_destroy(w.effect);
+    assert_int_equal(w.log.errors, 1);
+    assert_non_null(strstr(w.log.last_error, "vkao_effect_destroy: 1 frames"));
+    assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+    world_close(&w); /* the frame, then the effect, which goes now */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -314,6 +327,7 @@ int main(void)
         cmocka_unit_test(debug_labels_are_optional_in_every_way),
         cmocka_unit_test(combinations_that_make_no_sense_are_refused_and_named),
         cmocka_unit_test(every_required_null_is_refused),
+        cmocka_unit_test(effect_with_living_frames_stays),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
