@@ -60,36 +60,65 @@ static void cpus_have_it_and_others_do_not(void **state)
     }
 }
 
+static struct vkao_strip nth_strip(struct world *w, size_t push)
+{
+    struct vkao_strip strip;
+    memcpy(&strip, fake_nth(&w->fake, "vkCmdPushConstants", push)->push, sizeof strip);
+    return strip;
+}
+
+/* Normals are decoded of the rows that rows are blurred of, and of the columns that they reach, on
+ * the way. */
+static void check_normals_of(struct vkao_strip normals, struct vkao_strip rows)
+{
+    assert_int_equal(normals.rect[0] >> 16, rows.rect[0] >> 16);
+    assert_int_equal(normals.rect[1] >> 16, rows.rect[1] >> 16);
+    assert_int_equal(normals.rect[0] & 0xffffu, 0);
+    assert_int_equal(normals.rect[1] & 0xffffu, 65);
+    assert_int_equal(normals.ring_row, rows.ring_row);
+}
+
+/* The dispatches: prepare, tiles and ssao, then those of each strip in turns, normals among them if
+ * the blur looks at any. */
+static void check_strips(uint32_t height, bool normals)
+{
+    struct world w;
+    open_cpu(&w);
+    w.fake.max_dimension = 8192;
+    w.effect_info.blur_normal_power = normals ? 4.0f : 0.0f;
+    w.frame_info.extent = (VkExtent2D){65, height};
+    world_create_frame(&w);
+    assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+    uint32_t blurred = 0, halfway = 0;
+    const uint32_t strips = (height + VKAO_STRIP_ROWS - 1) / VKAO_STRIP_ROWS,
+                   passes = normals ? 3 : 2;
+    assert_int_equal(fake_count(&w.fake, "vkCmdDispatch"), 2 + 1 + passes * strips);
+    for (uint32_t s = 0; s < strips; ++s) {
+        const uint32_t first = 3 + passes * s;
+        const struct vkao_strip x = nth_strip(&w, first + passes - 2),
+                                y = nth_strip(&w, first + passes - 1);
+        if (normals)
+            check_normals_of(nth_strip(&w, first), x);
+        assert_int_equal(x.rect[0] >> 16, halfway);
+        assert_int_equal(y.rect[0] >> 16, blurred);
+        halfway = x.rect[1] >> 16;
+        blurred = y.rect[1] >> 16;
+        assert_int_equal(halfway, blurred + 3 < height ? blurred + 3 : height);
+        assert_int_equal(x.ring_row, y.ring_row);
+        assert_true((int32_t)x.ring_row <= (int32_t)(y.rect[0] >> 16) - 3);
+        assert_true((int32_t)halfway <= (int32_t)x.ring_row + 2 * VKAO_RING_ROWS);
+    }
+    assert_int_equal(blurred, height);
+    world_close(&w);
+}
+
 /* Every row of the rect is blurred once, each strip after the rows that it reads. */
 static void strips_cover_the_rect_once(void **state)
 {
     (void)state;
     for (uint32_t height = 1; height < 700; height += 37) {
-        struct world w;
-        open_cpu(&w);
-        w.fake.max_dimension = 8192;
-        w.frame_info.extent = (VkExtent2D){65, height};
-        world_create_frame(&w);
-        assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
-        /* The dispatches: prepare, tiles, then x and y in turns. */
-        uint32_t blurred = 0, halfway = 0;
-        const uint32_t strips = (height + VKAO_STRIP_ROWS - 1) / VKAO_STRIP_ROWS;
-        assert_int_equal(fake_count(&w.fake, "vkCmdDispatch"), 2 + 1 + 2 * strips);
-        for (uint32_t s = 0; s < strips; ++s) {
-            struct vkao_strip x, y;
-            memcpy(&x, fake_nth(&w.fake, "vkCmdPushConstants", 3 + 2 * s)->push, sizeof x);
-            memcpy(&y, fake_nth(&w.fake, "vkCmdPushConstants", 4 + 2 * s)->push, sizeof y);
-            assert_int_equal(x.rect[0] >> 16, halfway);
-            assert_int_equal(y.rect[0] >> 16, blurred);
-            halfway = x.rect[1] >> 16;
-            blurred = y.rect[1] >> 16;
-            assert_int_equal(halfway, blurred + 3 < height ? blurred + 3 : height);
-            assert_int_equal(x.ring_row, y.ring_row);
-            assert_true((int32_t)x.ring_row <= (int32_t)(y.rect[0] >> 16) - 3);
-            assert_true((int32_t)halfway <= (int32_t)x.ring_row + 2 * VKAO_RING_ROWS);
-        }
-        assert_int_equal(blurred, height);
-        world_close(&w);
+        check_strips(height, false);
+        check_strips(height, true);
     }
 }
 
