@@ -15,6 +15,20 @@ static bool unrolls(const vkao_effect_info *e)
     return slices * e->step_count <= VKAO_MOST_UNROLLED;
 }
 
+/* Is final AO rounded to half floats? If its image has them; and with COMPOSITE if the caller names
+ * no format of more bits, as there may be no image then, and scratch has them. */
+static bool final_ao_is_half(const vkao_effect_info *e)
+{
+    return e->ao_format == VK_FORMAT_R16_SFLOAT ||
+           (e->stages & VKAO_STAGE_COMPOSITE && e->ao_format == VK_FORMAT_R8_UNORM);
+}
+
+/* Without noisy_ao BLUR reads it from scratch. */
+static bool noisy_ao_is_half(const vkao_effect_info *e)
+{
+    return e->stages & VKAO_STAGE_BLUR ? !e->noisy_ao : final_ao_is_half(e);
+}
+
 static void set_constants(struct vkao_program *program)
 {
     const vkao_effect_info *e = &program->settings;
@@ -45,7 +59,8 @@ static void set_constants(struct vkao_program *program)
     c[VKAO_SETTING_SPECULAR] = (uint32_t)e->specular;
     c[VKAO_SETTING_NOISY_CODES] = program->has_codes;
     c[VKAO_SETTING_TILE_WORDS] = vkao_blur_tile_words(e);
-    c[VKAO_SETTING_HALF_AO] = !program->is_cpu && e->ao_format == VK_FORMAT_R16_SFLOAT;
+    c[VKAO_SETTING_HALF_AO] = final_ao_is_half(e);
+    c[VKAO_SETTING_HALF_NOISY] = noisy_ao_is_half(e);
     if (program->is_cpu)
         c[VKAO_SETTING_PATH] = vkao_cpu_setting(program);
 }

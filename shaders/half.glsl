@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is stored as half floats. Vulkan lets a driver round it or cut it off: NVIDIA's cut, and
- * took .0005 from AO that was a rounding error below 1. */
+ * What is stored as half floats. Vulkan lets a driver round it or cut it off: NVIDIA's and lavapipe
+ * cut, and took .0005 from AO that was a rounding error below 1. */
 #ifndef VKAO_HALF_GLSL_
 #define VKAO_HALF_GLSL_
 
@@ -22,6 +22,12 @@ vec4 nearest_half(vec4 v)
 float ao_texel(float ao)
 {
     return HALF_AO ? nearest_half(ao) : ao;
+}
+
+/* For what SSAO writes. */
+float noisy_texel(float ao)
+{
+    return HALF_NOISY ? nearest_half(ao) : ao;
 }
 
 #endif

@@ -81,11 +81,12 @@
 #define VKAO_SETTING_NOISY_CODES 18 /* AO before the blur is codes in an image, see below */
 #define VKAO_SETTING_TILE_WORDS 19  /* of a texel in shared memory of blur_tile.comp */
 #define VKAO_SETTING_HALF_AO 20     /* the AO image has half floats, see half.glsl */
-#define VKAO_SETTING_PATH 21        /* the CPU's own */
-#define VKAO_SETTING_VERTICAL 22    /* of the pass: one shader blurs in two directions */
-#define VKAO_SETTING_TONED 23       /* of the form: intensity or power is not 1 */
-#define VKAO_SETTING_COPIED 24      /* of the form, the CPU's own */
-#define VKAO_SETTING_COUNT 25
+#define VKAO_SETTING_HALF_NOISY 21  /* the same of what SSAO writes */
+#define VKAO_SETTING_PATH 22        /* the CPU's own */
+#define VKAO_SETTING_VERTICAL 23    /* of the pass: one shader blurs in two directions */
+#define VKAO_SETTING_TONED 24       /* of the form: intensity or power is not 1 */
+#define VKAO_SETTING_COPIED 25      /* of the form, the CPU's own */
+#define VKAO_SETTING_COUNT 26
 
 /* Visibility before the blur, which may be below 0 and above 1, as a code of 8 bits: (v + OFFSET) *
  * SCALE, rounded. VISIBILITY_OPEN is that of 1. */

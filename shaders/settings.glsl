@@ -25,6 +25,7 @@ layout(constant_id = VKAO_SETTING_SECOND_LAYER) const bool SECOND_LAYER = false;
 layout(constant_id = VKAO_SETTING_NOISY_CODES) const bool NOISY_CODES = false;
 layout(constant_id = VKAO_SETTING_TILE_WORDS) const uint TILE_WORDS = 2u;
 layout(constant_id = VKAO_SETTING_HALF_AO) const bool HALF_AO = false;
+layout(constant_id = VKAO_SETTING_HALF_NOISY) const bool HALF_NOISY = false;
 layout(constant_id = VKAO_SETTING_VERTICAL) const bool VERTICAL = false;
 layout(constant_id = VKAO_SETTING_TONED) const bool TONED = false;
 

@@ -434,7 +434,8 @@ typedef struct vkao_images {
     vkao_image direct; /* direct light, INDIRECT only; as color */
     /* storage-capable colour format; may be color's image if both are GENERAL */
     vkao_image output;
-    /* Mean unoccluded direction in the space of the normals: see effect.bent_normals. Background is
+    /* Mean unoccluded direction in the space of the normals, of length 1: see effect.bent_normals.
+     * Half floats may be cut off by the driver, which leaves .9996 of it in the mean. Background is
      * the zero vector, which is stored as xyz 0 (UNORM .5). Octahedral codes have none: there it is
      * (0,0), the code of +z. Input if only COMPOSITE. */
     vkao_image bent_normals;

@@ -247,6 +247,92 @@ static void intensity_and_power_follow_the_formula(void **state)
     }
 }
 
+/* Nothing was cut off: the nearest half float below 1 is at most 2^-12 away, and above as often as
+ * below. */
+static void check_nearest(const char *what, const double *halves, const double *exact, size_t count)
+{
+    const struct difference d = difference_of(halves, exact, count);
+    const double bias = mean_of(halves, count) - mean_of(exact, count);
+    printf("    %-32s max %.2e  bias %.2e\n", what, d.max, bias);
+    if (!(d.max <= 0x1p-12 * 1.01) || !(fabs(bias) <= 2e-5))
+        fail_msg("%s: half floats are off by up to %g, in the mean by %g", what, d.max, bias);
+}
+
+/* Corners and open walls, their AO in images of this format. */
+static void make_ao(struct picture *p, vkao_stage_flags stages, VkFormat format)
+{
+    const struct scene scene = scene_corner();
+    picture_make(p, stages, &scene);
+    picture_set(p, SLOT_AO, format, NULL);
+}
+
+static void ao_in_half_floats_is_the_nearest(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name;
+        vkao_stage_flags stages;
+        bool half_resolution, bent;
+    } rows[] = {
+        {"SSAO", VKAO_STAGE_SSAO, false, false},
+        {"blur", VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, false, false},
+        {"upsampled", VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, true, false},
+        {"with bent normals", VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, false, true},
+        {"upsampled, with bent normals", VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, true, true},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
+        struct picture p[2]; /* exact, then half floats */
+        for (int k = 0; k < 2; ++k) {
+            make_ao(&p[k], rows[i].stages, k ? VK_FORMAT_R16_SFLOAT : VK_FORMAT_R32_SFLOAT);
+            p[k].half_resolution = rows[i].half_resolution;
+            p[k].ssao.method = VKAO_SSAO_GTAO;
+            if (rows[i].bent)
+                picture_set(&p[k], SLOT_BENT, VK_FORMAT_R32G32B32A32_SFLOAT, NULL);
+            picture_run(&p[k]);
+        }
+        check_nearest(rows[i].name, p[1].values[SLOT_AO], p[0].values[SLOT_AO],
+                      picture_texels(&p[0]));
+        picture_free(&p[0]);
+        picture_free(&p[1]);
+    }
+}
+
+/* The same of AO that nobody but the next stage sees: before the blur, and before COMPOSITE. */
+static void ao_in_scratch_is_the_nearest(void **state)
+{
+    (void)state;
+    struct picture own, scratch;
+    const vkao_stage_flags both = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
+    make_ao(&own, both, VK_FORMAT_R32_SFLOAT);
+    picture_set(&own, SLOT_NOISY, VK_FORMAT_R32_SFLOAT, NULL);
+    make_ao(&scratch, both, VK_FORMAT_R32_SFLOAT);
+    picture_set(&scratch, SLOT_BENT, VK_FORMAT_R32G32B32A32_SFLOAT, NULL);
+    own.ssao.method = scratch.ssao.method = VKAO_SSAO_GTAO;
+    picture_run(&own);
+    picture_run(&scratch);
+    /* What the blur keeps between its directions is rounded as well, with bent normals and
+     * without. */
+    const size_t count = picture_texels(&own);
+    const double bias =
+        mean_of(scratch.values[SLOT_AO], count) - mean_of(own.values[SLOT_AO], count);
+    printf("    %-32s bias %.2e\n", "before the blur", bias);
+    assert_true(fabs(bias) <= 2e-5);
+    picture_free(&scratch);
+
+    make_ao(&scratch, VKAO_STAGE_ALL, VK_FORMAT_R32_SFLOAT);
+    scratch.formats[SLOT_AO] = own.formats[SLOT_NOISY] = VK_FORMAT_UNDEFINED;
+    scratch.ssao.method = VKAO_SSAO_GTAO;
+    scratch.composite.mode = VKAO_COMPOSITE_AO_ONLY;
+    picture_set(&scratch, SLOT_OUTPUT, VK_FORMAT_R32G32B32A32_SFLOAT, NULL);
+    picture_run(&scratch);
+    picture_run(&own);
+    for (size_t i = 0; i < count; ++i)
+        scratch.values[SLOT_OUTPUT][i] = scratch.values[SLOT_OUTPUT][i * 4];
+    check_nearest("before COMPOSITE", scratch.values[SLOT_OUTPUT], own.values[SLOT_AO], count);
+    picture_free(&scratch);
+    picture_free(&own);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -258,6 +344,8 @@ int main(void)
         gpu_test(constants_are_kept),
         gpu_test(radius_0_copies),
         gpu_test(intensity_and_power_follow_the_formula),
+        gpu_test(ao_in_half_floats_is_the_nearest),
+        gpu_test(ao_in_scratch_is_the_nearest),
     };
     return fixture_run(tests);
 }
