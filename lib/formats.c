@@ -291,3 +291,19 @@ bool vkao_format_is_sampled_float(VkFormat format)
     /* Of a depth format, it is depth that is read. */
     return vkao_format_is_depth(format) || !(has(format, "_UINT") || has(format, "_SINT"));
 }
+
+uint32_t vkao_format_components(VkFormat format)
+{
+    uint32_t count = 0;
+    for (const char *c = names[format]; *c; ++c)
+        count += (*c == 'R' || *c == 'G' || *c == 'B') && c[1] >= '0' && c[1] <= '9';
+    /* Depth and blocks have no letters with sizes. */
+    if (vkao_format_is_depth(format) || has(format, "BC4"))
+        return 1;
+    return count ? count : has(format, "BC5") ? 2 : 3;
+}
+
+bool vkao_format_is_signed(VkFormat format)
+{
+    return has(format, "_SNORM") || has(format, "_SFLOAT") || has(format, "_SSCALED");
+}

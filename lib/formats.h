@@ -22,5 +22,9 @@ bool vkao_format_is_depth(VkFormat format);
 /* Size of one step of a depth value in [0.5,1), and whether the format floats; 0 for other
  * formats. */
 float vkao_format_depth_step(VkFormat format, bool *floating);
+/* Of formats that texture2D can read: components of colour, 3 for 3 and more, and whether they hold
+ * negative numbers. */
+uint32_t vkao_format_components(VkFormat format);
+bool vkao_format_is_signed(VkFormat format);
 
 #endif

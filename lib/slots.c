@@ -69,6 +69,41 @@ static bool is_required(const struct vkao_program *program, uint32_t slot)
     return true;
 }
 
+/* Can the format hold what effect.normal_encoding or bent_encoding says? */
+static vkao_result check_encoding(const struct vkao_program *program, uint32_t i,
+                                  const vkao_image *image)
+{
+    static const struct {
+        const char *name;
+        uint32_t components;
+        bool is_signed;
+    } encodings[] = {
+        [VKAO_NORMALS_FROM_DEPTH] = {"FROM_DEPTH", 0, false},
+        [VKAO_NORMALS_XYZ_SNORM] = {"XYZ_SNORM", 3, true},
+        [VKAO_NORMALS_XYZ_UNORM] = {"XYZ_UNORM", 3, false},
+        [VKAO_NORMALS_OCT_SNORM] = {"OCT_SNORM", 2, true},
+        [VKAO_NORMALS_OCT_UNORM] = {"OCT_UNORM", 2, false},
+    };
+    const vkao_effect_info *e = &program->settings;
+    const bool is_bent = i == VKAO_RESOURCE_BENT_NORMALS;
+    const vkao_normal_encoding encoding = is_bent ? e->bent_encoding : e->normal_encoding;
+    const uint32_t has = vkao_format_components(image->format),
+                   want = encodings[encoding].components;
+    const char *member = is_bent ? "bent_encoding" : "normal_encoding";
+    char is[VKAO_NAME_BYTES];
+    if (has < want)
+        return vkao_refuse(&program->ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "%s.format is %s of %u components, but effect.%s is %s, of %u",
+                           slots[i].name, vkao_format_name(image->format, is), has, member,
+                           encodings[encoding].name, want);
+    if (encodings[encoding].is_signed && !vkao_format_is_signed(image->format))
+        return vkao_refuse(&program->ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "%s.format is %s without a sign, but effect.%s is %s; want %.4sUNORM",
+                           slots[i].name, vkao_format_name(image->format, is), member,
+                           encodings[encoding].name, encodings[encoding].name);
+    return VKAO_SUCCESS;
+}
+
 static vkao_result check_slot(const struct vkao_program *program, uint32_t i,
                               const vkao_image *image, bool reads, bool writes)
 {
@@ -99,6 +134,11 @@ static vkao_result check_slot(const struct vkao_program *program, uint32_t i,
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s.layout is %s, want %s", name,
                            vkao_layout_name(image->layout, other),
                            writes ? "GENERAL" : "a read-only one or GENERAL");
+    if ((reads || writes) && (i == VKAO_RESOURCE_NORMALS || i == VKAO_RESOURCE_BENT_NORMALS)) {
+        const vkao_result result = check_encoding(program, i, image);
+        if (result != VKAO_SUCCESS)
+            return result;
+    }
     const VkFormatFeatureFlags want = (reads ? VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT : 0u) |
                                       (writes ? VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT : 0u);
     if (!vkao_format_can(ctx, image->format, want))

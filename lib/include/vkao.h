@@ -424,7 +424,8 @@ typedef struct vkao_images {
     uint32_t padding; /* zero */
     /* depth-aspect view, or a one-component float format: see vkao_depth_encoding */
     vkao_image depth;
-    vkao_image normals; /* optional: see vkao_normal_encoding */
+    /* optional: see vkao_normal_encoding, whose components and sign the format has to have */
+    vkao_image normals;
     /* R8/R16 unorm, R16/R32 float. Input of BLUR without SSAO; see effect.noisy_ao */
     vkao_image ao_noisy;
     /* as ao_noisy; unused = scratch if COMPOSITE reads it. Input if only COMPOSITE */
@@ -434,7 +435,8 @@ typedef struct vkao_images {
     vkao_image direct; /* direct light, INDIRECT only; as color */
     /* storage-capable colour format; may be color's image if both are GENERAL */
     vkao_image output;
-    /* Mean unoccluded direction in the space of the normals, of length 1: see effect.bent_normals.
+    /* Mean unoccluded direction in the space of the normals, of length 1: see effect.bent_normals;
+     * of a format that can hold effect.bent_encoding, by default the normals' or XYZ_SNORM.
      * Half floats may be cut off by the driver, which leaves .9996 of it in the mean. Background is
      * the zero vector, which is stored as xyz 0 (UNORM .5). Octahedral codes have none: there it is
      * (0,0), the code of +z. Input if only COMPOSITE. */

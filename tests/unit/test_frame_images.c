@@ -305,13 +305,54 @@ static void formats_fit_their_slots(void **state)
     expect_formats(ao, COUNT(ao), AO_NOISY, true);
     expect_formats(not_ao, COUNT(not_ao), AO, false);
     expect_formats(not_ao, COUNT(not_ao), AO_NOISY, false);
-    expect_formats(colors, COUNT(colors), NORMALS, true);
     expect_formats(colors, COUNT(colors), COLOR, true);
     expect_formats(colors, COUNT(colors), DIRECT, true);
     expect_formats(colors, COUNT(colors), OUTPUT, true);
-    expect_formats(colors, COUNT(colors), BENT_NORMALS, true);
     expect_formats(colors, COUNT(colors), ALBEDO, true);
     expect_formats(colors, COUNT(colors), SPECULAR, true);
+}
+
+/* Given and bent normals, which are of the same encoding here. */
+static void normals_fit_their_encoding(void **state)
+{
+    (void)state;
+    static const VkFormat formats[] = {
+        VK_FORMAT_R8_UNORM,          VK_FORMAT_R16_SFLOAT,
+        VK_FORMAT_BC4_SNORM_BLOCK,   VK_FORMAT_R16G16_SNORM,
+        VK_FORMAT_R32G32_SFLOAT,     VK_FORMAT_R8G8_UNORM,
+        VK_FORMAT_BC5_UNORM_BLOCK,   VK_FORMAT_EAC_R11G11_SNORM_BLOCK,
+        VK_FORMAT_R8G8B8A8_UNORM,    VK_FORMAT_A2B10G10R10_UNORM_PACK32,
+        VK_FORMAT_R8G8B8A8_SRGB,     VK_FORMAT_B10G11R11_UFLOAT_PACK32,
+        VK_FORMAT_BC7_UNORM_BLOCK,   VK_FORMAT_R16G16B16_SFLOAT,
+        VK_FORMAT_R8G8B8A8_SNORM,    VK_FORMAT_A2B10G10R10_SNORM_PACK32,
+        VK_FORMAT_BC6H_SFLOAT_BLOCK, VK_FORMAT_R32G32B32A32_SFLOAT,
+    };
+    /* Of each format: y it fits, c it has too few components, s it has no sign. */
+    static const struct {
+        vkao_normal_encoding encoding;
+        const char *fits, *name, *instead;
+    } rows[] = {
+        {VKAO_NORMALS_XYZ_SNORM, "ccccccccsssssyyyyy", "XYZ_SNORM", "XYZ_UNORM"},
+        {VKAO_NORMALS_XYZ_UNORM, "ccccccccyyyyyyyyyy", "XYZ_UNORM", ""},
+        {VKAO_NORMALS_OCT_SNORM, "cccyyssysssssyyyyy", "OCT_SNORM", "OCT_UNORM"},
+        {VKAO_NORMALS_OCT_UNORM, "cccyyyyyyyyyyyyyyy", "OCT_UNORM", ""},
+    };
+    for (size_t i = 0; i < COUNT(rows) * COUNT(formats) * 2; ++i) {
+        const size_t row = i / 2 / COUNT(formats), format = i / 2 % COUNT(formats);
+        const size_t slot = i % 2 ? BENT_NORMALS : NORMALS;
+        const char fits = rows[row].fits[format];
+        struct world w;
+        world_open(&w);
+        set_case(&w, 2 * (VKAO_STAGE_SSAO | VKAO_STAGE_BLUR) + 1);
+        w.effect_info.normal_encoding = rows[row].encoding;
+        w.images.normals.format = w.images.bent_normals.format = VK_FORMAT_R32G32B32A32_SFLOAT;
+        world_slot(&w.images, slot)->format = formats[format];
+        char name[64];
+        snprintf(name, sizeof name, "%s.format", world_slot_names[slot]);
+        const vkao_result want = fits == 'y' ? VKAO_SUCCESS : VKAO_ERROR_INVALID_ARGUMENT;
+        expect_result(&w, want, name, fits == 's' ? rows[row].instead : rows[row].name);
+        world_close(&w);
+    }
 }
 
 static void messages_name_formats_and_layouts(void **state)
@@ -540,6 +581,7 @@ int main(void)
         cmocka_unit_test(device_abilities_decide_about_formats),
         cmocka_unit_test(integer_formats_fit_no_slot),
         cmocka_unit_test(formats_fit_their_slots),
+        cmocka_unit_test(normals_fit_their_encoding),
         cmocka_unit_test(messages_name_formats_and_layouts),
         cmocka_unit_test(view_without_format_is_refused),
         cmocka_unit_test(padding_is_refused),
