@@ -112,14 +112,26 @@ static vkao_result read_projection(const struct vkao_logger *log, const vkao_vie
                            "view.projection[8], [9] are %g, %g, want 0 in an orthographic matrix: "
                            "oblique projections are not supported",
                            (double)m[8], (double)m[9]);
+    const double axis = view->axis == VKAO_VIEW_AXIS_NEGATIVE_Z ? -1.0 : 1.0;
+    if (perspective && view->axis && axis * p->forward < 0.0)
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.axis is %d, but view.projection looks along %cz ([11] is %g): "
+                           "leave it FROM_MATRIX in perspective",
+                           (int)view->axis, p->forward < 0.0 ? '-' : '+', (double)m[11]);
     return orthographic ? orthographic_forward(log, view, p) : VKAO_SUCCESS;
+}
+
+/* All zero stands for a default; a place without a size is one that was forgotten. */
+static bool is_none(VkRect2D given)
+{
+    return !given.extent.width && !given.extent.height && !given.offset.x && !given.offset.y;
 }
 
 static vkao_result resolve_rect(const struct vkao_logger *log, const char *name, VkRect2D given,
                                 struct vkao_rect bounds, struct vkao_rect *out)
 {
     *out = bounds;
-    if (given.extent.width == 0 && given.extent.height == 0)
+    if (is_none(given))
         return VKAO_SUCCESS;
     int64_t x1 = (int64_t)given.offset.x + given.extent.width,
             y1 = (int64_t)given.offset.y + given.extent.height;
@@ -249,10 +261,12 @@ static vkao_result check_members(const struct vkao_logger *log, const vkao_view 
     if ((uint32_t)view->axis > VKAO_VIEW_AXIS_POSITIVE_Z)
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "view.axis is %d, want 0..%d",
                            (int)view->axis, (int)VKAO_VIEW_AXIS_POSITIVE_Z);
-    if ((view->viewport.extent.width == 0) != (view->viewport.extent.height == 0))
+    const VkRect2D *viewport = &view->viewport;
+    if (!is_none(*viewport) && (!viewport->extent.width || !viewport->extent.height))
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "view.viewport is %ux%u, want both 0 or none",
-                           view->viewport.extent.width, view->viewport.extent.height);
+                           "view.viewport is %ux%u at (%d,%d), want a size, or all 0",
+                           viewport->extent.width, viewport->extent.height, viewport->offset.x,
+                           viewport->offset.y);
     if (view->viewport.extent.width > INT32_MAX || view->viewport.extent.height > INT32_MAX)
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "view.viewport is %dx%d, want a positive size: for a viewport of "

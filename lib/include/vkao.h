@@ -516,15 +516,15 @@ typedef enum vkao_view_axis {
  * farther than 1e15 scene units. */
 typedef struct vkao_view {
     uint32_t struct_size;
-    vkao_view_axis axis; /* orthographic matrices only; else FROM_MATRIX */
-    /* Texels that hold depth and normals; nothing outside is read. 0x0 = the whole image. For
+    vkao_view_axis axis; /* of orthographic matrices; must not contradict others */
+    /* Texels that hold depth and normals; nothing outside is read. All 0 = the whole image. For
      * dynamic resolution set this alone: viewport and rect follow. */
     VkRect2D valid;
-    /* Texels that NDC [-1,1] spans; may reach beyond the image. 0x0 = valid. Set it when the
+    /* Texels that NDC [-1,1] spans; may reach beyond the image. All 0 = valid. Set it when the
      * projection belongs to another rectangle than valid: overscan, a cropped data window, one view
      * of an atlas. */
     VkRect2D viewport;
-    /* Texels to write, inside valid. 0x0 = valid. Use it to split work; the parts add up to the
+    /* Texels to write, inside valid. All 0 = valid. Use it to split work; the parts add up to the
      * whole. */
     VkRect2D rect;
     /* View space to Vulkan clip space, unjittered. Perspective or orthographic as effect.projection
@@ -533,10 +533,10 @@ typedef struct vkao_view {
      * perspective at distance 1. */
     float projection[16];
     /* Rotation of stored normals into view space, m[column * 3 + row]. Identity if they are
-     * view-space. May scale. Normals need not be unit length. One that faces away from the eye is
-     * turned round if it is the back of its surface that is seen. If not, as where interpolation
-     * over a mesh has carried it past the outline, or if it is shorter than 0.5 or not finite, the
-     * one that the neighbours' depths give takes its place. */
+     * view-space. May scale; all 0 = as if there were none. Normals need not be unit length. One
+     * that faces away from the eye is turned round if it is the back of its surface that is seen.
+     * If not, as where interpolation over a mesh has carried it past the outline, or if it is
+     * shorter than 0.5 or not finite, the one that the neighbours' depths give takes its place. */
     float normal_to_view[9];
     uint32_t padding; /* zero */
 } vkao_view;

@@ -224,6 +224,9 @@ static void rectangles_are_refused_and_named(void **state)
          {{5, 5}, {UINT32_MAX - 4, 1}},
          "view.rect",
          "4294967291x1"},
+        {{{8, 4}, {0, 0}}, {{0, 0}, {0, 0}}, {{0, 0}, {0, 0}}, "view.valid", "0x0 at (8,4)"},
+        {{{0, 0}, {0, 0}}, {{0, 0}, {0, 0}}, {{0, 7}, {0, 0}}, "view.rect", "0x0 at (0,7)"},
+        {{{0, 0}, {0, 0}}, {{-9, 0}, {0, 0}}, {{0, 0}, {0, 0}}, "view.viewport", "0x0 at (-9,0)"},
         {{{0, 0}, {0, 0}}, {{0, 0}, {10, 0}}, {{0, 0}, {0, 0}}, "view.viewport", "10x0"},
         {{{0, 0}, {0, 0}}, {{0, 0}, {0, 10}}, {{0, 0}, {0, 0}}, "view.viewport", "0x10"},
     };
@@ -238,6 +241,18 @@ static void rectangles_are_refused_and_named(void **state)
         else
             expect_all_accept(&w, "rectangles");
     }
+    world_close(&w);
+}
+
+static void axis_that_contradicts_the_matrix_is_refused(void **state)
+{
+    (void)state;
+    struct world w;
+    world_open_frame(&w, VKAO_STAGE_ALL); /* which looks along -z */
+    w.view.axis = VKAO_VIEW_AXIS_NEGATIVE_Z;
+    expect_all_accept(&w, "view.axis");
+    w.view.axis = VKAO_VIEW_AXIS_POSITIVE_Z;
+    expect_all_refuse(&w, "view.axis", "-z");
     world_close(&w);
 }
 
@@ -312,6 +327,7 @@ int main(void)
         cmocka_unit_test(default_view_wants_a_projection),
         cmocka_unit_test(ambiguous_orthographic_view_wants_an_axis),
         cmocka_unit_test(rectangles_are_refused_and_named),
+        cmocka_unit_test(axis_that_contradicts_the_matrix_is_refused),
         cmocka_unit_test(projection_of_the_other_kind_is_refused),
         cmocka_unit_test(composite_alone_needs_no_projection),
         cmocka_unit_test(composite_with_specular_light_needs_a_projection),
