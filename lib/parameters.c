@@ -400,8 +400,8 @@ static vkao_result check_combination(const struct vkao_logger *log, const vkao_e
                composite = e->stages & VKAO_STAGE_COMPOSITE;
     const bool lit = e->composite_mode == VKAO_COMPOSITE_MULTIPLY ||
                      e->composite_mode == VKAO_COMPOSITE_INDIRECT;
-    const bool reads_bent = e->composite_mode == VKAO_COMPOSITE_BENT_NORMALS ||
-                            (lit && e->specular == VKAO_SPECULAR_FROM_BENT);
+    const bool shows_bent = e->composite_mode == VKAO_COMPOSITE_BENT_NORMALS,
+               has_bent = e->stages == VKAO_STAGE_COMPOSITE || e->bent_normals;
     const bool has_method = !ssao || methods[e->method].has_bent_normals,
                is_layered =
                    ssao && (e->method == VKAO_SSAO_VBAO || e->method == VKAO_SSAO_RAYMARCH);
@@ -431,8 +431,10 @@ static vkao_result check_combination(const struct vkao_logger *log, const vkao_e
              (!both || e->half_resolution || e->bent_normals),
          "composite_mode", (uint32_t)e->composite_mode,
          "the stage BLUR at full resolution, without bent_normals"},
-        {composite && reads_bent && e->stages != VKAO_STAGE_COMPOSITE && !e->bent_normals,
-         "composite_mode", (uint32_t)e->composite_mode, "bent_normals for it"},
+        {composite && shows_bent && !has_bent, "composite_mode", (uint32_t)e->composite_mode,
+         "bent_normals for it"},
+        {composite && lit && e->specular == VKAO_SPECULAR_FROM_BENT && !has_bent, "specular",
+         (uint32_t)e->specular, "bent_normals for it"},
         {composite && lit && e->specular && !e->normal_encoding, "specular", (uint32_t)e->specular,
          "images.normals and their normal_encoding"},
         {e->depth_bits && e->depth_bits != 16 && e->depth_bits != 24 && e->depth_bits != 32,

@@ -269,6 +269,7 @@ static void combinations_that_make_no_sense_are_refused_and_named(void **state)
         {VKAO_STAGE_ALL, offsetof(vkao_effect_info, composite_mode), VKAO_COMPOSITE_BENT_NORMALS,
          "composite_mode"},
         {VKAO_STAGE_ALL, offsetof(vkao_effect_info, specular), VKAO_SPECULAR_FROM_AO, "specular"},
+        {VKAO_STAGE_ALL, offsetof(vkao_effect_info, specular), VKAO_SPECULAR_FROM_BENT, "specular"},
         {VKAO_STAGE_ALL, offsetof(vkao_effect_info, depth_bits), 17, "depth_bits"},
         {VKAO_STAGE_ALL, offsetof(vkao_effect_info, ao_format), VK_FORMAT_R8G8B8A8_UNORM,
          "ao_format"},
