@@ -73,6 +73,10 @@ static vkao_result bind_scratch(vkao_frame *frame, const vkao_frame_info *info,
                                 const VkMemoryRequirements *need)
 {
     const vkao_context *ctx = frame->ctx;
+    if (!info->scratch_memory && info->scratch_offset)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "frame.scratch_offset is %llu, want 0 without scratch_memory",
+                           (unsigned long long)info->scratch_offset);
     if (info->scratch_memory) {
         if (info->scratch_offset % need->alignment)
             return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,

@@ -470,7 +470,7 @@ typedef struct vkao_frame_info {
      * vkao_frame_scratch(), kept until destroy. Frames on one queue may share it, and you may alias
      * it outside vkao recordings. */
     VkDeviceMemory scratch_memory; /* VK_NULL_HANDLE = the library allocates exactly one block */
-    VkDeviceSize scratch_offset;   /* bytes; multiple of the queried alignment */
+    VkDeviceSize scratch_offset;   /* bytes; multiple of the queried alignment; 0 without memory */
 } vkao_frame_info;
 
 VKAO_DEFAULT(vkao_frame_info)

@@ -284,6 +284,22 @@ static void misaligned_scratch_offset_is_refused(void **state)
     }
 }
 
+/* Memory that was forgotten. */
+static void scratch_offset_without_memory_is_refused(void **state)
+{
+    (void)state;
+    struct world w;
+    open_for(&w, VKAO_STAGE_ALL, true);
+    w.frame_info.scratch_offset = 256;
+    size_t before = fake_live(&w.fake);
+    expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT,
+                   vkao_frame_create(w.effect, &w.frame_info, &w.frame), "frame.scratch_offset",
+                   " 256, want 0 without scratch_memory");
+    assert_null(w.frame);
+    assert_int_equal(fake_live(&w.fake), before);
+    world_close(&w);
+}
+
 static void memory_is_device_local_or_unsupported(void **state)
 {
     (void)state;
@@ -434,6 +450,7 @@ int main(void)
         cmocka_unit_test(scratch_whose_lifetimes_meet_does_not_overlap),
         cmocka_unit_test(callers_scratch_is_used_at_its_offset_and_not_freed),
         cmocka_unit_test(misaligned_scratch_offset_is_refused),
+        cmocka_unit_test(scratch_offset_without_memory_is_refused),
         cmocka_unit_test(memory_is_device_local_or_unsupported),
         cmocka_unit_test(scratch_falls_back_to_formats_that_can_be_stored),
         cmocka_unit_test(extent_is_checked_against_the_device),
