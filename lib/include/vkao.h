@@ -13,12 +13,13 @@
  *
  * Ambient occlusion is stored as visibility in [0,1]: 1 = open, 0 = fully occluded. Before the blur
  * it is an estimate that may lie on both sides of that, in ao_noisy and in the ao of effects
- * without BLUR; it is right as a mean. Nothing that vkao writes is NaN or infinite, whatever depth,
- * normals and ao_noisy hold; colours are the caller's, see vkao_composite_mode. Lengths are scene
- * units of the projection matrix unless a name says texels. Matrices are column-major, m[column * 4
- * + row], as in GLSL. Texel (0,0) is the image's first; NDC (-1,-1) is the corner of that texel in
- * a full-image viewport, as when Vulkan rasterises with a positive viewport height. An engine with
- * a negative viewport height negates row 1 of the matrix: m[1], m[5], m[9], m[13].
+ * without BLUR; it is right as a mean, and UNORM formats clamp it to [0,1]. Nothing that vkao
+ * writes is NaN or infinite, whatever depth, normals and ao_noisy hold; colours are the caller's,
+ * see vkao_composite_mode. Lengths are scene units of the projection matrix unless a name says
+ * texels. Matrices are column-major, m[column * 4 + row], as in GLSL. Texel (0,0) is the image's
+ * first; NDC (-1,-1) is the corner of that texel in a full-image viewport, as when Vulkan
+ * rasterises with a positive viewport height. An engine with a negative viewport height negates row
+ * 1 of the matrix: m[1], m[5], m[9], m[13].
  *
  * Synchronization contract, the same for every vkao_cmd_* function:
  *  - Before: images that a stage reads are visible to COMPUTE_SHADER / SHADER_READ in their
@@ -130,7 +131,9 @@ typedef enum vkao_ssao_method {
     /* Points in the full sphere (Mittring 2007). Two forms, see vkao_sphere_form. Needs no
      * normals. */
     VKAO_SSAO_SPHERE = 0,
-    /* Cosine-distributed points in the normal-oriented hemisphere (Filion and McNaughton 2008). */
+    /* Cosine-distributed points in the normal-oriented hemisphere (Filion and McNaughton 2008).
+     * Those that fall beside the image count as open: with a radius as wide as what the image shows
+     * AO gets lighter, and near 1 with twice that, where horizons stay dark. */
     VKAO_SSAO_HEMISPHERE = 1,
     /* Horizons, true-horizon form (Bavoil et al. 2008). */
     VKAO_SSAO_HBAO = 2,
@@ -399,10 +402,10 @@ VKAO_API void vkao_effect_destroy(vkao_effect *effect);
 /* --- Frame: the images that one frame in flight works on --- */
 
 /* A caller-owned image as the library sees it: a 2D view with one mip level, one array layer and
- * one sample. Layered or stereo images need one view and one frame per layer. Multisampled depth is
- * resolved first: sample 0, MIN or MAX, never the average, which is the depth of nothing. sRGB
- * images are written through a UNORM view, for which the image needs MUTABLE_FORMAT. All zero =
- * slot not used. */
+ * one sample, of any level and layer of its image. Layered or stereo images need one view and one
+ * frame per layer. Multisampled depth is resolved first: sample 0, MIN or MAX, never the average,
+ * which is the depth of nothing. sRGB images are written through a UNORM view, for which the image
+ * needs MUTABLE_FORMAT. All zero = slot not used. */
 typedef struct vkao_image {
     VkImageView view;
     /* Read slots: SHADER_READ_ONLY_OPTIMAL, DEPTH_STENCIL_READ_ONLY_OPTIMAL,
@@ -412,7 +415,9 @@ typedef struct vkao_image {
     /* Optional, of `ao` only: the image behind the view, if the view is of mip level 0 and array
      * layer 0 and usage has TRANSFER_DST. The library then copies rows into it where that is
      * faster, which takes a CPU a third of BLUR's time. Waiting for the stage's shader writes waits
-     * for the copies too. */
+     * for the copies too. Leave it out for views of other levels and layers. Validation layers
+     * whose messages of type PERFORMANCE are heard say of each copy that GENERAL is not the best
+     * layout to copy to. That makes no difference to a CPU, and on GPUs nothing is copied. */
     VkImage image;
 } vkao_image;
 
@@ -546,7 +551,8 @@ VKAO_DEFAULT(vkao_view)
 
 typedef struct vkao_params {
     uint32_t struct_size;
-    /* any; 0 = the static pattern; a frame counter if something temporal follows */
+    /* any; 0 = the static pattern; a frame counter if something temporal follows. The pattern lies
+     * still in the image, wherever valid is: views of an atlas differ by noise */
     uint32_t noise_index;
     float radius; /* (0,inf) scene units that an occluder reaches. Default 0.5 */
     /* [0,1] fraction of radius by which the scene must stand in front of a point to block it; hides
