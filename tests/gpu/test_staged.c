@@ -235,6 +235,95 @@ static void waiting_for_shader_writes_waits_for_the_copy(void **state)
     }
 }
 
+/* Level 1 and layer 2 of an image, GENERAL, of this size. */
+struct deep_image {
+    VkImage image;
+    VkImageView view;
+    VkDeviceMemory memory;
+};
+enum { LEVEL = 1, LAYER = 2 };
+
+static struct deep_image make_deep(VkFormat format, uint32_t width, uint32_t height)
+{
+    struct deep_image out;
+    VkMemoryRequirements need;
+    const VkDevice device = fixture.gpu.device;
+    const VkImageSubresourceRange range = {VK_IMAGE_ASPECT_COLOR_BIT, LEVEL, 1, LAYER, 1};
+    const VkImageCreateInfo info = {
+        .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+        .imageType = VK_IMAGE_TYPE_2D,
+        .format = format,
+        .extent = {width << LEVEL, height << LEVEL, 1},
+        .mipLevels = LEVEL + 1,
+        .arrayLayers = LAYER + 1,
+        .samples = VK_SAMPLE_COUNT_1_BIT,
+        .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT,
+    };
+    assert_int_equal(vkCreateImage(device, &info, NULL, &out.image), VK_SUCCESS);
+    vkGetImageMemoryRequirements(device, out.image, &need);
+    out.memory = fixture_allocate(&need, need.size);
+    assert_int_equal(vkBindImageMemory(device, out.image, out.memory, 0), VK_SUCCESS);
+    assert_int_equal(vkCreateImageView(device,
+                                       &(VkImageViewCreateInfo){
+                                           .sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
+                                           .image = out.image,
+                                           .viewType = VK_IMAGE_VIEW_TYPE_2D,
+                                           .format = format,
+                                           .subresourceRange = range,
+                                       },
+                                       NULL, &out.view),
+                     VK_SUCCESS);
+    VkCommandBuffer cmd = gpu_begin(&fixture.gpu, &fixture.error);
+    vkCmdPipelineBarrier(cmd, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
+                         VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 0, NULL, 0, NULL, 1,
+                         &(VkImageMemoryBarrier){
+                             .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+                             .dstAccessMask = VK_ACCESS_SHADER_WRITE_BIT,
+                             .newLayout = VK_IMAGE_LAYOUT_GENERAL,
+                             .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                             .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
+                             .image = out.image,
+                             .subresourceRange = range,
+                         });
+    check(gpu_submit(&fixture.gpu, cmd, &fixture.error));
+    return out;
+}
+
+/* Without ao.image a view may be of any level and layer. */
+static void view_of_a_level_and_a_layer_is_written(void **state)
+{
+    (void)state;
+    struct picture p;
+    struct picture_gpu g;
+    struct gpu_buffer read;
+    make(&p, 96, 70, VK_FORMAT_R32_SFLOAT, false);
+    p.staged = false;
+    picture_run(&p);
+    double *plain = take_ao(&p);
+    picture_open(&p, &g);
+    struct deep_image deep = make_deep(VK_FORMAT_R32_SFLOAT, p.width, p.height);
+    vkao_images images = g.slots;
+    images.ao.view = deep.view;
+    check_vkao(vkao_frame_update(g.frame, &images));
+    check(gpu_buffer_create(&fixture.gpu, picture_texels(&p) * sizeof(float),
+                            VK_BUFFER_USAGE_TRANSFER_DST_BIT, &read, &fixture.error));
+    VkCommandBuffer cmd = gpu_begin(&fixture.gpu, &fixture.error);
+    picture_record(&p, &g, cmd);
+    record_read_back(&p, deep.image, LEVEL, LAYER, cmd, read.buffer);
+    check(gpu_submit(&fixture.gpu, cmd, &fixture.error));
+    const float *texels = read.mapped;
+    for (size_t i = 0; i < picture_texels(&p); ++i)
+        p.values[SLOT_AO][i] = (double)texels[i];
+    check_equal("level 1, layer 2", p.values[SLOT_AO], plain, picture_texels(&p));
+    gpu_buffer_destroy(&fixture.gpu, &read);
+    picture_close(&g);
+    vkDestroyImageView(fixture.gpu.device, deep.view, NULL);
+    vkDestroyImage(fixture.gpu.device, deep.image, NULL);
+    vkFreeMemory(fixture.gpu.device, deep.memory, NULL);
+    free(plain);
+    picture_free(&p);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -243,6 +332,7 @@ int main(void)
         gpu_test(rect_leaves_exterior_untouched),
         gpu_test(composite_reads_the_copy),
         gpu_test(waiting_for_shader_writes_waits_for_the_copy),
+        gpu_test(view_of_a_level_and_a_layer_is_written),
     };
     return fixture_run(tests);
 }
