@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* --- Parameters --- */
@@ -105,9 +106,9 @@ static void presets(struct viewer *v)
             setting_apply_preset(&v->settings[v->active], (vkao_quality)q);
             viewer_mark_stale(v);
         }
+        ui_help("preset: settings by quality");
         ui_same_line();
     }
-    ui_text("preset");
 }
 
 /* --- Files, views, sides --- */
@@ -258,11 +259,16 @@ static void side_rows(struct viewer *v)
     ui_same_line();
     if (ui_radio(b, v->active == SIDE_B))
         v->active = SIDE_B;
-    ui_same_line();
-    if (ui_button(v->active == SIDE_A ? "copy to B" : "copy to A")) {
+}
+
+/* On a line with the presets: the names of two methods fill one of their own. */
+static void copy_and_wipe(struct viewer *v)
+{
+    if (ui_button(v->active == SIDE_A ? "to B" : "to A")) {
         v->settings[v->active == SIDE_A ? SIDE_B : SIDE_A] = v->settings[v->active];
         viewer_mark_stale(v);
     }
+    ui_help(v->active == SIDE_A ? "gives B the settings of A" : "gives A the settings of B");
     ui_same_line();
     bool wipe = v->wipe;
     if (ui_checkbox("wipe", &wipe)) {
@@ -298,12 +304,28 @@ static void time_rows(const struct viewer *v)
             time_row(v, (enum side)s);
 }
 
+/* With as many digits as the panel has room for. */
+static void position_row(const double p[3])
+{
+    enum { MOST_LETTERS = 41 };
+    char text[128];
+    int digits = 6;
+    do
+        snprintf(text, sizeof text, "position %10.*g %10.*g %10.*g", digits, p[0], digits, p[1],
+                 digits, p[2]);
+    while (strlen(text) > MOST_LETTERS && --digits > 2);
+    ui_text("%s", text);
+}
+
 static void probe_rows(const struct viewer *v)
 {
     const struct probe_result *r = &v->probed;
     const VkOffset2D offset = viewer_image_offset(v);
+    /* Always three lines: what is below stays where it is. */
     if (!r->valid) {
-        ui_paragraph(UI_DIM, "what is under the mouse shows here\n\n ");
+        ui_paragraph(UI_DIM, "what is under the mouse shows here");
+        ui_text(" ");
+        ui_text(" ");
         return;
     }
     if (v->wipe)
@@ -312,11 +334,12 @@ static void probe_rows(const struct viewer *v)
     else
         ui_text("texel %d, %d   AO %.4f", r->x - offset.x, r->y - offset.y, (double)r->ao[0]);
     if (r->background) {
-        ui_text("background\n ");
+        ui_text("background");
+        ui_text(" ");
         return;
     }
-    ui_text("position %9.4f %9.4f %9.4f", r->position[0], r->position[1], r->position[2]);
-    ui_text("%s %9.4f %9.4f %9.4f", r->normal_is_derived ? "from z  " : "normal  ", r->normal[0],
+    position_row(r->position);
+    ui_text("%s %10.4f %10.4f %10.4f", r->normal_is_derived ? "from z  " : "normal  ", r->normal[0],
             r->normal[1], r->normal[2]);
 }
 
@@ -400,33 +423,65 @@ static void save_rows(struct viewer *v)
 
 /* --- On the picture --- */
 
+/* Why a side shows nothing; NULL if it shows something. */
+static const char *missing_of(const struct viewer *v, enum side side)
+{
+    if (!viewer_has_image(v))
+        return "drop an EXR file here, or press Ctrl+O";
+    if (v->view == VIEW_BENT && !method_has_bent(v->settings[side].effect.method))
+        return "bent normals come with vbao, gtao and raymarch";
+    if (v->view == VIEW_DIFFERENCE && v->live)
+        return "a live scene has no reference";
+    if (v->view == VIEW_DIFFERENCE && !v->source.now.reference.image)
+        return "no reference: drop one here, or give --reference";
+    return NULL;
+}
+
+/* The letter alone where there is no room for more. */
+static void side_label(const struct viewer *v, enum side side, float from, float to)
+{
+    const enum ui_place place = side == SIDE_A ? UI_LEFT_OF : UI_RIGHT_OF;
+    char title[64];
+    side_title(v, side, title, sizeof title);
+    if (!ui_label(from, to, 0, place, title))
+        ui_label(from, to, 0, place, side == SIDE_A ? "A" : "B");
+}
+
+/* The panel says it otherwise; there is no room for all of what went well. */
+static void status_label(const struct viewer *v, float from, float to)
+{
+    char text[sizeof v->status.text];
+    if (!v->status.is_new || v->show_panel || !v->status.text[0])
+        return;
+    memcpy(text, v->status.text, sizeof text);
+    if (!v->status.bad)
+        text[strcspn(text, "\n")] = '\0';
+    ui_label(from, to, (float)v->swapchain.extent.height, UI_ABOVE, text);
+}
+
 static void labels(const struct viewer *v)
 {
     const VkRect2D area = viewer_area(v);
-    const float middle_x = (float)area.offset.x + (float)area.extent.width / 2;
-    const float middle_y = (float)area.extent.height / 2;
-    const char *missing = NULL;
-    if (!viewer_has_image(v))
-        missing = "drop an EXR file here, or press Ctrl+O";
-    else if (v->view == VIEW_BENT && !method_has_bent(v->settings[v->active].effect.method))
-        missing = "bent normals come with vbao, gtao and raymarch";
-    else if (v->view == VIEW_DIFFERENCE && v->live)
-        missing = "a live scene has no reference";
-    else if (v->view == VIEW_DIFFERENCE && !v->source.now.reference.image)
-        missing = "no reference: drop one here, or give --reference";
-    if (missing)
-        ui_label(middle_x, middle_y, UI_AROUND, missing);
-    /* The panel says it otherwise. */
-    if (v->status.bad && v->status.is_new && !v->show_panel)
-        ui_label(0, (float)area.extent.height, UI_ABOVE, v->status.text);
-    if (!v->wipe || !v->show_panel)
+    const float left = (float)area.offset.x, right = left + (float)area.extent.width;
+    const float middle = (float)area.extent.height / 2;
+    const char *a = missing_of(v, SIDE_A), *b = missing_of(v, SIDE_B);
+    status_label(v, left, right);
+    if (!v->wipe || a == b) {
+        const char *missing = v->active == SIDE_A ? a : b;
+        if (missing)
+            ui_label(left, right, middle, UI_AROUND, missing);
+    }
+    if (!v->wipe)
         return;
-    char title[64];
     const float line = (float)floor(v->wipe_at * v->swapchain.extent.width);
-    side_title(v, SIDE_A, title, sizeof title);
-    ui_label(line, 0, UI_LEFT_OF, title);
-    side_title(v, SIDE_B, title, sizeof title);
-    ui_label(line + 1, 0, UI_RIGHT_OF, title);
+    if (a && a != b)
+        ui_label(left, line, middle, UI_AROUND, a);
+    if (b && a != b)
+        ui_label(line + 1, right, middle, UI_AROUND, b);
+    if (!v->show_panel)
+        return;
+    side_label(v, SIDE_A, left, line);
+    side_label(v, SIDE_B, fmaxf(line + 1, left), right);
 }
 
 /* --- The list of files --- */
@@ -445,12 +500,16 @@ static void file_list(struct viewer *v)
     const size_t first = middle < most ? middle : most;
     bool is_clicked = false;
     ui_begin_box((float)window.width, (float)window.height);
-    ui_paragraph(UI_PLAIN, strcmp(b->folder, ".") == 0 ? "./" : b->folder);
+    char *whole = realpath(b->folder, NULL);
+    ui_paragraph(UI_PLAIN, whole ? whole : b->folder);
+    free(whole);
     ui_text("find: %s_", b->filter);
     for (size_t i = first; i < first + rows && i < b->shown_count; i++) {
         const struct browser_entry *entry = &b->entries[b->shown[i]];
         char row[300];
-        snprintf(row, sizeof row, "%s%s##%zu", entry->name, entry->is_folder ? "/" : "", i);
+        /* Whatever lies under the mouse is brighter than what Enter opens. */
+        snprintf(row, sizeof row, "%s%s%s##%zu", i == b->at ? "> " : "  ", entry->name,
+                 entry->is_folder ? "/" : "", i);
         if (ui_choice(row, i == b->at, true)) {
             v->browser.at = i;
             is_clicked = true;
@@ -487,6 +546,7 @@ void viewer_panel(struct viewer *viewer)
     ui_separator();
     side_rows(v);
     presets(v);
+    copy_and_wipe(v);
     ui_begin_scroll();
     param_sections(v);
     ui_end_scroll();
@@ -496,5 +556,6 @@ void viewer_panel(struct viewer *viewer)
     probe_rows(v);
     ui_separator();
     save_rows(v);
-    ui_end_panel();
+    if (!ui_end_panel())
+        viewer_draw_more(v);
 }

@@ -528,7 +528,7 @@ bool viewer_save(struct viewer *viewer, struct tool_error *err)
               (v->live ? save_live_values(v, names, err) : save_file_values(v, names, err)) &&
               write_script(v, names, command.data, unsaid.data, err);
     if (ok) {
-        viewer_say(v, "saved %s, .exr and .png:\n%s", names->script, command.data);
+        viewer_say(v, "saved %s, .exr and .png\n%s", names->script, command.data);
         ok = report_text(command.data, err);
         printf("\n");
         fflush(stdout);

@@ -20,6 +20,7 @@ void viewer_say(struct viewer *viewer, const char *format, ...)
     vsnprintf(viewer->status.text, sizeof viewer->status.text, format, args);
     va_end(args);
     viewer->status.bad = false;
+    viewer->status.is_new = true;
 }
 
 void viewer_fail(struct viewer *viewer, const struct tool_error *err)
@@ -35,7 +36,7 @@ void viewer_say_error(struct viewer *viewer, const struct tool_error *err)
         return;
     }
     viewer_say(viewer, "%s%s%s", err->message, err->hint[0] ? "\n" : "", err->hint);
-    viewer->status.bad = viewer->status.is_new = true;
+    viewer->status.bad = true;
     report_error(err); /* the panel may be hidden, and says one thing at a time */
 }
 
@@ -120,6 +121,11 @@ void viewer_mark_stale(struct viewer *viewer)
 void viewer_mark_seen(struct viewer *viewer)
 {
     viewer->histogram.is_known = false;
+    viewer_draw_more(viewer);
+}
+
+void viewer_draw_more(struct viewer *viewer)
+{
     viewer->frames_wanted = FRAMES_IN_FLIGHT + 1;
 }
 

@@ -30,7 +30,8 @@ struct placing {
 
 struct status {
     bool bad;
-    bool is_new; /* no key was pressed since */
+    bool is_new; /* no key was pressed since; then it stands on the picture if the panel is hidden
+                  */
     char text[1400];
 };
 
@@ -147,6 +148,8 @@ void viewer_fit(struct viewer *viewer);
 /* Something else is computed, or the same is shown in another way. */
 void viewer_mark_stale(struct viewer *viewer);
 void viewer_mark_seen(struct viewer *viewer);
+/* As many frames more as it takes until what was asked for is shown. */
+void viewer_draw_more(struct viewer *viewer);
 /* The range of the depth view, if it is the automatic one. */
 void viewer_fit_depth(struct viewer *viewer);
 /* Whether a side is seen, or asked about. */

@@ -94,8 +94,10 @@ static void copy_probe(struct viewer *v)
     const struct probe_result *r = &v->probed;
     const VkOffset2D offset = viewer_image_offset(v);
     struct text text = {0};
-    if (!r->valid)
+    if (!r->valid) {
+        viewer_say(v, "the mouse is on no texel that could be copied");
         return;
+    }
     text_add(&text, "texel %d %d AO %.6g", r->x - offset.x, r->y - offset.y, (double)r->ao[0]);
     if (v->wipe)
         text_add(&text, " B %.6g", (double)r->ao[1]);
@@ -272,6 +274,8 @@ void viewer_browse(struct viewer *viewer)
     const char *path = viewer->source.now.path;
     if (viewer->browser.is_open)
         browser_close(&viewer->browser);
+    else if (viewer->live)
+        viewer_say(viewer, "a live scene takes no files");
     else if (!browser_open(&viewer->browser, path, &err))
         viewer_say_error(viewer, &err);
 }

@@ -46,7 +46,7 @@ static void save_if_wanted(struct viewer *v)
     if (!v->save_wanted)
         return;
     v->save_wanted = false;
-    v->frames_wanted = FRAMES_IN_FLIGHT + 1; /* the panel says what came of it */
+    viewer_draw_more(v); /* the panel says what came of it */
     if (!viewer_save(v, &err))
         viewer_say_error(v, &err);
 }
@@ -74,12 +74,12 @@ bool viewer_run(struct viewer *viewer, struct tool_error *err)
     const uint32_t frames = v->arguments->frames;
     double last_time = window_time();
     bool drawn_last = false;
-    v->frames_wanted = FRAMES_IN_FLIGHT + 1;
+    viewer_draw_more(v);
     while (!drawn_last) {
         const bool runs = frames > 0 || (v->live && v->live->running);
         window_poll(&v->window, !runs && v->frames_wanted == 0 && !v->quit, 0);
         if (v->window.input.changed)
-            v->frames_wanted = FRAMES_IN_FLIGHT + 1;
+            viewer_draw_more(v);
         viewer_handle_input(v);
         v->quit = v->quit || window_should_close(&v->window);
         const VkExtent2D framebuffer = window_framebuffer(&v->window);

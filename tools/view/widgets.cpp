@@ -19,9 +19,11 @@ bool choice_closes;
 const float font_sizes[] = {13.0f, 16.0f, 20.0f, 26.0f, 32.0f, 39.0f, 52.0f};
 enum { FONTS = sizeof font_sizes / sizeof *font_sizes };
 ImFont *fonts[FONTS];
-float unit = 1.0f;    /* coordinates of Dear ImGui per unit */
-float below = 170.0f; /* what the panel had behind the part that scrolls */
-float below_begins;   /* where that part ends */
+float unit = 1.0f;     /* coordinates of Dear ImGui per unit */
+float below = 170.0f;  /* what the panel had behind the part that scrolls */
+float below_begins;    /* where that part ends */
+float scrolls = -1.0f; /* how far the panel could scroll */
+int unsettled;         /* frames in a row that were laid out by what the one before had */
 
 /* Texels of the framebuffer -> coordinates. */
 ImVec2 place(float x, float y)
@@ -225,12 +227,18 @@ void ui_begin_panel(float width, float height)
     ImGui::PushAllowKeyboardFocus(false);
 }
 
-void ui_end_panel(void)
+bool ui_end_panel(void)
 {
-    below = ImGui::GetCursorPosY() - below_begins;
+    enum { MOST = 8 }; /* one that never settles is not drawn for ever */
+    const float now = ImGui::GetCursorPosY() - below_begins, scrolls_now = ImGui::GetScrollMaxY();
+    const bool same = std::fabs(now - below) < 0.5f && std::fabs(scrolls_now - scrolls) < 0.5f;
+    below = now;
+    scrolls = scrolls_now;
+    unsettled = same ? 0 : unsettled + 1;
     ImGui::PopAllowKeyboardFocus();
     ImGui::PopItemWidth();
     ImGui::End();
+    return unsettled == 0 || unsettled > MOST;
 }
 
 void ui_begin_scroll(void)
@@ -419,14 +427,18 @@ size_t ui_lines(float height)
     return static_cast<size_t>(place(0.0f, height).y / ImGui::GetTextLineHeightWithSpacing());
 }
 
-void ui_label(float x, float y, enum ui_place where, const char *text)
+bool ui_label(float from, float to, float y, enum ui_place where, const char *text)
 {
     ImDrawList *list = ImGui::GetBackgroundDrawList();
     const float gap = 6.0f * unit, edge = 4.0f * unit, ledge = 2.0f * unit;
-    const float wrap = ImGui::GetIO().DisplaySize.x - 2.0f * gap;
-    const ImVec2 at = place(x, y), size = ImGui::CalcTextSize(text, nullptr, false, wrap);
-    const float left = where == UI_LEFT_OF  ? at.x - gap - size.x
-                       : where == UI_AROUND ? at.x - size.x / 2
+    const bool is_of_line = where == UI_LEFT_OF || where == UI_RIGHT_OF;
+    const ImVec2 at = place(from, y), end = place(to, y);
+    const float room = end.x - at.x - 2.0f * gap, wrap = is_of_line ? -1.0f : room;
+    const ImVec2 size = ImGui::CalcTextSize(text, nullptr, false, wrap);
+    if (room < (is_of_line ? size.x : ImGui::GetFontSize()))
+        return false;
+    const float left = where == UI_LEFT_OF  ? end.x - gap - size.x
+                       : where == UI_AROUND ? (at.x + end.x - size.x) / 2
                                             : at.x + gap;
     const float top = where == UI_ABOVE    ? at.y - size.y - gap
                       : where == UI_AROUND ? at.y - size.y / 2
@@ -435,6 +447,7 @@ void ui_label(float x, float y, enum ui_place where, const char *text)
                         ImVec2(left + size.x + edge, top + size.y + ledge), IM_COL32(0, 0, 0, 180));
     list->AddText(nullptr, 0.0f, ImVec2(left, top), IM_COL32(255, 255, 255, 255), text, nullptr,
                   wrap);
+    return true;
 }
 
 void ui_overlay(float width, float height, const char *text)

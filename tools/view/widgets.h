@@ -34,7 +34,9 @@ bool widgets_close_choice(void);
 
 /* In texels of the framebuffer. */
 void ui_begin_panel(float width, float height);
-void ui_end_panel(void);
+/* False if widgets stand where those of the frame before wanted them: another frame is to be drawn.
+ */
+bool ui_end_panel(void);
 /* Widgets in between scroll; those behind them stand at the end of the panel, if that is high
  * enough. */
 void ui_begin_scroll(void);
@@ -69,10 +71,11 @@ void ui_begin_box(float width, float height);
 void ui_end_box(void);
 /* How many lines of text so many texels hold. */
 size_t ui_lines(float height);
-/* A word on the picture, on a dark ground, at a texel of the framebuffer: beside it, in its middle,
- * or on the bottom of the window, whose texel it then is. */
+/* A word on the picture, on a dark ground, between two columns of texels of the framebuffer and
+ * never beyond them: at the right one, at the left one, in the middle, or from the left one on and
+ * above row y. At a column it takes one line. False, and nothing is drawn, if there is no room. */
 enum ui_place { UI_LEFT_OF, UI_RIGHT_OF, UI_AROUND, UI_ABOVE };
-void ui_label(float x, float y, enum ui_place place, const char *text);
+bool ui_label(float from, float to, float y, enum ui_place place, const char *text);
 /* Text over everything, in the middle of width x height texels. */
 void ui_overlay(float width, float height, const char *text);
 
