@@ -3,6 +3,7 @@
 """vkao-view under keys and mouse, in windows that change their size."""
 import re
 import shutil
+import signal
 import time
 
 import view  # first: it knows where cli.py lies
@@ -346,6 +347,25 @@ def radius_of_the_reference_is_shown_and_taken(scratch):
     equal(yellow(shown[:, :PANEL_WIDTH]), 0, 'texels of a warning after that')
     command = script(scratch, 'in.view.sh')
     equal(float(command[command.index('--radius') + 1]), 0.8, 'the radius')
+
+
+@case
+def wheel_is_of_what_it_turns_over_though_nothing_was_drawn_since(scratch):
+    with opened(scratch, size=(WIDTH + PANEL_WIDTH, 700)) as viewer:
+        def wheel(x):
+            """The viewer sees the mouse go there and the wheel turn in one moment."""
+            viewer.process.send_signal(signal.SIGSTOP)
+            viewer.display.xdotool('mousemove', x, 350, 'click', 4)
+            viewer.process.send_signal(signal.SIGCONT)
+        for _ in range(2):
+            viewer.move(PANEL_WIDTH + 80, 350)
+            time.sleep(1)
+            wheel(80)
+            time.sleep(1)
+            viewer.wait_title('- 100 % -')
+        wheel(PANEL_WIDTH + 80)
+        viewer.wait_title('- 200 % -')
+        viewer.finish()
 
 
 @case

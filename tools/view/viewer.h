@@ -109,6 +109,9 @@ void viewer_close(struct viewer *viewer);
 
 /* viewer_input.c: acts on keys, mouse and dropped files. */
 void viewer_handle_input(struct viewer *viewer);
+/* Whether the mouse at a column of the window is on the picture, and not the panel's. By where it
+ * is now: the panel knows where it was in the last frame, which may be long ago. */
+bool viewer_has_mouse(const struct viewer *viewer, double x);
 /* Opens the list of files, or what is chosen in it. */
 void viewer_browse(struct viewer *viewer);
 void viewer_choose_file(struct viewer *viewer);

@@ -119,7 +119,7 @@ static void record_probe(struct viewer *v, uint32_t frame, VkCommandBuffer cmd)
 {
     const struct input *in = &v->window.input;
     VkOffset2D texel, offset = viewer_image_offset(v);
-    if (!in->inside || widgets_want_mouse() || !texel_at(v, in->x, in->y, &texel)) {
+    if (!in->inside || !viewer_has_mouse(v, in->x) || !texel_at(v, in->x, in->y, &texel)) {
         v->probed.valid = false;
         v->probe.requests[frame].pending = false;
         return;

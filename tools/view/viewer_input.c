@@ -216,10 +216,16 @@ static void drag_on(struct viewer *v, const struct input *in)
     v->drag_y = in->y;
 }
 
+bool viewer_has_mouse(const struct viewer *viewer, double x)
+{
+    const bool is_panel = viewer->show_panel && x < viewer_panel_width(viewer);
+    return !is_panel && !viewer->browser.is_open && !widgets_hold_mouse();
+}
+
 static void use_mouse(struct viewer *v, const struct input *in)
 {
-    const bool ours = !widgets_want_mouse();
-    if (v->drag == DRAG_NONE && ours && (in->left_pressed || in->right_pressed)) {
+    if (v->drag == DRAG_NONE && viewer_has_mouse(v, in->press_x) &&
+        (in->left_pressed || in->right_pressed)) {
         const bool line = in->left_pressed && is_at_line(v, in->press_x);
         v->drag = line ? DRAG_WIPE : v->live ? DRAG_ORBIT : in->left_pressed ? DRAG_PAN : DRAG_NONE;
         /* The button may be up again by now, and the mouse elsewhere. */
@@ -239,7 +245,7 @@ static void use_mouse(struct viewer *v, const struct input *in)
     }
     const bool wipes = v->drag == DRAG_WIPE || (v->drag == DRAG_NONE && is_at_line(v, in->x));
     window_set_cursor(&v->window, wipes ? CURSOR_WIPE : CURSOR_ARROW);
-    if (ours && fabs(in->scroll) > 0)
+    if (viewer_has_mouse(v, in->x) && fabs(in->scroll) > 0)
         scroll(v, in);
 }
 

@@ -197,9 +197,10 @@ bool widgets_end_frame(VkCommandBuffer cmd, struct tool_error *err)
     return !cmd || draw_or_fail(err, render, cmd);
 }
 
-bool widgets_want_mouse(void)
+bool widgets_hold_mouse(void)
 {
-    return ImGui::GetIO().WantCaptureMouse;
+    return (ImGui::IsAnyItemActive() && !widgets_want_keyboard()) ||
+           ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
 
 bool widgets_want_keyboard(void)

@@ -26,8 +26,9 @@ double widgets_scale(double scale);
 void widgets_begin_frame(double scale);
 /* Inside the render pass; ends the frame. cmd may be VK_NULL_HANDLE to drop what was drawn. */
 bool widgets_end_frame(VkCommandBuffer cmd, struct tool_error *err);
-/* Whether input belongs to the panel, as of the last frame. */
-bool widgets_want_mouse(void);
+/* Wherever the mouse is: whether a slider is being dragged, or a list is open. */
+bool widgets_hold_mouse(void);
+/* Whether a text field is open, as of the last frame. */
 bool widgets_want_keyboard(void);
 /* Closes the list that is open; false if none is. */
 bool widgets_close_choice(void);
