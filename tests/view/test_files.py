@@ -5,10 +5,11 @@ import os
 import time
 
 import view  # first: it knows where cli.py lies
-from cli import case, check, np, read_ao, write_exr
+from cli import case, check, equal, np, read_ao, write_exr
 from drop import drop_files
-from scene import HEIGHT, RADIUS, WIDTH
-from view import (READ, WHOLE, Viewer, gbuffer, opened, preview, same_picture, screen, until)
+from scene import FOV, HEIGHT, RADIUS, WIDTH
+from view import (PANEL_WIDTH, READ, SCENE, WHOLE, Viewer, gbuffer, opened, preview, read_png,
+                  same_picture, screen, until)
 
 # --- From the list ---
 
@@ -125,6 +126,65 @@ def dropped_camera_is_taken(scratch):
         viewer.wait_title('^in.exr - ')
         shown = viewer.finish()
     wanted = preview(scratch, 'in.exr', '--radius', RADIUS, '--fov', 90)
+    same_picture(shown, wanted, 'AO')
+
+
+@case
+def camera_dropped_on_a_sequence_is_that_of_all_frames(scratch):
+    for number in (1, 2):
+        write_exr(scratch.path(f'in.{number}.exr'), gbuffer())
+    scratch.write('wide.json', '{"fov_x_deg": 90}')
+    with Viewer(scratch, 'in.%d.exr', '--radius', RADIUS, *WHOLE) as viewer:
+        viewer.key('Right')
+        viewer.wait_title(r'^in.2.exr \[2/2\]')
+        drop_files(viewer, scratch.path('wide.json'))
+        time.sleep(0.5)
+        viewer.wait_title(r'^in.2.exr \[2/2\]')
+        viewer.key('Left')
+        viewer.wait_title(r'^in.1.exr \[1/2\]')
+        shown = viewer.finish()
+    wanted = preview(scratch, 'in.1.exr', '--radius', RADIUS, '--fov', 90)
+    same_picture(shown, wanted, 'AO')
+
+
+@case
+def reference_dropped_on_a_sequence_leaves_it_one(scratch):
+    for number in (1, 2):
+        write_exr(scratch.path(f'in.{number}.exr'), gbuffer())
+    write_exr(scratch.path('truth.exr'), {'AO': SCENE.depth() * 0 + np.float32(2)})
+    with Viewer(scratch, 'in.%d.exr', *READ, *WHOLE, '--show', 'difference') as viewer:
+        viewer.wait_title(r'^in.1.exr \[1/2\]')
+        drop_files(viewer, scratch.path('truth.exr'))
+        viewer.key('Right')
+        viewer.wait_title(r'^in.2.exr \[2/2\]')
+        shown = viewer.finish()
+    check((shown[..., 0] > 250).all(), 'the second frame is compared to nothing')
+
+
+@case
+def file_is_dropped_with_what_belongs_to_it(scratch):
+    write_exr(scratch.path('other.exr'), gbuffer())
+    write_exr(scratch.path('other.gt.exr'), {'AO': SCENE.depth() * 0 + np.float32(2)})
+    scratch.write('other.camera.json', '{"fov_x_deg": %g}' % FOV)
+    scratch.write('wide.json', '{"fov_x_deg": 90}')
+    scratch.write('long.json', '{"fov_x_deg": 20}')
+    with opened(scratch, *WHOLE, '--camera', 'none') as viewer:
+        drop_files(viewer, *map(scratch.path, ('other.camera.json', 'other.exr', 'other.gt.exr')))
+        viewer.wait_title('^other.exr - ')
+        viewer.key('7')
+        viewer.wait_title('^other.exr - Difference')
+        until(lambda: (screen(scratch, viewer, (WIDTH, HEIGHT))[..., 0] > 250).all(), 'reference')
+        viewer.key('2')
+        drop_files(viewer, scratch.path('wide.json'), scratch.path('long.json'))
+        time.sleep(0.5)
+        viewer.wait_title('^other.exr - AO - ')
+        drop_files(viewer, scratch.path('other.exr'), scratch.path('wide.json'))
+        time.sleep(0.5)
+        viewer.wait_title('^other.exr - AO - ')
+        shown = viewer.finish()
+        check('one camera file at a time' in viewer.err, f'nothing is said:\n{viewer.err}')
+    wanted = preview(scratch, 'other.exr', '--radius', RADIUS, '--camera', 'wide.json', '--fov',
+                     FOV)
     same_picture(shown, wanted, 'AO')
 
 

@@ -338,7 +338,7 @@ static bool is_reference(const char *path)
     return yes;
 }
 
-static bool make_plan(char *const *paths, size_t count, const char *camera, struct plan *plan,
+static bool make_plan(const char *const *paths, size_t count, const char *camera, struct plan *plan,
                       struct tool_error *err)
 {
     *plan = (struct plan){.is_sequence = count > 1};
@@ -358,22 +358,99 @@ static bool make_plan(char *const *paths, size_t count, const char *camera, stru
     return fail(err, EXIT_MEMORY, "out of memory for %zu files", count);
 }
 
-/* The frame that is shown alone. */
+/* camera may be NULL. What was copied is to be freed with the plan, also on failure. */
+static bool copy_frame(const struct plan_frame *from, const char *camera, struct plan_frame *to)
+{
+    to->number = from->number;
+    to->input = copy_or_null(from->input);
+    to->camera = copy_or_null(camera);
+    bool ok = to->input && (to->camera || !camera);
+    for (int kind = 0; kind < ROLE_FILES; kind++) {
+        to->file[kind] = copy_or_null(from->file[kind]);
+        ok = ok && (to->file[kind] || !from->file[kind]);
+    }
+    return ok;
+}
+
+/* The frames that there are, with another camera if there is one. */
 static bool make_same_plan(const struct source *s, const char *camera, struct plan *plan,
                            struct tool_error *err)
 {
-    char *const path[] = {s->now.path};
-    if (!make_plan(path, 1, camera, plan, err))
-        return false;
-    for (int kind = 0; kind < ROLE_FILES; kind++) {
-        const char *file = s->plan.frames[s->frame].file[kind];
-        plan->frames[0].file[kind] = copy_or_null(file);
-        if (file && !plan->frames[0].file[kind]) {
-            plan_free(plan);
-            return fail(err, EXIT_MEMORY, "%s: out of memory", file);
-        }
+    *plan = s->plan;
+    plan->cameras_lie_beside = s->plan.cameras_lie_beside && !camera;
+    plan->count = 0;
+    plan->frames = calloc(s->plan.count, sizeof *plan->frames);
+    bool ok = plan->frames != NULL;
+    for (size_t i = 0; ok && i < s->plan.count; i++) {
+        const struct plan_frame *from = &s->plan.frames[i];
+        ok = copy_frame(from, camera ? camera : from->camera, &plan->frames[plan->count++]);
+    }
+    return ok || fail(err, EXIT_MEMORY, "out of memory for %zu files", s->plan.count);
+}
+
+static bool lies_beside(const char *path, const char *gbuffer)
+{
+    static const char *const suffixes[] = {".camera.json", ".gt.exr"};
+    bool yes = false;
+    for (size_t i = 0; i < sizeof suffixes / sizeof *suffixes; i++) {
+        char *other = beside(gbuffer, suffixes[i]);
+        yes = yes || (other && strcmp(other, path) == 0);
+        free(other);
+    }
+    return yes;
+}
+
+/* G-buffers come first, and one camera file is theirs. What lies beside one of them is found all
+ * the same, as it is for vkao. */
+static bool sort_out(char *const *paths, size_t count, const char **gbuffers, size_t *gbuffer_count,
+                     const char **camera, struct tool_error *err)
+{
+    *gbuffer_count = 0;
+    *camera = NULL;
+    for (size_t i = 0; i < count; i++) {
+        bool is_found = false;
+        for (size_t k = 0; k < count && !is_found; k++)
+            is_found = k != i && lies_beside(paths[i], paths[k]);
+        if (is_found)
+            continue;
+        if (!text_ends_with(paths[i], ".json"))
+            gbuffers[(*gbuffer_count)++] = paths[i];
+        else if (*camera)
+            return fail(err, EXIT_INPUT, "%s and %s: one camera file at a time", *camera, paths[i]);
+        else
+            *camera = paths[i];
     }
     return true;
+}
+
+/* G-buffers, and what came with them. */
+static bool make_dropped_plan(const struct source *s, char *const *paths, size_t count,
+                              struct plan *plan, struct tool_error *err)
+{
+    /* --camera was said of other files; none is said of all. */
+    struct options options = s->options;
+    const char **gbuffers = calloc(count, sizeof *gbuffers), *camera;
+    size_t gbuffer_count;
+    if (options.camera_file && strcmp(options.camera_file, "none") != 0)
+        options.camera_file = NULL;
+    bool ok = gbuffers || fail(err, EXIT_MEMORY, "out of memory for %zu files", count);
+    ok = ok && sort_out(paths, count, gbuffers, &gbuffer_count, &camera, err);
+    if (ok && gbuffer_count == 0)
+        ok = fail(err, EXIT_INPUT, "%s: a camera, and no file that it is of", paths[0]);
+    ok = ok && make_plan(gbuffers, gbuffer_count, camera, plan, err) &&
+         (camera || plan_take_cameras(&options, plan, err));
+    free(gbuffers);
+    return ok;
+}
+
+static void take_reference(struct source *s, const char *path)
+{
+    /* Of a sequence each frame has its own, if this is how it is named. */
+    char *own = beside(s->now.path, ".gt.exr");
+    const bool is_own = own && strcmp(own, path) == 0;
+    snprintf(s->reference_dropped, sizeof s->reference_dropped, "%s", path);
+    s->reference_given = is_own ? NULL : s->reference_dropped;
+    free(own);
 }
 
 bool source_drop(struct source *source, char *const *paths, size_t count, struct source_undo *undo,
@@ -381,16 +458,11 @@ bool source_drop(struct source *source, char *const *paths, size_t count, struct
 {
     struct source *s = source;
     struct plan plan = {0};
-    /* --camera was said of other files; none is said of all. */
-    struct options options = s->options;
-    if (options.camera_file && strcmp(options.camera_file, "none") != 0)
-        options.camera_file = NULL;
     const bool camera = count == 1 && s->now.path && text_ends_with(paths[0], ".json");
     const bool reference = count == 1 && s->now.path && !camera && is_reference(paths[0]);
-    bool ok =
-        camera || reference
-            ? make_same_plan(s, camera ? paths[0] : s->now.camera_path, &plan, err)
-            : make_plan(paths, count, NULL, &plan, err) && plan_take_cameras(&options, &plan, err);
+    const bool same = camera || reference;
+    const bool ok = same ? make_same_plan(s, camera ? paths[0] : NULL, &plan, err)
+                         : make_dropped_plan(s, paths, count, &plan, err);
     if (!ok) {
         plan_free(&plan);
         return false;
@@ -402,15 +474,15 @@ bool source_drop(struct source *source, char *const *paths, size_t count, struct
     memcpy(undo->cameras, s->cameras, sizeof undo->cameras);
     memcpy(undo->reference_dropped, s->reference_dropped, sizeof undo->reference_dropped);
     s->plan = plan;
+    if (!reference)
+        memset(s->cameras, 0, sizeof s->cameras);
+    if (reference)
+        take_reference(s, paths[0]);
+    if (same)
+        return true;
     s->frame = 0;
-    memset(s->cameras, 0, sizeof s->cameras);
-    if (reference) {
-        snprintf(s->reference_dropped, sizeof s->reference_dropped, "%s", paths[0]);
-        s->reference_given = s->reference_dropped;
-    } else if (!camera) {
-        s->reference_given = NULL;
-        s->radius = 0; /* of other files */
-    }
+    s->reference_given = NULL;
+    s->radius = 0; /* of other files */
     return true;
 }
 
