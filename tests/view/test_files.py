@@ -188,5 +188,25 @@ def file_is_dropped_with_what_belongs_to_it(scratch):
     same_picture(shown, wanted, 'AO')
 
 
+@case
+def reference_with_holes_is_measured_where_it_is_known(scratch):
+    truth = SCENE.depth() * 0 + np.float32(0.5)
+    truth[:9] = np.nan
+    write_exr(scratch.path('in.gt.exr'), {'AO': truth})
+    size = (WIDTH + PANEL_WIDTH, 700)
+    with opened(scratch, '--show', 'difference', size=size) as viewer:
+        def below_gain():
+            panel = screen(scratch, viewer, size)[:, :PANEL_WIDTH].astype(int)
+            is_yellow = ((panel[..., 0] > 200) & (panel[..., 2] < 120)).any(axis=1)
+            lower = int(np.nonzero(is_yellow)[0].max(initial=37)) - 37  # than without a warning
+            return panel[112 + lower:130 + lower, 8:30]
+        viewer.wait_title('- Difference -')
+        # White letters, where the blue mark of side A stands if there is no error to tell.
+        until(lambda: (below_gain().min(axis=-1) > 200).any(), 'error')
+        check((below_gain()[..., 2] - below_gain()[..., 0]).max() < 100, 'no error is told')
+        viewer.finish()
+        check('are not finite' in viewer.err, f'nothing is said:\n{viewer.err}')
+
+
 if __name__ == '__main__':
     view.main()

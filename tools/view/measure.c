@@ -17,12 +17,14 @@ static bool measure_error(struct viewer *v, enum side side, struct tool_error *e
         return true;
     bool ok = values_take(v, side, &r, err);
     const size_t texels = (size_t)l->gbuffer.width * l->gbuffer.height;
+    size_t count = 0;
     double sum = 0;
     for (size_t i = 0; ok && i < texels; i++) {
         const double d = (double)r.result.ao[i] - (double)l->reference_values[i];
-        sum += d * d;
+        sum += isfinite(d) ? d * d : 0;
+        count += isfinite(d) ? 1 : 0;
     }
-    v->error[side] = ok ? sqrt(sum / (double)texels) : -1;
+    v->error[side] = !ok ? -1 : count > 0 ? sqrt(sum / (double)count) : INFINITY;
     values_free(&r);
     return ok;
 }

@@ -94,7 +94,8 @@ static bool find_reference(const struct exr_info *info, size_t *part, const char
     return false;
 }
 
-static bool read_reference(struct gpu *gpu, struct loaded_frame *l, struct tool_error *err)
+static bool read_reference(struct gpu *gpu, struct loaded_frame *l, struct report *report,
+                           struct tool_error *err)
 {
     const struct gbuffer *g = &l->gbuffer;
     const VkExtent2D extent = padded_extent(g, &l->placement);
@@ -126,6 +127,13 @@ static bool read_reference(struct gpu *gpu, struct loaded_frame *l, struct tool_
                l->reference_values + row * g->width, g->width * sizeof *values);
     ok = ok && upload(gpu, &l->reference, VK_FORMAT_R32_SFLOAT, extent, values, err);
     l->reference_radius = reference_radius(&info);
+    size_t unknown = 0;
+    for (size_t i = 0; ok && i < (size_t)g->width * g->height; i++)
+        unknown += isfinite(l->reference_values[i]) ? 0 : 1;
+    if (unknown > 0)
+        report_warn(report, "reference values",
+                    "%s: %zu texels of '%s' are not finite: RMSE is of the others", info.path,
+                    unknown, channel);
     if (ok)
         snprintf(l->reference_channel, sizeof l->reference_channel, "%s", channel);
     free(values);
@@ -277,7 +285,7 @@ static bool load_frame(struct source *s, const struct plan_frame *frame, size_t 
     if (!load_gbuffer(s, frame, l, view, report, err))
         return false;
     struct tool_error unusable = {0};
-    if (!l->reference_path || read_reference(s->gpu, l, &unusable))
+    if (!l->reference_path || read_reference(s->gpu, l, report, &unusable))
         return true;
     /* One that was asked for must be there; one that merely lies there need not fit. */
     if (s->reference_given || unusable.code == EXIT_DEVICE || unusable.code == EXIT_MEMORY) {
