@@ -189,6 +189,65 @@ def file_is_dropped_with_what_belongs_to_it(scratch):
 
 
 @case
+def setting_b_keeps_its_radius_in_another_file(scratch):
+    write_exr(scratch.path('in.exr'), gbuffer())
+    write_exr(scratch.path('other.exr'), gbuffer())
+    with Viewer(scratch, 'in.exr', '--fov', FOV, '--versus', '--radius 0.8', *WHOLE) as viewer:
+        viewer.wait_title('^in.exr - ')
+        drop_files(viewer, scratch.path('other.exr'))
+        viewer.key('Tab')
+        viewer.wait_title('^other.exr - AO - B ')
+        shown = viewer.finish()
+    same_picture(shown, preview(scratch, 'other.exr', '--fov', FOV, '--radius', 0.8), 'B')
+
+
+# --- Sequences ---
+
+@case
+def each_frame_has_its_own_warnings_and_bias(scratch):
+    write_exr(scratch.path('in.1.exr'), {'Z': SCENE.depth()})
+    coarse = np.minimum(SCENE.depth(), 6e4).astype(np.float16)
+    write_exr(scratch.path('in.2.exr'), {'Z': coarse})
+    options = ('--fov', FOV, '--radius', 0.05)
+    size = (WIDTH + PANEL_WIDTH, 700)
+    with Viewer(scratch, 'in.%d.exr', *options, size=size) as viewer:
+        def lines():
+            panel = screen(scratch, viewer, size)[:300, :PANEL_WIDTH]
+            is_yellow = ((panel[..., 0] > 200) & (panel[..., 2] < 120)).any(axis=1)
+            return int(is_yellow.sum())
+        viewer.wait_title(r'^in.1.exr \[1/2\]')
+        time.sleep(1)
+        first = lines()
+        viewer.key('Right')
+        viewer.wait_title(r'^in.2.exr \[2/2\]')
+        until(lambda: lines() > first + 20, 'warning of the second frame')
+        viewer.key('Left')
+        viewer.wait_title(r'^in.1.exr \[1/2\]')
+        until(lambda: lines() == first, 'warnings of the first frame alone')
+        viewer.key('Right')
+        viewer.wait_title(r'^in.2.exr \[2/2\]')
+        shown = viewer.finish()
+        equal(viewer.err.count('depth is HALF'), 1, 'times that it is printed')
+    scratch.render('in.%d.exr', '-o', 'ao.%d.exr', '--preview', 'ao.%d.png', '--device', 'cpu',
+                   '--frames', '1-2', *options)
+    top = (700 - HEIGHT) // 2
+    same_picture(shown[top:top + HEIGHT, PANEL_WIDTH:], read_png(scratch.path('ao.2.png')), 'AO')
+
+
+@case
+def empty_frame_tells_no_radius(scratch):
+    write_exr(scratch.path('in.1.exr'), {**gbuffer(), 'Z': SCENE.depth() * 0 + np.float32(1e10)})
+    write_exr(scratch.path('in.2.exr'), gbuffer())
+    options = ('--fov', FOV, '--depth-type', 'planar')
+    with Viewer(scratch, 'in.%d.exr', *options, *WHOLE) as viewer:
+        viewer.wait_title(r'^in.1.exr \[1/2\]')
+        viewer.key('Right')
+        viewer.wait_title(r'^in.2.exr \[2/2\]')
+        shown = viewer.finish()
+    same_picture(shown, preview(scratch, 'in.2.exr', *options), 'AO')
+
+
+@case
 def reference_with_holes_is_measured_where_it_is_known(scratch):
     truth = SCENE.depth() * 0 + np.float32(0.5)
     truth[:9] = np.nan

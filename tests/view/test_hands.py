@@ -11,7 +11,7 @@ from cli import case, check, equal, np, read_ao, skip, write_exr
 from drop import clipboard
 from scene import FOV, HEIGHT, RADIUS, WIDTH
 from view import (LINE, PANEL_WIDTH, READ, SCENE, WHOLE, Viewer, gbuffer, opened, preview,
-                  read_png, same_picture, screen, script, until)
+                  read_png, same_picture, screen, script, until, yellow)
 
 VBAO, HBAO = r'- A vbao -', r'- B hbao -'
 
@@ -312,11 +312,6 @@ def what_was_changed_is_undone_and_redone(scratch):
         viewer.key('ctrl+shift+z')
         viewer.wait_title('A vbao half')
         viewer.finish()
-
-
-def yellow(picture):
-    """Texels in the colour of warnings."""
-    return int(((picture[..., 0] > 200) & (picture[..., 2] < 120)).sum())
 
 
 @case

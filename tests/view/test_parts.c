@@ -247,28 +247,36 @@ static void probe_knows_background(void **unused)
 static void undo_brings_back_what_was_and_forgets_what_was_undone(void **unused)
 {
     static struct history h;
-    struct setting now[HISTORY_SIDES] = {setting_default(), setting_default()};
+    struct history_state now = {.settings = {setting_default(), setting_default()}};
     (void)unused;
-    history_reset(&h, now);
-    assert_false(history_step(&h, -1, now));
+    history_reset(&h, &now);
+    assert_false(history_step(&h, -1, &now));
     for (int i = 1; i <= 2 * HISTORY_STATES; i++) {
-        now[i % 2].params.radius = (float)i;
-        history_note(&h, now);
-        history_note(&h, now); /* no change, no state */
+        now.settings[i % 2].params.radius = (float)i;
+        history_note(&h, &now);
+        history_note(&h, &now); /* no change, no state */
     }
-    assert_false(history_step(&h, 1, now));
+    assert_false(history_step(&h, 1, &now));
     int steps = 0;
-    while (history_step(&h, -1, now))
+    while (history_step(&h, -1, &now))
         steps++;
     assert_int_equal(steps, HISTORY_STATES - 1);
-    assert_true(now[1].params.radius == (float)(HISTORY_STATES + 1));
-    assert_true(history_step(&h, 1, now));
-    assert_true(now[0].params.radius == (float)(HISTORY_STATES + 2));
-    now[0].effect.half_resolution = VK_TRUE;
-    history_note(&h, now);
-    assert_false(history_step(&h, 1, now));
-    assert_true(history_step(&h, -1, now));
-    assert_false(now[0].effect.half_resolution);
+    assert_true(now.settings[1].params.radius == (float)(HISTORY_STATES + 1));
+    assert_true(history_step(&h, 1, &now));
+    assert_true(now.settings[0].params.radius == (float)(HISTORY_STATES + 2));
+    now.settings[0].effect.half_resolution = VK_TRUE;
+    history_note(&h, &now);
+    assert_false(history_step(&h, 1, &now));
+    assert_true(history_step(&h, -1, &now));
+    assert_false(now.settings[0].effect.half_resolution);
+    now.shown[1] = -2;
+    history_note(&h, &now);
+    assert_true(history_step(&h, -1, &now));
+    assert_true(now.shown[1] == 0);
+    now.settings[1].params.bias = 0.25f;
+    history_amend(&h, &now); /* no state */
+    assert_true(history_step(&h, -1, &now) && history_step(&h, 1, &now));
+    assert_true(now.settings[1].params.bias == 0.25f);
 }
 
 /* --- The list of files --- */

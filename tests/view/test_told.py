@@ -9,6 +9,38 @@ from cli import case, check, equal, np, write_exr
 from scene import FOV, WIDTH
 from view import (PANEL_WIDTH, SCENE, WHOLE, Viewer, gbuffer, opened, screen, script, until, yellow)
 
+# --- Values ---
+
+@case
+def warning_of_the_radius_follows_the_panel(scratch):
+    size = (WIDTH + PANEL_WIDTH, 700)
+    with opened(scratch, size=size) as viewer:
+        def warned():
+            return yellow(screen(scratch, viewer, size)[:, :PANEL_WIDTH]) > 100
+        check(not warned(), 'a warning at the radius asked for')
+        viewer.drag((85, 198), (9, 198), hold=1)  # radius
+        until(warned, 'warning that the radius is less than a texel')
+        viewer.key('ctrl+z')
+        until(lambda: not warned(), 'end of the warning')
+        viewer.finish()
+
+
+@case
+def exposure_is_undone_too(scratch):
+    size = (WIDTH + PANEL_WIDTH, 700)
+    with opened(scratch, '--show', 'composite', size=size) as viewer:
+        def light():
+            return screen(scratch, viewer, size)[350, PANEL_WIDTH:].mean()
+        before = light()
+        viewer.drag((90, 102), (60, 102), hold=1)  # exposure
+        until(lambda: light() < before * 0.7, 'darker picture')
+        viewer.key('ctrl+z')
+        until(lambda: abs(light() - before) < 1e-6, 'picture as it was')
+        viewer.key('ctrl+y')
+        until(lambda: light() < before * 0.7, 'darker picture again')
+        viewer.finish()
+
+
 # --- Layout ---
 
 @case

@@ -278,6 +278,11 @@ def screen(scratch, viewer, size):
     return read_png(scratch.path('screen.png'))
 
 
+def yellow(picture):
+    """Texels in the colour of warnings."""
+    return int(((picture[..., 0] > 200) & (picture[..., 2] < 120)).sum())
+
+
 def until(holds, what):
     end = time.monotonic() + TIMEOUT
     while not holds():

@@ -49,43 +49,40 @@ static bool find_key(struct report *report, const char *key, bool *is_new, size_
     return true;
 }
 
-static void warn(struct report *report, const char *format, va_list args) TOOL_PRINTF(2, 0);
-static void warn(struct report *report, const char *format, va_list args)
+static void warn(struct report *report, const char *key, bool each_frame, const char *format,
+                 va_list args) TOOL_PRINTF(4, 0);
+static void warn(struct report *report, const char *key, bool each_frame, const char *format,
+                 va_list args)
 {
     char line[LINE_BYTES];
+    bool is_new;
+    size_t index;
+    const bool has_room = find_key(report, key, &is_new, &index);
+    const bool is_new_here = is_new || report->said_in[index] != report->frame;
+    if (has_room)
+        report->said_in[index] = report->frame;
+    if (!is_new_here)
+        return;
     vsnprintf(line, sizeof line, format, args);
     if (report->heard)
         report->heard(report->heard_data, line);
-    if (report->verbosity >= REPORT_NORMAL)
+    if (report->verbosity >= REPORT_NORMAL && (is_new || each_frame))
         print_line("vkao: ", "warning: ", line);
 }
 
 void report_warn(struct report *report, const char *key, const char *format, ...)
 {
-    bool is_new;
-    size_t index;
-    if (find_key(report, key, &is_new, &index))
-        report->said_in[index] = report->frame;
-    if (!is_new)
-        return;
     va_list args;
     va_start(args, format);
-    warn(report, format, args);
+    warn(report, key, false, format, args);
     va_end(args);
 }
 
 void report_warn_of_frame(struct report *report, const char *key, const char *format, ...)
 {
-    bool is_new;
-    size_t index;
-    const bool has_room = find_key(report, key, &is_new, &index);
-    if (!is_new && report->said_in[index] == report->frame)
-        return;
-    if (has_room)
-        report->said_in[index] = report->frame;
     va_list args;
     va_start(args, format);
-    warn(report, format, args);
+    warn(report, key, true, format, args);
     va_end(args);
 }
 

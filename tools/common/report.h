@@ -18,7 +18,7 @@ struct report {
     unsigned said_in[64]; /* the frame of each, the last one */
     size_t said_count;
     unsigned frame; /* of a sequence, counted by who goes through it */
-    /* Hears warnings too, and however quiet the report is; NULL: nobody. */
+    /* Hears warnings too, and however quiet the report is, once per key and frame; NULL: nobody. */
     void (*heard)(void *data, const char *warning);
     void *heard_data;
 };

@@ -3,6 +3,7 @@
  * What the panel shows, and what it lets people change. */
 #include "viewer.h"
 
+#include "automatic.h"
 #include "summary.h"
 #include "widgets.h"
 
@@ -120,6 +121,44 @@ static const char *name_of(const char *path)
     return slash ? slash + 1 : path;
 }
 
+/* Those of the file less its path, which stands above them. */
+static void warning_rows(const struct viewer *v)
+{
+    struct text path = {0}, line = {0};
+    text_add_printable(&path, v->source.now.path);
+    text_add(&path, ": ");
+    for (const char *at = v->warnings.data; at && *at;) {
+        const size_t all = strcspn(at, "\n");
+        const bool is_of_file = path.data && strncmp(at, path.data, path.length) == 0;
+        const size_t left_out = is_of_file ? path.length : 0;
+        line.length = 0;
+        text_add(&line, "%.*s", (int)(all - left_out), at + left_out);
+        if (!line.out_of_memory && line.data)
+            ui_paragraph(UI_WARNING, line.data);
+        at += all + (at[all] == '\n');
+    }
+    text_free(&path);
+    text_free(&line);
+}
+
+/* Of the radius as it is now, once if both sides have the same. */
+static void radius_warnings(const struct viewer *v)
+{
+    const struct setting *a = &v->settings[SIDE_A], *b = &v->settings[SIDE_B];
+    for (int i = 0; i < SIDES; i++) {
+        struct text warning = {0};
+        struct report report = {
+            .verbosity = REPORT_QUIET, .heard = viewer_hear, .heard_data = &warning};
+        const bool is_said = i == SIDE_B && viewer_needs(v, SIDE_A) &&
+                             fabsf(a->params.radius - b->params.radius) <= 0.0f;
+        if (viewer_needs(v, (enum side)i) && !is_said)
+            check_radius(&v->source.now.gbuffer, v->settings[i].params.radius, &report);
+        if (warning.length && !warning.out_of_memory)
+            ui_paragraph(UI_WARNING, warning.data);
+        text_free(&warning);
+    }
+}
+
 static void file_rows(struct viewer *v)
 {
     const struct source *s = &v->source;
@@ -138,10 +177,10 @@ static void file_rows(struct viewer *v)
     if (summary.data)
         ui_help(summary.data);
     text_free(&summary);
-    if (s->plan.cameras_lie_beside && l->camera_path)
+    if (l->camera_path)
         ui_paragraph(UI_DIM, name_of(l->camera_path));
-    if (v->warnings.length && !v->warnings.out_of_memory)
-        ui_paragraph(UI_WARNING, v->warnings.data);
+    warning_rows(v);
+    radius_warnings(v);
     if (s->plan.count > 1) {
         uint32_t frame = (uint32_t)s->frame + 1;
         if (ui_slider_uint("frame", &frame, 1, (uint32_t)s->plan.count, false) &&

@@ -310,10 +310,11 @@ bool source_load(struct source *source, size_t frame, size_t view, struct report
     loaded_free(s->gpu, &s->now);
     s->now = l;
     s->frame = frame;
-    if (!(s->radius > 0))
-        s->radius = s->options.radius_is_auto
-                        ? relative_radius_of(&s->options.relative_radius, &s->now.gbuffer)
-                        : s->options.setting.params.radius;
+    /* An empty frame tells nothing of the others. */
+    if (!(s->radius > 0) && !s->options.radius_is_auto)
+        s->radius = s->options.setting.params.radius;
+    else if (!(s->radius > 0) && s->now.gbuffer.median_z > 0)
+        s->radius = relative_radius_of(&s->options.relative_radius, &s->now.gbuffer);
     return true;
 }
 

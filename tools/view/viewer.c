@@ -203,20 +203,40 @@ static void drop_results(struct viewer *viewer)
     viewer_mark_stale(viewer);
 }
 
+/* What follows from the frame at hand, as vkao has it for each: the bias, unless somebody has set
+ * it. */
+static void settle_frame(struct viewer *viewer)
+{
+    struct viewer *v = viewer;
+    const struct gbuffer *g = &v->source.now.gbuffer;
+    for (int i = 0; i < SIDES; i++) {
+        struct vkao_params *p = &v->settings[i].params;
+        const float settled = v->bias_settled[i];
+        /* The panel says it of the radius as it will be by then. */
+        v->report.heard = NULL;
+        check_radius(g, p->radius, &v->report);
+        v->report.heard = viewer_hear;
+        if (v->bias_is_given[i] || (settled > 0 && (p->bias < settled || p->bias > settled)))
+            continue;
+        p->bias = settled_bias(g, p->radius, v->arguments->settings[i].params.bias, &v->report);
+        v->bias_settled[i] = p->bias;
+    }
+}
+
 /* What the options left to the file. */
 static void complete_settings(struct viewer *viewer)
 {
     const struct gbuffer *g = &viewer->source.now.gbuffer;
+    const struct relative_radius *relative = &viewer->arguments->options.relative_radius;
+    const float radius = viewer->source.radius > 0 || viewer->live
+                             ? viewer->source.radius
+                             : relative_radius_of(relative, g);
     for (int i = 0; i < SIDES; i++) {
         struct setting *s = &viewer->settings[i];
         if (!(s->params.radius > 0) && viewer->live)
             s->params.radius = live_scene_radius(viewer->live->kind);
         else if (!(s->params.radius > 0))
-            s->params.radius = viewer->source.radius;
-        if (!viewer->live)
-            check_radius(g, s->params.radius, &viewer->report);
-        if (!viewer->live && !viewer->bias_is_given[i])
-            s->params.bias = settled_bias(g, s->params.radius, s->params.bias, &viewer->report);
+            s->params.radius = radius;
         /* The colour of a live scene is its indirect light. */
         if (viewer->live && s->effect.composite_mode == VKAO_COMPOSITE_MULTIPLY)
             s->effect.composite_mode = VKAO_COMPOSITE_INDIRECT;
@@ -224,6 +244,8 @@ static void complete_settings(struct viewer *viewer)
         if (far > 0)
             s->params.debug_distance = (float)far;
     }
+    if (!viewer->live)
+        settle_frame(viewer);
     viewer_fit_depth(viewer);
 }
 
@@ -238,6 +260,29 @@ void viewer_fit_depth(struct viewer *viewer)
     if (!(d->far > d->near * (1 + 1e-6))) /* all of it is as far */
         *d = (struct depth_shown){.is_automatic = true, .far = d->far > 0 ? d->far * 2 : 1};
     viewer_mark_seen(viewer);
+}
+
+/* A range that follows from the files is none that was chosen. */
+struct history_state viewer_state(const struct viewer *viewer)
+{
+    const struct depth_shown *d = &viewer->depth_shown;
+    struct history_state state = {.shown = {viewer->gain, viewer->exposure, d->is_automatic,
+                                            d->is_automatic ? 0 : d->near,
+                                            d->is_automatic ? 0 : d->far}};
+    memcpy(state.settings, viewer->settings, sizeof state.settings);
+    return state;
+}
+
+void viewer_take_state(struct viewer *viewer, const struct history_state *state)
+{
+    const double *shown = state->shown;
+    memcpy(viewer->settings, state->settings, sizeof state->settings);
+    viewer->gain = shown[0];
+    viewer->exposure = shown[1];
+    viewer->depth_shown =
+        (struct depth_shown){.is_automatic = shown[2] > 0, .near = shown[3], .far = shown[4]};
+    viewer_fit_depth(viewer);
+    viewer_mark_stale(viewer);
 }
 
 /* As vkao says it, but for what the panel can change. */
@@ -255,22 +300,32 @@ bool viewer_load(struct viewer *viewer, size_t frame, size_t view)
     struct tool_error err = {0};
     const bool other_files = !(viewer->source.radius > 0);
     const VkExtent2D before = viewer_image_extent(viewer);
+    struct text warnings = viewer->warnings;
+    viewer->warnings = (struct text){0};
+    viewer->report.frame++;
     /* What the results were made of goes away below. */
     drop_results(viewer);
-    if (!source_load(&viewer->source, frame, view, &viewer->report, &err)) {
+    const bool loaded = source_load(&viewer->source, frame, view, &viewer->report, &err);
+    text_free(loaded ? &warnings : &viewer->warnings);
+    if (!loaded) {
+        viewer->warnings = warnings;
         viewer_say_error(viewer, &err);
         return false;
     }
     for (int i = 0; other_files && i < SIDES; i++) {
-        if (viewer->arguments->options.radius_is_auto)
+        if (!(viewer->arguments->settings[i].params.radius > 0))
             viewer->settings[i].params.radius = 0;
-        if (!viewer->bias_is_given[i])
-            viewer->settings[i].params.bias = viewer->arguments->settings[i].params.bias;
+        viewer->bias_settled[i] = 0;
     }
     if (other_files) {
         say_summary(viewer);
         complete_settings(viewer);
-        history_reset(&viewer->history, viewer->settings);
+        const struct history_state now = viewer_state(viewer);
+        history_reset(&viewer->history, &now);
+    } else {
+        settle_frame(viewer);
+        const struct history_state now = viewer_state(viewer);
+        history_amend(&viewer->history, &now);
     }
     const VkExtent2D after = viewer_image_extent(viewer);
     if (before.width != after.width || before.height != after.height)
@@ -363,7 +418,7 @@ static bool create_timestamps(struct viewer *viewer, struct tool_error *err)
     return gpu_ok(err, "vkCreateQueryPool", result);
 }
 
-static void hear_warning(void *data, const char *warning)
+void viewer_hear(void *data, const char *warning)
 {
     struct text *warnings = data;
     text_add(warnings, "%s", warnings->length ? "\n" : "");
@@ -375,7 +430,7 @@ bool viewer_open(struct viewer *viewer, const struct arguments *arguments, struc
     struct viewer *v = viewer;
     *v = (struct viewer){.arguments = arguments,
                          .report = {.verbosity = arguments->options.verbosity,
-                                    .heard = hear_warning,
+                                    .heard = viewer_hear,
                                     .heard_data = &v->warnings},
                          .view = arguments->view,
                          .wipe = arguments->wipe >= 0,
@@ -402,7 +457,8 @@ bool viewer_open(struct viewer *viewer, const struct arguments *arguments, struc
     if (!v->context || !open_images(v, err) || !open_window(v, err) || !open_panel(v, err) ||
         !create_timestamps(v, err))
         return false;
-    history_reset(&v->history, v->settings);
+    const struct history_state first = viewer_state(v);
+    history_reset(&v->history, &first);
     viewer_mark_stale(v);
     viewer_choose_scale(v);
     viewer_fit(v);

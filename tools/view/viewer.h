@@ -30,15 +30,15 @@ struct placing {
 
 struct status {
     bool bad;
-    bool is_new; /* no key was pressed since; then it stands on the picture if the panel is hidden
-                  */
+    bool
+        is_new; /* no key was pressed since; then it stands on the picture if the panel is hidden */
     char text[1400];
 };
 
 struct viewer {
     const struct arguments *arguments;
     struct report report;
-    struct text warnings; /* of the files that are open, a line each */
+    struct text warnings; /* of the frame that is shown, a line each */
     struct gpu gpu;
     struct window window;
     VkSurfaceKHR surface;
@@ -55,6 +55,7 @@ struct viewer {
     struct setting settings[SIDES];
     struct history history;
     bool bias_is_given[SIDES];
+    float bias_settled[SIDES]; /* by the steps of the frame's depth; 0 = not yet */
     enum side active;
     enum view_kind view;
     bool wipe;
@@ -134,6 +135,8 @@ void viewer_say(struct viewer *viewer, const char *format, ...) TOOL_PRINTF(2, 3
 /* What is wrong with files, old and new, is said in the panel, and the window goes on; a device
  * that is lost ends it. */
 void viewer_say_error(struct viewer *viewer, const struct tool_error *err);
+/* Of a struct report: adds a warning to a struct text, as a line. */
+void viewer_hear(void *text, const char *warning);
 /* Ends the run with the first error that was not said. */
 void viewer_fail(struct viewer *viewer, const struct tool_error *err);
 /* Loads a frame of the sequence; what is wrong with it is said in the panel. */
@@ -153,6 +156,9 @@ void viewer_mark_stale(struct viewer *viewer);
 void viewer_mark_seen(struct viewer *viewer);
 /* As many frames more as it takes until what was asked for is shown. */
 void viewer_draw_more(struct viewer *viewer);
+/* What can be undone. */
+struct history_state viewer_state(const struct viewer *viewer);
+void viewer_take_state(struct viewer *viewer, const struct history_state *state);
 /* The range of the depth view, if it is the automatic one. */
 void viewer_fit_depth(struct viewer *viewer);
 /* Whether a side is seen, or asked about. */

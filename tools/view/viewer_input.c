@@ -115,6 +115,7 @@ static void copy_probe(struct viewer *v)
 
 static void press_key(struct viewer *v, enum key_action key)
 {
+    struct history_state state;
     if (key >= KEY_VIEW_1 && key < KEY_VIEW_1 + VIEW_KINDS) {
         v->view = (enum view_kind)(key - KEY_VIEW_1);
         viewer_mark_stale(v);
@@ -159,8 +160,8 @@ static void press_key(struct viewer *v, enum key_action key)
         break;
     case KEY_UNDO:
     case KEY_REDO:
-        if (history_step(&v->history, key == KEY_UNDO ? -1 : 1, v->settings))
-            viewer_mark_stale(v);
+        if (history_step(&v->history, key == KEY_UNDO ? -1 : 1, &state))
+            viewer_take_state(v, &state);
         break;
     case KEY_COPY:
         copy_probe(v);
@@ -258,15 +259,12 @@ static bool open_files(struct viewer *v, char *const *paths, size_t count)
     if (v->live) {
         fail(&err, EXIT_INPUT, "%s: a live scene takes no files", paths[0]);
     } else if (source_drop(&v->source, paths, count, &undo, &err)) {
-        struct text before = v->warnings;
-        v->warnings = (struct text){0};
         v->report.said_count = 0;
         plan_say_cameras(&v->source.plan, &v->report);
         const bool loaded = viewer_load(v, v->source.frame, v->source.now.view);
         source_settle(&v->source, &undo, loaded);
-        text_free(loaded ? &before : &v->warnings);
-        if (!loaded)
-            v->warnings = before;
+        if (loaded)
+            viewer_fit_depth(v); /* another camera may measure another depth */
         return loaded;
     }
     if (err.code)
@@ -343,8 +341,9 @@ void viewer_handle_input(struct viewer *viewer)
 {
     const struct input *in = &viewer->window.input;
     /* A drag is one step. */
+    const struct history_state now = viewer_state(viewer);
     if (!in->left)
-        history_note(&viewer->history, viewer->settings);
+        history_note(&viewer->history, &now);
     if (in->key_count > 0)
         viewer->status.is_new = false;
     for (size_t i = 0; i < in->key_count; i++) {
