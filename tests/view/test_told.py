@@ -26,6 +26,45 @@ def warning_of_the_radius_follows_the_panel(scratch):
 
 
 @case
+def right_click_brings_back_the_radius_of_the_file(scratch):
+    write_exr(scratch.path('in.exr'), gbuffer())
+    size = (WIDTH + PANEL_WIDTH, 700)
+    with Viewer(scratch, 'in.exr', '--fov', FOV, '--save', 'saved', size=size) as viewer:
+        viewer.wait_title('^in.exr')
+        viewer.key('s')
+        until(lambda: 'saved.sh' in scratch.files(), 'saved picture')
+        viewer.drag((85, 175 + 23), (110, 175 + 23), hold=1)  # radius
+        viewer.key('s')
+        until(lambda: 'saved.2.sh' in scratch.files(), 'saved picture')
+        # Above the saved command, which takes room of what scrolls.
+        viewer.drag((85, 175 + 23), (85, 175 + 23), button=3, hold=1)
+        viewer.key('s')
+        viewer.finish()
+    first, changed, last = (script(scratch, name) for name in
+                            ('saved.sh', 'saved.2.sh', 'saved.3.sh'))
+
+    def radius(command):
+        return float(command[command.index('--radius') + 1])
+    check(radius(changed) > radius(first) * 1.2, f'the radius is {radius(changed)}')
+    equal(radius(last), radius(first), 'the radius after a right click')
+
+
+@case
+def slider_reaches_a_radius_in_millimetres(scratch):
+    planes = {**gbuffer(), 'Z': np.where(SCENE.sky, 1e10, SCENE.depth() * 5e4).astype(np.float32)}
+    write_exr(scratch.path('in.exr'), planes)
+    with Viewer(scratch, 'in.exr', '--fov', FOV, '--save', 'saved',
+                size=(WIDTH + PANEL_WIDTH, 700)) as viewer:
+        viewer.wait_title('^in.exr')
+        viewer.drag((80, 198), (90, 198), hold=1)  # radius
+        viewer.key('s')
+        viewer.finish()
+    command = script(scratch, 'saved.sh')
+    radius = float(command[command.index('--radius') + 1])
+    check(radius > 1000, f'the radius is {radius}')
+
+
+@case
 def exposure_is_undone_too(scratch):
     size = (WIDTH + PANEL_WIDTH, 700)
     with opened(scratch, '--show', 'composite', size=size) as viewer:

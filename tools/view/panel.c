@@ -14,15 +14,58 @@
 
 /* --- Parameters --- */
 
-static void describe(const struct param *row, char *text, size_t size)
+/* The row, with a range of lengths that goes by the files, whatever their unit, and with ends that
+ * what was asked for lies between: else touching the slider would lose it. */
+static struct param row_for(const struct viewer *v, const struct param *row)
 {
     const vkao_parameter *p = row->parameter;
-    const bool is_number = p->type == VKAO_PARAMETER_FLOAT || p->type == VKAO_PARAMETER_UINT;
-    if (is_number)
-        snprintf(text, size, "%s\n\n%g to %g%s%s, default %g. Right click: default", p->help,
-                 row->low, row->high, *p->unit ? " " : "", p->unit, p->standard);
+    struct param fit = *row;
+    if (strcmp(p->unit, "scene units") == 0 && v->source.radius > 0) {
+        fit.low *= (double)v->source.radius / p->standard;
+        fit.high *= (double)v->source.radius / p->standard;
+    }
+    double asked = fit.low;
+    const void *at = parameter_of_const(&v->arguments->settings[v->active], p);
+    if (p->type == VKAO_PARAMETER_FLOAT)
+        asked = (double)*(const float *)at;
+    else if (p->type == VKAO_PARAMETER_UINT)
+        asked = (double)*(const uint32_t *)at;
+    if (asked > 0) /* 0 is what the file decides, or in range */
+        fit.low = fmin(fit.low, asked);
+    fit.high = fmax(fit.high, asked);
+    return fit;
+}
+
+/* The setting at hand, but for the row, which is as the files would have it. */
+static struct setting reset(const struct viewer *v, const struct param *row)
+{
+    struct setting s = v->settings[v->active];
+    const void *at = parameter_of(&s, row->parameter);
+    param_reset(row, &s);
+    if (at == &s.params.radius && v->live)
+        s.params.radius = live_scene_radius(v->live->kind);
+    else if (at == &s.params.radius && v->source.radius > 0)
+        s.params.radius = v->source.radius;
+    else if (at == &s.params.bias && v->bias_settled[v->active] > 0)
+        s.params.bias = v->bias_settled[v->active];
+    return s;
+}
+
+static void describe(const struct param *row, const struct setting *standard, char *text,
+                     size_t size)
+{
+    const vkao_parameter *p = row->parameter;
+    struct text value = {0};
+    parameter_add_value(&value, p, standard);
+    const char *number = value.data ? value.data : "";
+    if (p->type == VKAO_PARAMETER_FLOAT || p->type == VKAO_PARAMETER_UINT)
+        snprintf(text, size,
+                 "%s\n\n%.4g to %.4g%s%s, default %s. Right click: default, Ctrl and "
+                 "click: type",
+                 p->help, row->low, row->high, *p->unit ? " " : "", p->unit, number);
     else
         snprintf(text, size, "%s\n\nRight click: default", p->help);
+    text_free(&value);
 }
 
 static bool choice_row(const struct param *row, struct setting *s, unsigned there)
@@ -64,18 +107,21 @@ static bool widget_row(const struct param *row, struct setting *s, unsigned ther
 }
 
 /* Whether it changed. A right click resets; the radius of a file is its automatic one. */
-static bool param_row(struct viewer *v, const struct param *p, struct setting *s)
+static bool param_row(struct viewer *v, const struct param *row, struct setting *s)
 {
+    const struct param fit = row_for(v, row), *p = &fit;
     const unsigned there = viewer_images_there(v);
     const uint32_t readers = p->parameter->methods;
-    bool idle = (readers && !(readers & 1u << s->effect.method)) || (p->needs & ~there);
-    char help[256];
+    bool idle = (readers && !(readers & 1u << s->effect.method)) || (p->needs & ~there) ||
+                !viewer_has_image(v);
+    char help[320];
     ui_begin_disabled(idle);
     bool changed = widget_row(p, s, there);
-    describe(p, help, sizeof help);
+    const struct setting standard = reset(v, p);
+    describe(p, &standard, help, sizeof help);
     ui_help(help);
     if (ui_clicked_right()) {
-        param_reset(p, s);
+        *s = reset(v, p);
         changed = true;
     }
     ui_end_disabled();
@@ -284,7 +330,9 @@ static void view_rows(struct viewer *v)
         gain_row(v);
     else if (v->view == VIEW_COMPOSITE)
         exposure_row(v);
-    else if (v->view == VIEW_DEPTH)
+    if (v->view == VIEW_COMPOSITE && viewer_has_image(v) && !(viewer_images_there(v) & NEEDS_COLOR))
+        ui_paragraph(UI_DIM, "the file has no colour: AO alone");
+    if (v->view == VIEW_DEPTH)
         depth_rows(v);
 }
 
