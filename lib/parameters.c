@@ -234,13 +234,14 @@ struct preset {
     /* Normals keep the blur off edges that depth does not show, thin slats in front of a wall; on a
      * CPU they cost more than the rest of the blur. */
     float normal_power;
+    float sharpness; /* what is sharper flickers more, where one slice is all there is */
 };
 
 static const struct preset presets[] = {
-    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f},
-    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f},
-    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 3, 4.0f},
-    [VKAO_QUALITY_BEST] = {VK_FALSE, 5, 16, 1, 8.0f},
+    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f, 200.0f},
+    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f, 200.0f},
+    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 3, 8.0f, 400.0f},
+    [VKAO_QUALITY_BEST] = {VK_FALSE, 5, 16, 1, 8.0f, 400.0f},
 };
 
 vkao_result vkao_preset(vkao_quality quality, vkao_effect_info *effect, vkao_params *params)
@@ -260,7 +261,7 @@ vkao_result vkao_preset(vkao_quality quality, vkao_effect_info *effect, vkao_par
         const vkao_params standard = vkao_params_default();
         params->bias = standard.bias;
         params->thickness = standard.thickness;
-        params->sharpness = standard.sharpness;
+        params->sharpness = p->sharpness;
     }
     return VKAO_SUCCESS;
 }

@@ -60,10 +60,10 @@ float blur_weights(int radius)
 
 /* Beside an edge AO is steep, and the mean of one side of the window alone is that of a place
  * farther in. So a side counts more the more of the other one lies on the surface as well: in the
- * middle of a surface by 1 + across. Where normals keep the blur off edges, it does not pay. */
+ * middle of a surface by 1 + across. */
 float across()
 {
-    return NORMAL_POWER > 0.0 ? 0.0 : VKAO_BLUR_ACROSS;
+    return NORMAL_POWER > 0.0 ? VKAO_BLUR_ACROSS_NORMALS : VKAO_BLUR_ACROSS;
 }
 
 /* What tap k counts alone; what it gains in the middle of a surface makes blur_weight of it. */

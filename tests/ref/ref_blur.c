@@ -98,7 +98,7 @@ static double blurred(const struct blur *blur, const double *ao, int x, int y, i
         sums[side] += w * normals * ao[tap];
         weights[side] += w * normals;
     }
-    double across = compares_normals(blur) ? 0.0 : 0.35, side = most > 0.0 ? most / 2.0 : 1.0;
+    double across = compares_normals(blur) ? 0.6 : 0.35, side = most > 0.0 ? most / 2.0 : 1.0;
     double before = (1.0 + across * weights[2] / side) / (1.0 + across),
            behind = (1.0 + across * weights[0] / side) / (1.0 + across);
     double sum = sums[1] + before * sums[0] + behind * sums[2];

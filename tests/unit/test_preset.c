@@ -8,12 +8,12 @@
 static const struct {
     VkBool32 half;
     uint32_t slices, steps, radius;
-    float normal_power, thickness;
+    float normal_power, sharpness;
 } want[] = {
-    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f, 1.0f},
-    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f, 1.0f},
-    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 3, 4.0f, 1.0f},
-    [VKAO_QUALITY_BEST] = {VK_FALSE, 5, 16, 1, 8.0f, 1.0f},
+    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f, 200.0f},
+    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f, 200.0f},
+    [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 3, 8.0f, 400.0f},
+    [VKAO_QUALITY_BEST] = {VK_FALSE, 5, 16, 1, 8.0f, 400.0f},
 };
 
 static void presets_set_what_they_decide_and_nothing_else(void **state)
@@ -33,8 +33,8 @@ static void presets_set_what_they_decide_and_nothing_else(void **state)
         assert_int_equal(effect.step_count, want[q].steps);
         assert_int_equal(effect.blur_radius, want[q].radius);
         assert_true(effect.blur_normal_power == want[q].normal_power);
-        assert_true(params.bias == 0.005f && params.sharpness == 200.0f);
-        assert_true(params.thickness == want[q].thickness);
+        assert_true(params.bias == 0.005f && params.thickness == 1.0f);
+        assert_true(params.sharpness == want[q].sharpness);
         was_effect.half_resolution = effect.half_resolution;
         was_effect.method = effect.method;
         was_effect.slice_count = effect.slice_count;

@@ -227,7 +227,6 @@ static void apply_quality(struct setting *s, int quality)
     setting_apply_preset(s, (vkao_quality)quality);
     s->effect.method = before.effect.method;
     s->params.bias = before.params.bias;
-    s->params.sharpness = before.params.sharpness;
 }
 
 static bool is_left(const struct options *o, const char *name)

@@ -691,7 +691,7 @@ const struct option_row option_table[] = {
     {PARAMETER("power", params.power), .letter = 'p', .argument = "X"},
     {PARAMETER("blur", effect.blur_radius), .letter = 'b', .argument = "N", .has_off = true,
      BY_QUALITY},
-    {PARAMETER("blur-sharpness", params.sharpness), .argument = "X"},
+    {PARAMETER("blur-sharpness", params.sharpness), .argument = "X", BY_QUALITY},
     {PARAMETER("blur-normal-power", effect.blur_normal_power), .argument = "X", BY_QUALITY},
     {PARAMETER("strength", params.strength), .argument = "X"},
     {PARAMETER("tint", params.tint), .argument = "R,G,B"},
