@@ -4,7 +4,7 @@
  * the scene AO comes with them. */
 #include "fixture.h"
 #include "ref_methods.h"
-#include "ref_view.h"
+#include "ref_scene.h"
 
 #include <math.h>
 #include <stdio.h>

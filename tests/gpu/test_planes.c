@@ -3,7 +3,7 @@
  * Infinite planes: open at any tilt, at any field of view, and under normals that lean away from
  * them by as much as they hide. */
 #include "fixture.h"
-#include "ref_view.h"
+#include "ref_scene.h"
 
 #include <math.h>
 #include <stdio.h>

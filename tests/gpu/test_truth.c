@@ -5,7 +5,7 @@
  * with a little room. */
 #include "fixture.h"
 #include "ref_normal.h"
-#include "ref_view.h"
+#include "ref_scene.h"
 
 #include <math.h>
 #include <stdio.h>

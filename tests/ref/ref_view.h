@@ -46,11 +46,6 @@ void ref_view_eye(const struct ref_view *view, const double p[3], double out[3])
  * arithmetic. */
 double ref_view_depth_error(const struct ref_view *view, double z);
 
-/* normals: components of the stored image, 4 a texel, or NULL. ref_scene_free frees. */
-void ref_scene_init(struct ref_scene *scene, const struct ao_view *view, uint32_t width,
-                    uint32_t height, VkFormat depth_format, const double *depth,
-                    const double *normals);
-void ref_scene_free(struct ref_scene *scene);
 /* View z of a texel, NAN if there is none. */
 double ref_scene_z(const struct ref_scene *scene, int x, int y);
 /* The scene at the texel nearest to where p projects. False if p is behind the eye or nothing is

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
  *
  * What the parts of the fake share: its state (fake_vulkan.c), its device functions (fake_device.c)
- * and its commands (fake_commands.c). */
+ * and its commands (fake_commands.c), which fake_loader.c hands out. */
 #ifndef FAKE_INTERNAL_H_
 #define FAKE_INTERNAL_H_
 

@@ -9,7 +9,7 @@
 #include "gpu.h"
 #include "stage_setting.h"
 #include "lens.h"
-#include "ref_view.h"
+#include "ref_scene.h"
 #include "scenes.h"
 
 /* cmocka.h wants these before it. */
