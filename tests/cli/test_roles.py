@@ -12,6 +12,7 @@ NORMAL_NAMES = [
     ('N.red', ('N.red', 'N.green', 'N.blue')), ('NX', ('NX', 'NY', 'NZ')),
     ('Nx', ('Nx', 'Ny', 'Nz')), ('Nsx', ('Nsx', 'Nsy', 'Nsz')),
     ('bumpNormals', ('bumpNormals.R', 'bumpNormals.G', 'bumpNormals.B')),
+    ('hitN', ('hitN.x', 'hitN.y', 'hitN.z')),
     ('NormalWS', ('NormalWS.X', 'NormalWS.Y', 'NormalWS.Z')),
     ('CameraNormal', ('FinalImageCameraNormal.R', 'FinalImageCameraNormal.G',
                       'FinalImageCameraNormal.B')),
@@ -71,6 +72,20 @@ def depth_is_found_by_all_its_names(scratch, name):
           view['passed_over'], str(view['passed_over']))
     if name in ('dd.y', 'Distance.R'):
         equal(view['conventions']['depth_type'], 'radial', 'type')
+
+
+@cases([('__depth.r', ('__depth.g', '__depth.b'), None), ('linearZ.R', ('linearZ.G',), 'planar'),
+        ('distance_to_camera.R', (), 'radial'), ('distance_to_image_plane.R', (), 'planar')])
+def depth_may_lie_beside_other_measures(scratch, name, others, kind):
+    # Height and facing, or a slope: no picture in colours.
+    scene = Scene()
+    rng = np.random.default_rng(2)
+    channels = {name: scene.depth(kind or 'planar'), **scene.normals(),
+                **{n: rng.random(scene.z.shape).astype(np.float32) for n in others}}
+    write_exr(scratch.path('in.exr'), channels)
+    view = inspect(scratch, '--fov', FOV)
+    equal(view['roles']['depth'] and view['roles']['depth']['channels'], [name], 'depth')
+    equal(view['conventions']['depth_type'], kind or 'planar', 'type')
 
 
 @cases([('twice', 2, np.float32, True), ('negative', -1, np.float32, False),

@@ -113,7 +113,7 @@ static void take_hit(const struct role_search *s, const struct role_hit *hit,
     role->depth_type = row ? row->depth_type : DEPTH_AUTO;
     role->normal_space = row ? row->normal_space : NORMAL_SPACE_AUTO;
     role->follows_positions = row && row->companion;
-    role->twin = twin_of(s, role);
+    role->twin = row && row->is_mixed ? NULL : twin_of(s, role);
     role_hit_label(s, hit, role->label);
 }
 

@@ -79,6 +79,7 @@ struct role_row {
     enum depth_type depth_type;
     enum normal_space normal_space;
     bool is_plain; /* a name of the depth itself, as good as those of other rows like it */
+    bool is_mixed; /* components beside it measure other things: not a picture in colours */
 };
 
 extern const struct role_row role_table[];

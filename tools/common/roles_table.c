@@ -30,18 +30,22 @@ const struct role_row role_table[] = {
     /* Unreal: FinalImageMovieRenderQueue_WorldDepth.R and relatives */
     {.kind = ROLE_DEPTH, .layers = "~worlddepth", .sets = {{"R"}, {"Z"}}},
     {.kind = ROLE_DEPTH, .layers = "ImageDepth|SceneDepth", .sets = DEPTH_COMPONENTS},
-    /* RenderMan's integrator */
-    {.kind = ROLE_DEPTH, .layers = "__depth", .sets = {{"R"}}},
+    /* RenderMan's integrator; g is the height above the ground, b how much the surface faces */
+    {.kind = ROLE_DEPTH, .layers = "__depth", .sets = {{"R"}}, .is_mixed = true},
     /* Mitsuba: the layer is the user's, the T is Mitsuba's */
     {.kind = ROLE_DEPTH, .layers = "*", .sets = {{"T"}}, .depth_type = DEPTH_RADIAL_NEAR},
     /* Mitsuba 2 had no T: dd.y is what its manual calls the depth */
     {.kind = ROLE_DEPTH, .layers = "dd", .sets = {{"y"}}, .depth_type = DEPTH_RADIAL},
     /* Blender, for its denoiser */
     {.kind = ROLE_DEPTH, .layers = "Denoising Depth", .sets = {{"Z"}}},
-    {.kind = ROLE_DEPTH, .layers = "linearZ", .sets = {{"R"}, {"Z"}}, .depth_type = DEPTH_PLANAR},
-    /* Iray and others */
-    {.kind = ROLE_DEPTH, .layers = "distance|ray_length|raylength", .sets = DEPTH_COMPONENTS,
-     .depth_type = DEPTH_RADIAL},
+    /* Falcor; G is the slope */
+    {.kind = ROLE_DEPTH, .layers = "linearZ", .sets = {{"R"}, {"Z"}}, .depth_type = DEPTH_PLANAR,
+     .is_mixed = true},
+    /* Iray and others; Isaac Sim */
+    {.kind = ROLE_DEPTH, .layers = "distance|ray_length|raylength|distance_to_camera",
+     .sets = DEPTH_COMPONENTS, .depth_type = DEPTH_RADIAL},
+    {.kind = ROLE_DEPTH, .layers = "distance_to_image_plane", .sets = DEPTH_COMPONENTS,
+     .depth_type = DEPTH_PLANAR},
     {.kind = ROLE_DEPTH, .sets = {{"distance"}}, .depth_type = DEPTH_RADIAL},
     /* Whatever else calls itself so */
     {.kind = ROLE_DEPTH, .layers = "~depth", .sets = DEPTH_COMPONENTS},
@@ -63,7 +67,7 @@ const struct role_row role_table[] = {
      .normal_space = NORMAL_SPACE_CAMERA},
     /* Blender Normal, Arnold, Redshift and Karma N, OSPRay normal, Mitsuba by its manual */
     {.kind = ROLE_NORMAL, .layers = "Ns|sh_normal|nn|sn", .sets = VECTOR_COMPONENTS},
-    {.kind = ROLE_NORMAL, .layers = "N", .sets = VECTOR_COMPONENTS},
+    {.kind = ROLE_NORMAL, .layers = "N|hitN", .sets = VECTOR_COMPONENTS},
     {.kind = ROLE_NORMAL, .layers = "normal", .sets = VECTOR_COMPONENTS},
     {.kind = ROLE_NORMAL, .layers = "normals", .sets = VECTOR_COMPONENTS},
     {.kind = ROLE_NORMAL,
