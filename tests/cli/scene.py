@@ -80,6 +80,33 @@ class Scene:
         return {k: v.astype(np.float32) for k, v in planes.items() if alpha or k != 'A'}
 
 
+# Corners of boxes: the ceiling and two walls of a room.
+CORNER = [((-50, 3.5, -50), (50, 9, 50)), ((-50, -50, -12), (50, 50, -9)),
+          ((-9, -50, -50), (-6, 50, 50))]
+
+
+def boxes_along_axes(boxes, width, height, aspect=1.0, shift=(0, 0), turn=TURN):
+    """Depth and normals of boxes, each two corners, that are parallel to the axes of the world."""
+    half = np.tan(np.radians(FOV / 2))
+    x = ((np.arange(width) + 0.5) / width * 2 - 1 + 2 * shift[0]) * half
+    y = (1 - (np.arange(height) + 0.5) / height * 2 + 2 * shift[1]) * half * height / \
+        (width * aspect)
+    x, y = np.meshgrid(x, y)
+    ray = np.stack([x, y, -np.ones_like(x)], axis=-1) @ turn
+    z, normals = np.full_like(x, np.inf), np.zeros((height, width, 3))
+    for low, high in boxes:
+        with np.errstate(divide='ignore'):
+            near, far = np.array(low) / ray, np.array(high) / ray
+        enter, leave = np.minimum(near, far), np.maximum(near, far).min(axis=-1)
+        axis, enter = enter.argmax(axis=-1), enter.max(axis=-1)
+        hit = (enter < leave) & (enter > 0) & (enter < z)
+        z = np.where(hit, enter, z)
+        side = np.eye(3)[axis] * -np.sign(np.take_along_axis(ray, axis[..., None], -1))
+        normals = np.where(hit[..., None], side, normals)
+    return {'Z': np.where(np.isinf(z), 1e10, z).astype(np.float32),
+            **{f'N.{c}': normals[..., i].astype(np.float32) for i, c in enumerate('XYZ')}}
+
+
 def camera(fov=FOV, **more):
     """The camera of the scene as the object of a camera file."""
     rows = np.eye(4)

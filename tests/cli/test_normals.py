@@ -6,7 +6,7 @@ import numpy as np
 
 from cli import CHANNELS, case, cases, check, equal, main, matches, write_exr
 from evidence import check_same, clean, depth_of, hidden, inspect, rotation_header, run
-from scene import FOV, TURN, Scene
+from scene import CORNER, FOV, TURN, Scene, boxes_along_axes
 
 
 def no_normals_at_all(scene):
@@ -131,6 +131,21 @@ def axes_of_another_world_are_found(scratch):
                    attributes=rotation_header())
     check_same(ao, wanted, 'with other axes')
     matches('by the rotation of worldToCamera: that of the image is taken', said, 'stderr')
+
+
+@cases([('mirrored', (-1, 1, 1), True), ('any way round', None, False),
+        ('as they are', (1, 1, 1), False)])
+def mirrored_worlds_are_found(scratch, _, flip, is_said):
+    # Of faces along the axes the mirrored ones are parallel to the right ones: agreement is blind.
+    boxes = [((i - 6, 2.8 - i * 0.3, -5 - i * 0.7), (i - 5.2, 9, -4.2 - i * 0.5)) for i in range(5)]
+    channels = boxes_along_axes(CORNER + boxes, 320, 180)
+    wanted = run(scratch, channels, '--fov', FOV, attributes=rotation_header())[0]
+    signs = np.random.default_rng(6).choice([-1, 1], (9, 16)).repeat(20, axis=0).repeat(20, axis=1)
+    for i, c in enumerate('XYZ'):
+        channels[f'N.{c}'] = (channels[f'N.{c}'] * (flip[i] if flip else signs)).astype(np.float32)
+    ao, said = run(scratch, channels, '--fov', FOV, attributes=rotation_header())
+    check_same(ao, wanted, 'with other signs')
+    equal('face it once their x is turned round: mirrored' in said, is_said, f'what is in {said}')
 
 
 @cases([('40', 40), ('8', 8)])

@@ -404,6 +404,49 @@ static void ask_depth(struct gbuffer *g, const struct way ways[WAYS],
     }
 }
 
+/* --- Mirrors --- */
+
+/* Agreement does not ask which way round a normal points, as leaves do not either. Of what a
+ * renderer turned towards the eye more than 99 of 100 face it; of a world with one axis the other
+ * way round, as a left-handed one has, 29 to 99. What faces the eye in a mirror alone was mirrored,
+ * and leaves that point anywhere face it in none. */
+static bool ask_mirrors(struct gbuffer *g, const struct normal_pairs *pairs, const char *path,
+                        struct report *report)
+{
+    static const double most_facing = 0.98, least_facing = 0.99, half = 0.5, less = 0.02;
+    struct facing as_told, mirrored;
+    float best[9];
+    int axis = -1;
+    if (!measure_facing(g, g->view.normal_to_view, &as_told))
+        return false;
+    double most = least_facing;
+    const bool is_asked = as_told.share < most_facing &&
+                          gbuffer_agreement(pairs, g->view.normal_to_view).share > half;
+    for (int c = 0; is_asked && c < 3; c++) {
+        float m[9];
+        memcpy(m, g->view.normal_to_view, sizeof m);
+        for (int row = 0; row < 3; row++)
+            m[c * 3 + row] = -m[c * 3 + row];
+        if (!measure_facing(g, m, &mirrored))
+            return false;
+        const double agreement = gbuffer_agreement(pairs, m).share;
+        if (mirrored.share < most || agreement < g->normal_agreement - less)
+            continue;
+        most = mirrored.share;
+        axis = c;
+        memcpy(best, m, sizeof best);
+    }
+    if (axis < 0)
+        return true;
+    memcpy(g->view.normal_to_view, best, sizeof best);
+    report_warn(report, "mirrored normals",
+                "%s: %.0f %% of the normals '%s' face away from the camera, and all face it once "
+                "their %c is turned round: mirrored, as those of a left-handed world are; they are "
+                "taken so",
+                path, (1.0 - as_told.share) * 100.0, g->roles.kind[ROLE_NORMAL].label, "xyz"[axis]);
+    return true;
+}
+
 /* --- The choice --- */
 
 /* By name, camera and looks; AUTO: none of them tells. */
@@ -523,7 +566,11 @@ static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const cha
     ask_depth(g, ways, &pairs, wanted, path, report);
     const size_t count = pairs.count;
     const bool alike = are_alike(&pairs);
+    const bool ok = count < FEW_PAIRS || g->normal_space == NORMAL_SPACE_AUTO ||
+                    ask_mirrors(g, &pairs, path, report);
     gbuffer_free_pairs(&pairs);
+    if (!ok)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     if (count >= FEW_PAIRS && wanted == NORMAL_SPACE_AUTO && g->normal_space != NORMAL_SPACE_AUTO)
         check_values(g, alike, path, report);
     return !g->normals || check_normals(g, wanted, count, path, report, err);
