@@ -443,67 +443,6 @@ def normals_do_not_tell_the_unit_of_depth(scratch, _, background, is_clamped):
     check_same(ao, wanted, 'with its range')
 
 
-def clamped(low, high):
-    return lambda z: np.clip(z, low, high)
-
-
-@cases([('as it is', clamped(0, np.inf), None),
-        ('far, sky and all', clamped(0, 4.5), 'clamped: .* at its farthest value'),
-        ('far, but for the sky', lambda z: np.where(z < 10, np.minimum(z, 4.5), 1e10),
-         'clamped: .* at its farthest value'),
-        ('near', clamped(3.2, np.inf), 'clamped: .* at its nearest value')],
-       name=lambda row: row[0])
-def depth_of_a_range_is_said(scratch, _, change, message):
-    scene = Scene(320, 180)
-    z = change(depth_of(scene, np.inf))
-    for kind, depth in (('planar', z), ('inverse', 1 / z)):
-        write_exr(scratch.path('in.exr'), {'Z': depth.astype(np.float32),
-                                           **scene.normals(space='world')})
-        said = str(inspect(scratch, '--fov', FOV, '--depth-type', kind)['warnings'])
-        if message:
-            matches(message, said, 'the warnings')
-        else:
-            check('clamped' not in said, said)
-
-
-@case
-def things_where_depth_has_nothing_are_said(scratch):
-    # A curtain hangs before the wall, which a far plane cuts off.
-    scene = Scene(320, 180)
-    fold = np.where(np.arange(320) // 8 % 2, 0.6, -0.6) * np.ones((180, 1))
-    curtain = np.stack([fold, 0 * fold, 0 * fold + 0.8], axis=-1)
-    is_cut = scene.z > 4.5
-    depth = np.where(is_cut, 1e10, scene.z).astype(np.float32)
-    for is_shown in (True, False):
-        scene.normal = np.where(is_cut[..., None], curtain * is_shown, scene.normal)
-        write_exr(scratch.path('in.exr'), {'Z': depth, **scene.normals()})
-        said = str(inspect(scratch, '--fov', FOV)['warnings'])
-        equal('has nothing at' in said, is_shown, f'whether it is in {said}')
-    # What the user takes out is meant to be so.
-    scene.normal = np.where(is_cut[..., None], curtain, scene.normal)
-    texel = 10 * np.tan(np.radians(FOV / 2)) / 320
-    folded = np.where(is_cut, 5 + np.cumsum(fold * 0.75 / 0.6 * texel, axis=1), scene.z)
-    write_exr(scratch.path('in.exr'),
-              {'Z': folded.astype(np.float32), 'matte': is_cut.astype(np.float32),
-               **scene.normals()})
-    for options in ('--no-cast', 'matte'), ('--background', 4.5):
-        said = scratch.render('in.exr', '-o', f'out{options[0]}.exr', '--fov', FOV, *options).stderr
-        check('has nothing at' not in said, f'{options}: {said}')
-
-
-@cases([('a wall', 6.0, (0, 0, 1)), ('nothing', 1e10, (0, 0.8, 0.6)), ('a dome', 1e10, None)])
-def normals_of_what_is_at_one_value_may_be_its_own(scratch, _, value, normal):
-    # Walls seen straight on, and skies that are written with normals: of one way, or to the eye.
-    scene = Scene(320, 180)
-    to_eye = -np.stack([scene.x, scene.y, -np.ones_like(scene.x)], -1) / scene.stretch[..., None]
-    scene.normal = np.where(scene.sky[..., None], to_eye if normal is None else normal,
-                            scene.normal)
-    depth = depth_of(scene, value)
-    write_exr(scratch.path('in.exr'), {'Z': depth, **scene.normals()})
-    said = str(inspect(scratch, '--fov', FOV)['warnings'])
-    check('clamped' not in said and 'has nothing' not in said, said)
-
-
 @cases([('all of them', 0, False), ('a few', 0.005, False), ('a third', 0.3, True)])
 def surface_without_normals_is_said(scratch, _, share, is_said):
     scene = Scene()

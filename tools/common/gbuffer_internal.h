@@ -147,8 +147,8 @@ bool gbuffer_warn_of_move(const struct gbuffer *g, const char *path, struct repo
  * becomes part of that. */
 void gbuffer_warn_of_ramps(struct gbuffer *g, const char *path, struct report *report);
 /* Of depth as prepared and the normals that are used, if any: values that all beyond them was set
- * to. */
-void gbuffer_warn_of_limits(const struct gbuffer *g, const char *path, struct report *report);
+ * to, or that what lies in between was filled with. False if memory runs out. */
+bool gbuffer_warn_of_limits(const struct gbuffer *g, const char *path, struct report *report);
 /* Of depth as prepared, of another kind or unit than that of the frames before, where that begins;
  * memory may be NULL. */
 void gbuffer_warn_of_frame(const struct gbuffer *g, struct frame_memory *memory, const char *path,

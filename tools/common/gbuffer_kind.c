@@ -204,11 +204,19 @@ static void take_seen(struct gbuffer *g, const struct value_facts *f, enum plane
             take(g, DEPTH_PLANAR, DEPTH_BY_PLANES);
         return;
     case SAY_OFFSET:
-        report_warn(report, "offset depth",
-                    "%s: depth '%s', from %.4g to %.4g, looks normalised or measured from the near "
-                    "plane: flat things are flat only if %.3g is added (--depth-type normalized "
-                    "--depth-range NEAR,FAR, or radial-near with --near)",
-                    path, label, f->low, f->high, g->planes.offset);
+        if (g->planes.offset < 0 && f->high > 1.0)
+            report_warn(report, "offset depth",
+                        "%s: depth '%s', from %.4g to %.4g, looks counted down from a far plane: "
+                        "flat things are flat only as distances of %.4g less depth; AO is wrong; "
+                        "write it as a distance",
+                        path, label, f->low, f->high, -g->planes.offset);
+        else
+            report_warn(
+                report, "offset depth",
+                "%s: depth '%s', from %.4g to %.4g, looks normalised or measured from the near "
+                "plane: flat things are flat only if %.3g is added (--depth-type normalized "
+                "--depth-range NEAR,FAR, or radial-near with --near)",
+                path, label, f->low, f->high, g->planes.offset);
         break;
     case SAY_PLANAR:
         take(g, DEPTH_PLANAR, DEPTH_BY_PLANES);

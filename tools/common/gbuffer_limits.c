@@ -2,15 +2,17 @@
  *
  * Whether depth ends where things go on. Ranges, of a depth pass that is made to be looked at, of a
  * clip or of a device, leave everything beyond them at one value, as a wall or as nothing; AO is
- * lost there. Normals go on: they face all ways and have edges. Those of a wall face the camera,
- * those of a sky face the eye or are all the same.
+ * lost there. So is it where something in between was filled with one value, as mattes, plates and
+ * the boxes of volumes are. Normals go on: they face all ways and have edges. Those of a wall face
+ * the camera, those of a sky face the eye or are all the same.
  */
 #include "gbuffer_internal.h"
 #include "text.h"
 
 #include <math.h>
+#include <stdlib.h>
 
-enum place { AT_NEAREST, AT_FARTHEST, AT_NOTHING, PLACES, ELSEWHERE };
+enum place { AT_NEAREST, AT_FARTHEST, AT_NOTHING, AT_FILL, PLACES, ELSEWHERE };
 
 /* Texels well inside of what is all at one value, and how many of them face neither the camera nor
  * the eye, and lie at an edge. */
@@ -20,12 +22,44 @@ struct limit {
 
 struct range {
     float low, high; /* of depth where there is something */
+    float fill;      /* in between, that of which most texels are; NAN: nearly all differ */
     bool is_rising;  /* not 1/depth nor a reversed depth buffer */
 };
 
+static int compare_floats(const void *a, const void *b)
+{
+    const float x = *(const float *)a, y = *(const float *)b;
+    return x < y ? -1 : x > y;
+}
+
+/* What many texels have in between. Depth in steps says nothing of that. */
+static bool find_fill(const struct gbuffer *g, struct range *range)
+{
+    enum { MOST = 1 << 14, FEW = 64 };
+    const size_t step = (gbuffer_texels(g) / MOST + 1) | 1;
+    float *values = malloc((gbuffer_texels(g) / step + 1) * sizeof *values);
+    size_t count = 0, most = FEW;
+    range->fill = NAN;
+    for (size_t i = 0; values && i < gbuffer_texels(g); i += step)
+        if (gbuffer_is_foreground(g, i) && g->depth[i] > range->low && g->depth[i] < range->high)
+            values[count++] = g->depth[i];
+    if (values)
+        qsort(values, count, sizeof *values, compare_floats);
+    for (size_t i = 0, run; i < count && !g->depth_is_half && !(g->depth_step > 0); i += run) {
+        for (run = 1; i + run < count && !(values[i] < values[i + run]);)
+            run++;
+        if (run > most) {
+            most = run;
+            range->fill = values[i];
+        }
+    }
+    free(values);
+    return values != NULL;
+}
+
 static struct range range_of(const struct gbuffer *g)
 {
-    struct range r = {INFINITY, -INFINITY, true};
+    struct range r = {INFINITY, -INFINITY, NAN, true};
     for (size_t i = 0; i < gbuffer_texels(g); i++) {
         if (!gbuffer_is_foreground(g, i))
             continue;
@@ -41,12 +75,14 @@ static enum place place_of(const struct gbuffer *g, const struct range *range, s
 {
     const float *n = g->normals + texel * 4, d = g->depth[texel];
     const bool is_something = gbuffer_is_foreground(g, texel);
-    if (is_something && d > range->low && d < range->high)
+    const bool is_fill = !(d < range->fill) && !(d > range->fill) && !isnan(range->fill);
+    if (is_something && d > range->low && d < range->high && !is_fill)
         return ELSEWHERE;
     const float square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
     if (!(square > 0.9f) || !(square < 1.1f))
         return ELSEWHERE;
     return !is_something                           ? AT_NOTHING
+           : is_fill                               ? AT_FILL
            : (d <= range->low) == range->is_rising ? AT_NEAREST
                                                    : AT_FARTHEST;
 }
@@ -109,7 +145,12 @@ static void warn_of_limit(const struct gbuffer *g, const struct range *range,
     const bool is_low = range->is_rising == (place == AT_NEAREST);
     char share[PERCENT_BYTES];
     text_percent(share, (double)limit->texels / (double)gbuffer_texels(g));
-    if (place == AT_NOTHING)
+    if (place == AT_FILL)
+        report_warn(report, "filled depth",
+                    "%s: %s of the depth are all at %.6g, where normals '%s' face other ways: a "
+                    "matte, or the box of a volume? AO is wrong there; write depth of what is seen",
+                    path, share, (double)range->fill, normals);
+    else if (place == AT_NOTHING)
         report_warn(report, "cut depth",
                     "%s: depth has nothing at %s of the image where normals '%s' show things: cut "
                     "off, or clamped? AO is 1 there; write depth without a range",
@@ -122,12 +163,14 @@ static void warn_of_limit(const struct gbuffer *g, const struct range *range,
                     (double)(is_low ? range->low : range->high), normals);
 }
 
-void gbuffer_warn_of_limits(const struct gbuffer *g, const char *path, struct report *report)
+bool gbuffer_warn_of_limits(const struct gbuffer *g, const char *path, struct report *report)
 {
     struct limit limits[PLACES] = {{0}};
     if (!g->normals || g->block_size > 1)
-        return;
-    const struct range range = range_of(g);
+        return true;
+    struct range range = range_of(g);
+    if (!find_fill(g, &range))
+        return false;
     for (size_t y = 1; y + 1 < g->height; y++)
         for (size_t x = 1; x + 1 < g->width; x++)
             look_at(g, &range, y * g->width + x, limits);
@@ -135,4 +178,5 @@ void gbuffer_warn_of_limits(const struct gbuffer *g, const char *path, struct re
         if ((k != AT_NOTHING || g->background.reason != BACKGROUND_GIVEN_VALUE) &&
             goes_on(g, &limits[k], (enum place)k))
             warn_of_limit(g, &range, &limits[k], (enum place)k, path, report);
+    return true;
 }

@@ -118,7 +118,8 @@ static double share_with_offset(const struct triple *triples, size_t count, doub
     return (double)near_it / (double)count;
 }
 
-/* Depth that lacks something, or counts down from 1. None is longer than the distance. */
+/* Depth that lacks something, or counts down from 1 or from a far plane. None is longer than the
+ * distance. */
 static double best_offset(const struct triple *triples, size_t count, double *offset)
 {
     double best = 0;
@@ -126,7 +127,7 @@ static double best_offset(const struct triple *triples, size_t count, double *of
     for (size_t k = 0; k < OFFSETS; k++) {
         const struct triple *t = &triples[k * count / OFFSETS];
         const double c = t->depth * (1.0 / t->planar - 1.0);
-        const bool counts_down = t->depth <= 1.0 && t->depth + c < 0;
+        const bool counts_down = t->depth + c < 0;
         const bool is_likely = isfinite(c) && (c > 0 || counts_down);
         const double share = is_likely ? share_with_offset(triples, count, c) : 0;
         if (share > best) {
