@@ -487,6 +487,23 @@ def cameras_of_later_frames_are_checked_first(scratch, _, third, message):
     scratch.fails(INPUT, message, 'in.####.exr', '-o', 'ao.####.exr', '--camera', 'c.####.json')
 
 
+@cases([('perspective', ('--ortho', 7), True), ('parallel', ('--ortho', 4.8), False)])
+def parallel_camera_of_another_image_is_said(scratch, kind, options, is_said):
+    channels = {'Z': Scene().depth()} if kind == 'perspective' else corners(160, 100, 2.4, 'world')
+    write_exr(scratch.path('in.exr'), {'Z': channels['Z']})
+    said = inspect(scratch, *options)[1]
+    equal('is orthographic, but flat things' in said, is_said, said)
+
+
+@cases([('a half', (320, 180), True), ('a third', (480, 270), True), ('a cut', (320, 200), False),
+        ('all of it', (160, 90), False)])
+def proxy_in_the_display_of_the_whole_is_said(scratch, _, size, is_said):
+    write_exr(scratch.path('in.exr'), {'Z': Scene().depth()},
+              display=(0, 0, size[0] - 1, size[1] - 1))
+    said = inspect(scratch, '--fov', FOV)[1]
+    equal('as in a proxy, camera and AO are wrong' in said, is_said, said)
+
+
 # --- Not found, and not asked ---
 
 def one_plane():

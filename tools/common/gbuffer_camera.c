@@ -599,9 +599,32 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
     return true;
 }
 
+/* A smaller rendering whose display window stayed that of the whole. Windows that were cut to what
+ * they hold seldom have the shape of the display, its corner and a whole part of its size; and
+ * normals tell that the camera is another. */
+static void warn_of_proxy(const struct gbuffer *g, const char *path, struct report *report)
+{
+    enum { SMALLEST = 8, LEAST_SIDE = 16 };
+    const struct exr_box *data = &g->data_window, *display = &g->display_window;
+    const int64_t across = (int64_t)display->x_max - display->x_min + 1;
+    const int64_t down = (int64_t)display->y_max - display->y_min + 1;
+    if (data->x_min != display->x_min || data->y_min != display->y_min || g->width < LEAST_SIDE ||
+        g->height < LEAST_SIDE)
+        return;
+    for (int64_t k = 2; k <= SMALLEST; k++)
+        if (llabs(across - k * (int64_t)g->width) < k && llabs(down - k * (int64_t)g->height) < k)
+            report_warn(report, "proxy",
+                        "%s: the data window begins where the display window does and is 1/%d of "
+                        "its size: if all of the view is in it, as in a proxy, camera and AO are "
+                        "wrong; write a display window of that size",
+                        path, (int)k);
+}
+
 bool gbuffer_find_camera(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
                          struct report *report, struct tool_error *err)
 {
+    if (!g->normals)
+        warn_of_proxy(g, path, report);
     if (!g->camera.source[0])
         return find_unknown(g, options, path, report, err);
     return !g->normals || hold_against_image(g, options, path, report, err);

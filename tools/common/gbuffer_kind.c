@@ -219,6 +219,12 @@ static void take_seen(struct gbuffer *g, const struct value_facts *f, enum plane
                 path, label, f->low, f->high, g->planes.offset);
         break;
     case SAY_PLANAR:
+        if (!is_perspective)
+            report_warn(report, "perspective depth",
+                        "%s: the camera (%s) is orthographic, but flat things of depth '%s' are "
+                        "flat only in perspective: is it that of another image? AO is wrong; --fov "
+                        "DEGREES or another --camera",
+                        path, g->camera.source, label);
         take(g, DEPTH_PLANAR, DEPTH_BY_PLANES);
         return;
     case SAY_NOTHING:
