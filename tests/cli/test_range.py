@@ -96,5 +96,29 @@ def depth_that_counts_down_is_said(scratch, _, far, is_said):
         check('counted down' not in said, said)
 
 
+@cases([('of tiles', slice(63, None, 64), True), ('of lost lines', slice(150, 154), True),
+        ('none', slice(0), False)])
+def lines_without_depth_are_said(scratch, _, lines, is_said):
+    scene = Scene(320, 180)
+    depth, normals = depth_of(scene, 1e10), scene.normals()
+    depth[lines] = 1e10
+    for plane in normals.values():
+        plane[lines] = 0
+    for channels in ({'Z': depth}, {'Z': depth, **normals}):
+        write_exr(scratch.path('in.exr'), channels)
+        said = str(inspect(scratch, '--fov', FOV)['warnings'])
+        equal('seams of tiles, or lines that were lost' in said, is_said, f'whether in {said}')
+
+
+@case
+def gaps_of_a_fence_are_no_seams(scratch):
+    # Boards from one side to the other, all as far away, and sky between them.
+    depth = np.where(np.arange(180)[:, None] % 12 < 3, np.inf, 5) * np.ones((1, 320))
+    depth[:9] = depth[-9:] = 8 + np.arange(320) / 100
+    write_exr(scratch.path('in.exr'), {'Z': depth.astype(np.float32)})
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    check('seams of tiles' not in said, said)
+
+
 if __name__ == '__main__':
     main()

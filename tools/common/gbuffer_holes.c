@@ -2,7 +2,8 @@
  *
  * Where one of depth and normals shows a surface and the other shows none. What is left out of
  * normals is derived from depth, which is less accurate. What is left out of depth is open, and
- * light falls through it. Renders have a few such texels, at the borders of things.
+ * light falls through it. Renders have a few such texels, at the borders of things, but no lines
+ * from one side to the other.
  */
 #include "gbuffer_internal.h"
 #include "text.h"
@@ -123,8 +124,77 @@ static void warn_of_holes(const struct gbuffer *g, const char *path, struct repo
         path, share, g->roles.kind[ROLE_NORMAL].label);
 }
 
+/* --- Lines --- */
+
+enum { THICKEST_SEAM = 4 }; /* texels */
+
+static bool is_empty(const struct gbuffer *g, size_t begin, size_t step, size_t length)
+{
+    for (size_t k = 0; k < length; k++)
+        if (gbuffer_is_foreground(g, begin + k * step))
+            return false;
+    return true;
+}
+
+/* Whether the lines on both sides show the same things, and several of them: what is seen between
+ * the boards of a fence is seen at one distance. */
+static bool goes_on(const struct gbuffer *g, size_t before, size_t after, size_t step,
+                    size_t length)
+{
+    static const double near_by = 0.1, several = 1.2;
+    enum { FEW = 16 };
+    size_t either = 0, both = 0;
+    double nearest = INFINITY, farthest = 0;
+    for (size_t k = 0; k < length; k++) {
+        const size_t i = before + k * step, j = after + k * step;
+        const bool is_a = gbuffer_is_foreground(g, i), is_b = gbuffer_is_foreground(g, j);
+        either += is_a || is_b;
+        if (!is_a || !is_b)
+            continue;
+        const double a = gbuffer_view_z(g, g->depth[i], i), b = gbuffer_view_z(g, g->depth[j], j);
+        if (!(fabs(a - b) < near_by * fmin(a, b)))
+            continue;
+        both++;
+        nearest = fmin(nearest, a);
+        farthest = fmax(farthest, a);
+    }
+    return both >= FEW && 2 * both > either && farthest > several * nearest;
+}
+
+/* Rows or columns; across is the step from one to the next. */
+static size_t count_seams(const struct gbuffer *g, size_t across, size_t lines, size_t step,
+                          size_t length)
+{
+    size_t seams = 0, run = 0;
+    for (size_t line = 0; line < lines; line++) {
+        const size_t begin = line * across;
+        if (is_empty(g, begin, step, length)) {
+            run++;
+            continue;
+        }
+        if (run > 0 && run < line && run <= THICKEST_SEAM &&
+            goes_on(g, begin - (run + 1) * across, begin, step, length))
+            seams += run;
+        run = 0;
+    }
+    return seams;
+}
+
+static void warn_of_seams(const struct gbuffer *g, const char *path, struct report *report)
+{
+    const size_t rows = count_seams(g, g->width, g->height, 1, g->width);
+    const size_t columns = count_seams(g, 1, g->width, g->width, g->height);
+    if (rows + columns > 0)
+        report_warn(report, "seams in depth",
+                    "%s: depth has nothing in %zu rows and %zu columns from one side of the image "
+                    "to the other, with the same things on both sides of each: seams of tiles, or "
+                    "lines that were lost? AO is too light beside them; write all of the image",
+                    path, rows, columns);
+}
+
 void gbuffer_warn_of_holes(const struct gbuffer *g, const char *path, struct report *report)
 {
+    warn_of_seams(g, path, report);
     if (!g->normals)
         return;
     warn_of_bare(g, report);
