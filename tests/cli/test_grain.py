@@ -6,7 +6,7 @@ import numpy as np
 
 from cli import CHANNELS, case, cases, check, equal, main, matches, write_exr
 from evidence import depth_of, inspect
-from scene import FOV, Scene
+from scene import CORNER, FOV, Scene, boxes_along_axes
 
 
 def texels_of(fine, size, pick):
@@ -233,6 +233,22 @@ def enlarged_depth_is_said(scratch, _, times):
         said = str(inspect(scratch, '--fov', FOV)['warnings'])
         equal(f'enlarged {times} times' in said, times > 1, f'whether it is in {said}')
         check('noisy' not in said, said)
+
+
+@cases([('twice', 2, True), ('not at all', 1, False)])
+def enlarged_normals_are_said(scratch, _, times, is_said):
+    # Of round things, and of faces alone.
+    scene = Scene(318, 180)
+    boxes = [((i - 6, 2.8 - i * 0.3, -5 - i * 0.7), (i - 5.2, 9, -4.2 - i * 0.5)) for i in range(5)]
+    for channels in ({'Z': depth_of(scene, 1e10), **scene.normals()},
+                     boxes_along_axes(CORNER + boxes, 800, 450)):
+        for name, plane in channels.items():
+            if name != 'Z':
+                small = plane[times // 2::times, times // 2::times]
+                channels[name] = small.repeat(times, axis=0).repeat(times, axis=1)
+        write_exr(scratch.path('in.exr'), channels)
+        said = str(inspect(scratch, '--fov', FOV)['warnings'])
+        equal(f"normals 'N' are enlarged {times} times" in said, is_said, f'whether in {said}')
 
 
 @cases([('much', 1e-3, True), ('less than AO shows', 3e-5, False), ('none', 0, False)])

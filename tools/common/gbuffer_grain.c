@@ -65,8 +65,38 @@ bool gbuffer_find_step(const struct gbuffer *g, double *step)
 /* Of changes, so many tell enough. */
 enum { MOST_BLOCK = 8, FEW_CHANGES = 200, ENOUGH_CHANGES = 1 << 16 };
 
+/* Edges of things may lie in a pattern, slopes and bends of surfaces do not. */
+static bool does_depth_change(const struct gbuffer *g, size_t first, size_t second)
+{
+    const double a = (double)g->depth[first], b = (double)g->depth[second];
+    return fabs(a - b) > 0 && fabs(a - b) < 0.05 * fabs(a);
+}
+
+static bool does_depth_step(const struct gbuffer *g, size_t first, size_t second)
+{
+    const double a = (double)g->depth[first], b = (double)g->depth[second];
+    return fabs(a - b) >= 0.05 * fabs(a);
+}
+
+/* As squares: by more than rounding, and by less than an edge of 13 degrees. */
+static const double least_bend = 1e-6, most_bend = 0.05;
+
+static bool do_normals_change(const struct gbuffer *g, size_t first, size_t second)
+{
+    return gbuffer_apart(g->normals + first * 4, g->normals + second * 4) > least_bend;
+}
+
+static bool do_normals_bend(const struct gbuffer *g, size_t first, size_t second)
+{
+    return do_normals_change(g, first, second) &&
+           gbuffer_apart(g->normals + first * 4, g->normals + second * 4) < most_bend;
+}
+
+typedef bool changes(const struct gbuffer *g, size_t first, size_t second);
+
 /* Where along an axis neighbours on a surface differ, by the rest of their place. */
-static size_t count_changes(const struct gbuffer *g, int axis, unsigned block, size_t counts[])
+static size_t count_changes(const struct gbuffer *g, changes *is_change, int axis, unsigned block,
+                            size_t counts[])
 {
     const size_t step = axis ? g->width : 1, size = axis ? g->height : g->width;
     size_t sum = 0;
@@ -75,9 +105,7 @@ static size_t count_changes(const struct gbuffer *g, int axis, unsigned block, s
         const size_t at = axis ? i / g->width : i % g->width;
         if (at + 1 >= size)
             continue;
-        const double a = (double)g->depth[i], b = (double)g->depth[i + step];
-        /* Edges of things may lie in a pattern, slopes of surfaces do not. */
-        if (!(fabs(a - b) > 0) || !(fabs(a - b) < 0.05 * fabs(a)))
+        if (!is_change(g, i, i + step))
             continue;
         counts[at % block]++;
         sum++;
@@ -85,11 +113,11 @@ static size_t count_changes(const struct gbuffer *g, int axis, unsigned block, s
     return sum;
 }
 
-static bool has_blocks(const struct gbuffer *g, unsigned block)
+static bool has_blocks(const struct gbuffer *g, changes *is_change, unsigned block)
 {
     for (int axis = 0; axis < 2; axis++) {
         size_t counts[MOST_BLOCK], most = 0;
-        const size_t sum = count_changes(g, axis, block, counts);
+        const size_t sum = count_changes(g, is_change, axis, block, counts);
         for (unsigned i = 0; i < block; i++)
             most = counts[i] > most ? counts[i] : most;
         if (sum < FEW_CHANGES || most * 50 < sum * 49)
@@ -101,7 +129,26 @@ static bool has_blocks(const struct gbuffer *g, unsigned block)
 unsigned gbuffer_block_size(const struct gbuffer *g)
 {
     for (unsigned block = MOST_BLOCK; block > 1; block--)
-        if (has_blocks(g, block))
+        if (has_blocks(g, does_depth_change, block))
+            return block;
+    return 1;
+}
+
+/* Whether depth has edges, and others than in a pattern of this size. */
+static bool has_free_edges(const struct gbuffer *g, unsigned block)
+{
+    size_t counts[MOST_BLOCK];
+    return count_changes(g, does_depth_step, 0, block, counts) >= FEW_CHANGES &&
+           count_changes(g, does_depth_step, 1, block, counts) >= FEW_CHANGES &&
+           !has_blocks(g, does_depth_step, block);
+}
+
+/* Things without bends have edges alone, which lie in a pattern if those of depth do. */
+unsigned gbuffer_block_size_of_normals(const struct gbuffer *g)
+{
+    for (unsigned block = MOST_BLOCK; block > 1; block--)
+        if (has_blocks(g, do_normals_bend, block) ||
+            (has_blocks(g, do_normals_change, block) && has_free_edges(g, block)))
             return block;
     return 1;
 }
