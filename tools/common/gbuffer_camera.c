@@ -9,47 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-bool gbuffer_type_is_auto(const struct gbuffer *g, const struct gbuffer_options *options)
-{
-    return options->depth_type == DEPTH_AUTO && g->roles.kind[ROLE_DEPTH].depth_type == DEPTH_AUTO;
-}
-
-/* As role and options have it, what the depth may be; known: through the camera that is known. 0:
- * nothing that an image tells. */
-static unsigned possible_models(const struct gbuffer *g, const struct gbuffer_options *options,
-                                bool known)
-{
-    enum {
-        ALL_RADIAL = 1 << FIT_RADIAL | 1 << FIT_RADIAL_NEAR,
-        NORMALIZED =
-            1 << FIT_PLANAR_NORMALIZED | 1 << FIT_PLANAR_REVERSED | 1 << FIT_RADIAL_NORMALIZED,
-        UNSCALED = 1 << FIT_DEVICE | NORMALIZED | 1 << FIT_ORTHO_REVERSED
-    };
-    const bool ortho = g->camera.type == CAMERA_ORTHOGRAPHIC;
-    const unsigned parallel = known && !ortho ? 0 : 1u << FIT_ORTHO;
-    if (known && ortho)
-        return g->depth_type == DEPTH_PLANAR || g->depth_type == DEPTH_RADIAL_NEAR ? parallel : 0;
-    if (gbuffer_type_is_auto(g, options) && g->depth_type == DEPTH_PLANAR)
-        return 1u << FIT_PLANAR | (known ? ALL_RADIAL : 1u << FIT_RADIAL) | 1u << FIT_INVERSE |
-               parallel | UNSCALED;
-    switch (g->depth_type) {
-    case DEPTH_PLANAR:
-        return 1u << FIT_PLANAR | parallel;
-    case DEPTH_RADIAL:
-        return 1u << FIT_RADIAL | parallel;
-    case DEPTH_RADIAL_NEAR:
-        return ALL_RADIAL | parallel;
-    case DEPTH_INVERSE:
-        return 1u << FIT_INVERSE;
-    case DEPTH_DEVICE:
-        return 1u << FIT_DEVICE;
-    case DEPTH_NORMALIZED:
-        return NORMALIZED;
-    default:
-        return 0;
-    }
-}
-
 /* Of buffers and parts of a range, the options know more than the image. */
 static void take_depth_type(struct gbuffer *g, const struct fit *fit)
 {
@@ -113,11 +72,6 @@ static void see_rotation(struct gbuffer *g, const struct fit *fit)
     g->has_seen_rotation = true;
 }
 
-static bool is_unscaled(enum fit_model model)
-{
-    return model >= FIT_DEVICE;
-}
-
 /* --- From frame to frame --- */
 
 static void take_remembered(struct gbuffer *g, const struct frame_memory *memory)
@@ -160,63 +114,6 @@ static void remember(struct gbuffer *g, const struct fit *fit, const char *path,
 
 /* --- Estimates --- */
 
-bool gbuffer_fit_camera(const struct gbuffer *g, const struct camera_search *search,
-                        struct fit *fit, struct tool_error *err)
-{
-    const struct fit_input input = {
-        .depth = g->depth,
-        .normals = g->normals,
-        .width = g->width,
-        .height = g->height,
-        .data_window = g->data_window,
-        .display_window = g->display_window,
-        .pixel_aspect = (double)g->pixel_aspect,
-        .models = search->models,
-        .half_width = search->is_known ? g->camera.half_width : 0,
-        .shift_x = search->is_known ? g->camera.shift_x : 0,
-        .shift_y = search->is_known ? g->camera.shift_y : 0,
-        .near_half_width = search->near_half_width,
-        .patch = search->patch,
-    };
-    *fit = (struct fit){0};
-    return !search->models || camera_fit(&input, fit, err);
-}
-
-/* The same, and of scale: no more is sure than the type of depth allows. */
-static bool estimate_as(const struct gbuffer *g, const struct camera_search *search,
-                        struct fit *fit, struct tool_error *err)
-{
-    const bool has_scale = g->depth_type != DEPTH_DEVICE && g->depth_type != DEPTH_NORMALIZED;
-    if (!gbuffer_fit_camera(g, search, fit, err))
-        return false;
-    if (!search->models)
-        snprintf(fit->why, sizeof fit->why, "depth is of type %s", depth_type_name(g->depth_type));
-    if (fit->model == FIT_PLANAR_NORMALIZED && !fit->in_unit_range) {
-        fit->model = FIT_PLANAR;
-    } else if (has_scale && is_unscaled(fit->model)) {
-        fit->is_usable = false;
-        if (fit->is_sure)
-            snprintf(fit->why, sizeof fit->why, "depth looks normalized");
-        fit->is_sure = false;
-    }
-    return true;
-}
-
-static bool estimate_anywhere(const struct gbuffer *g, const struct gbuffer_options *options,
-                              struct fit *fit, struct tool_error *err)
-{
-    const struct camera_search search = {.models = possible_models(g, options, false)};
-    return estimate_as(g, &search, fit, err);
-}
-
-static bool estimate_known(const struct gbuffer *g, const struct gbuffer_options *options,
-                           enum fit_patch patch, struct fit *fit, struct tool_error *err)
-{
-    const struct camera_search search = {
-        .models = possible_models(g, options, true), .is_known = true, .patch = patch};
-    return estimate_as(g, &search, fit, err);
-}
-
 /* Near what it was in the frames before, and everywhere if it is not there. */
 static bool estimate(const struct gbuffer *g, const struct gbuffer_options *options,
                      struct fit *fit, struct tool_error *err)
@@ -226,10 +123,10 @@ static bool estimate(const struct gbuffer *g, const struct gbuffer_options *opti
     if (memory && memory->is_known) {
         const struct camera_search near = {.models = memory->models,
                                            .near_half_width = memory->camera.half_width};
-        if (!estimate_as(g, &near, fit, err))
+        if (!gbuffer_estimate(g, &near, fit, err))
             return false;
     }
-    return fit->is_sure || estimate_anywhere(g, options, fit, err);
+    return fit->is_sure || gbuffer_estimate_anywhere(g, options, fit, err);
 }
 
 /* --- A camera that nobody tells --- */
@@ -384,7 +281,7 @@ static bool find_unknown(struct gbuffer *g, const struct gbuffer_options *option
     tell_tone(g, &fit, path, report);
     if (!fit.is_sure && options->memory && options->memory->is_known && !g->camera.is_assumed) {
         keep_remembered(g, options, path, report);
-        if (g->normals && !estimate_known(g, options, FIT_PATCH_ANY, &fit, err))
+        if (g->normals && !gbuffer_estimate_known(g, options, FIT_PATCH_ANY, &fit, err))
             return false;
         if (fit.is_sure)
             take_rotation(g, &fit);
@@ -500,7 +397,8 @@ static bool take_tone(const struct gbuffer *g, const struct gbuffer_options *opt
     struct fit single = *told;
     if (!(seen->tone > 0) || is_out_of_sight(&g->camera, told, seen))
         return true;
-    if (told->patch != FIT_PATCH_NONE && !estimate_known(g, options, FIT_PATCH_NONE, &single, err))
+    if (told->patch != FIT_PATCH_NONE &&
+        !gbuffer_estimate_known(g, options, FIT_PATCH_NONE, &single, err))
         return false;
     if (seen->toned < single.agreement + sure_gain)
         return true;
@@ -538,13 +436,13 @@ static bool doubt(const struct gbuffer *g, const struct gbuffer_options *options
     if (told->agreement < doubtful_agreement) {
         if (!gbuffer_find_type(g, options, told, &other, err))
             return false;
-        if (!is_exact && told->half_width > 0 && !estimate_anywhere(g, options, &seen, err))
+        if (!is_exact && told->half_width > 0 && !gbuffer_estimate_anywhere(g, options, &seen, err))
             return false;
         if (!take_tone(g, options, &seen, told, err))
             return false;
         /* Patches of normals have no say against single ones. */
         if (seen.is_usable && seen.patch != told->patch && is_other_view(&g->camera, &seen) &&
-            !estimate_known(g, options, seen.patch, &alike, err))
+            !gbuffer_estimate_known(g, options, seen.patch, &alike, err))
             return false;
         now = choose_cause(&g->camera, told, &alike, &seen, &other);
     }
@@ -571,7 +469,7 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
 {
     const struct role *depth = &g->roles.kind[ROLE_DEPTH];
     struct fit told;
-    if (!estimate_known(g, options, FIT_PATCH_ANY, &told, err))
+    if (!gbuffer_estimate_known(g, options, FIT_PATCH_ANY, &told, err))
         return false;
     const bool is_exact = strcmp(g->camera.source, "positions") == 0;
     const bool is_new = told.half_width > 0 && !is_exact &&

@@ -86,10 +86,6 @@ void gbuffer_complete_alpha(const struct gbuffer *g, float *color, size_t texels
 bool gbuffer_use_positions(struct gbuffer *g, const struct gbuffer_options *options,
                            float *positions, const char *path, struct report *report,
                            struct tool_error *err);
-/* What is not known of the camera by now, and of the type of depth, from depth and normals as read;
- * and says so. Errors: EXIT_MEMORY. */
-bool gbuffer_find_camera(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
-                         struct report *report, struct tool_error *err);
 /* What depth measures is left to the image. */
 bool gbuffer_type_is_auto(const struct gbuffer *g, const struct gbuffer_options *options);
 /* How a camera is looked for. */
@@ -102,6 +98,14 @@ struct camera_search {
 /* False only if memory runs out. */
 bool gbuffer_fit_camera(const struct gbuffer *g, const struct camera_search *search,
                         struct fit *fit, struct tool_error *err);
+/* The same, and of scale: no more is sure than the type of depth allows. */
+bool gbuffer_estimate(const struct gbuffer *g, const struct camera_search *search, struct fit *fit,
+                      struct tool_error *err);
+/* Of all that depth may be; through any camera, and through the one that is known. */
+bool gbuffer_estimate_anywhere(const struct gbuffer *g, const struct gbuffer_options *options,
+                               struct fit *fit, struct tool_error *err);
+bool gbuffer_estimate_known(const struct gbuffer *g, const struct gbuffer_options *options,
+                            enum fit_patch patch, struct fit *fit, struct tool_error *err);
 /* What else than somebody tells depth may be through the camera that is known; other->is_sure if
  * normals say so. False only if memory runs out. */
 bool gbuffer_find_type(const struct gbuffer *g, const struct gbuffer_options *options,
@@ -109,6 +113,10 @@ bool gbuffer_find_type(const struct gbuffer *g, const struct gbuffer_options *op
 void gbuffer_tell_type(const struct gbuffer *g, const struct gbuffer_options *options,
                        const struct fit *told, const struct fit *other, const char *path,
                        struct report *report);
+/* What is not known of the camera by now, and of the type of depth, from depth and normals as read;
+ * and says so. Errors: EXIT_MEMORY. */
+bool gbuffer_find_camera(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
+                         struct report *report, struct tool_error *err);
 /* No scene measures more or less than this, in whatever unit. Within, squares are finite and not
  * 0. */
 bool gbuffer_is_in_range(double distance);

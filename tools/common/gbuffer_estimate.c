@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What depth and normals are asked for: a camera, and what depth measures, among those that are
+ * left by options, header and names. */
+#include "gbuffer_internal.h"
+
+#include <stdio.h>
+
+bool gbuffer_type_is_auto(const struct gbuffer *g, const struct gbuffer_options *options)
+{
+    return options->depth_type == DEPTH_AUTO && g->roles.kind[ROLE_DEPTH].depth_type == DEPTH_AUTO;
+}
+
+/* As role and options have it, what the depth may be; known: through the camera that is known. 0:
+ * nothing that an image tells. */
+static unsigned possible_models(const struct gbuffer *g, const struct gbuffer_options *options,
+                                bool known)
+{
+    enum {
+        ALL_RADIAL = 1 << FIT_RADIAL | 1 << FIT_RADIAL_NEAR,
+        NORMALIZED =
+            1 << FIT_PLANAR_NORMALIZED | 1 << FIT_PLANAR_REVERSED | 1 << FIT_RADIAL_NORMALIZED,
+        UNSCALED = 1 << FIT_DEVICE | NORMALIZED | 1 << FIT_ORTHO_REVERSED
+    };
+    const bool ortho = g->camera.type == CAMERA_ORTHOGRAPHIC;
+    const unsigned parallel = known && !ortho ? 0 : 1u << FIT_ORTHO;
+    if (known && ortho)
+        return g->depth_type == DEPTH_PLANAR || g->depth_type == DEPTH_RADIAL_NEAR ? parallel : 0;
+    if (gbuffer_type_is_auto(g, options) && g->depth_type == DEPTH_PLANAR)
+        return 1u << FIT_PLANAR | (known ? ALL_RADIAL : 1u << FIT_RADIAL) | 1u << FIT_INVERSE |
+               parallel | UNSCALED;
+    switch (g->depth_type) {
+    case DEPTH_PLANAR:
+        return 1u << FIT_PLANAR | parallel;
+    case DEPTH_RADIAL:
+        return 1u << FIT_RADIAL | parallel;
+    case DEPTH_RADIAL_NEAR:
+        return ALL_RADIAL | parallel;
+    case DEPTH_INVERSE:
+        return 1u << FIT_INVERSE;
+    case DEPTH_DEVICE:
+        return 1u << FIT_DEVICE;
+    case DEPTH_NORMALIZED:
+        return NORMALIZED;
+    default:
+        return 0;
+    }
+}
+
+bool gbuffer_fit_camera(const struct gbuffer *g, const struct camera_search *search,
+                        struct fit *fit, struct tool_error *err)
+{
+    const struct fit_input input = {
+        .depth = g->depth,
+        .normals = g->normals,
+        .width = g->width,
+        .height = g->height,
+        .data_window = g->data_window,
+        .display_window = g->display_window,
+        .pixel_aspect = (double)g->pixel_aspect,
+        .models = search->models,
+        .half_width = search->is_known ? g->camera.half_width : 0,
+        .shift_x = search->is_known ? g->camera.shift_x : 0,
+        .shift_y = search->is_known ? g->camera.shift_y : 0,
+        .near_half_width = search->near_half_width,
+        .patch = search->patch,
+    };
+    *fit = (struct fit){0};
+    return !search->models || camera_fit(&input, fit, err);
+}
+
+static bool is_unscaled(enum fit_model model)
+{
+    return model >= FIT_DEVICE;
+}
+
+bool gbuffer_estimate(const struct gbuffer *g, const struct camera_search *search, struct fit *fit,
+                      struct tool_error *err)
+{
+    const bool has_scale = g->depth_type != DEPTH_DEVICE && g->depth_type != DEPTH_NORMALIZED;
+    if (!gbuffer_fit_camera(g, search, fit, err))
+        return false;
+    if (!search->models)
+        snprintf(fit->why, sizeof fit->why, "depth is of type %s", depth_type_name(g->depth_type));
+    if (fit->model == FIT_PLANAR_NORMALIZED && !fit->in_unit_range) {
+        fit->model = FIT_PLANAR;
+    } else if (has_scale && is_unscaled(fit->model)) {
+        fit->is_usable = false;
+        if (fit->is_sure)
+            snprintf(fit->why, sizeof fit->why, "depth looks normalized");
+        fit->is_sure = false;
+    }
+    return true;
+}
+
+bool gbuffer_estimate_anywhere(const struct gbuffer *g, const struct gbuffer_options *options,
+                               struct fit *fit, struct tool_error *err)
+{
+    const struct camera_search search = {.models = possible_models(g, options, false)};
+    return gbuffer_estimate(g, &search, fit, err);
+}
+
+bool gbuffer_estimate_known(const struct gbuffer *g, const struct gbuffer_options *options,
+                            enum fit_patch patch, struct fit *fit, struct tool_error *err)
+{
+    const struct camera_search search = {
+        .models = possible_models(g, options, true), .is_known = true, .patch = patch};
+    return gbuffer_estimate(g, &search, fit, err);
+}
