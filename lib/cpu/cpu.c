@@ -146,6 +146,22 @@ static bool decodes_normals(const struct vkao_program *program)
     return program->is_packed && program->settings.blur_normal_power > 0.0f;
 }
 
+/* Rows of a strip into the ring. again: the strip before was read from it. */
+static void record_strip_rows(const struct vkao_recording *r, uint32_t pass, uint32_t ring_row,
+                              struct vkao_rect rows, bool again)
+{
+    const bool decodes = decodes_normals(r->frame->program);
+    const struct vkao_rect around = vkao_area(r, VKAO_AREA_AROUND);
+    if (again)
+        vkao_barrier(r, VKAO_SHADERS, VKAO_SHADERS);
+    if (decodes) {
+        record_part(r, pass, ring_row, (struct vkao_rect){around.x0, rows.y0, around.x1, rows.y1});
+        vkao_barrier(r, VKAO_SHADERS, VKAO_SHADERS); /* normals are in the ring */
+    }
+    record_part(r, decodes ? pass + 1 : pass, ring_row, rows);
+    vkao_barrier(r, VKAO_SHADERS, VKAO_SHADERS); /* rows wrote the ring -> columns read it */
+}
+
 /* Both directions, down the image in strips, so that what lies between them fits a ring of rows.
  * Each strip adds the rows that the one before did not need. */
 static void record_blur(const struct vkao_recording *r, uint32_t pass)
@@ -155,9 +171,8 @@ static void record_blur(const struct vkao_recording *r, uint32_t pass)
                   "a ring holds a strip and the largest radius around it");
     const vkao_effect_info *e = &r->frame->program->settings;
     const uint32_t ring = VKAO_RING_ROWS, radius = e->blur_radius;
-    const bool decodes = decodes_normals(r->frame->program);
-    const uint32_t rows = decodes ? pass + 1 : pass, columns = rows + 1;
-    const struct vkao_rect rect = r->grid.rect, around = vkao_area(r, VKAO_AREA_AROUND);
+    const uint32_t columns = decodes_normals(r->frame->program) ? pass + 2 : pass + 1;
+    const struct vkao_rect rect = r->grid.rect;
     struct vkao_rect halfway = vkao_area(r, VKAO_AREA_ABOVE_BELOW), strip = rect;
     const uint32_t last = halfway.y1;
     for (; strip.y0 < rect.y1; strip.y0 = strip.y1) {
@@ -166,15 +181,8 @@ static void record_blur(const struct vkao_recording *r, uint32_t pass)
         halfway.y1 = strip.y1 + radius < last ? strip.y1 + radius : last;
         /* Not below the first row that the strip reads, which may lie before row 0. */
         const uint32_t ring_row = (strip.y0 + ring - radius) / ring * ring - ring;
-        if (strip.y0 > rect.y0) /* the strip before was read from the ring */
-            vkao_barrier(r, VKAO_SHADERS, VKAO_SHADERS);
-        if (decodes) {
-            record_part(r, pass, ring_row,
-                        (struct vkao_rect){around.x0, halfway.y0, around.x1, halfway.y1});
-            vkao_barrier(r, VKAO_SHADERS, VKAO_SHADERS); /* normals are in the ring */
-        }
-        record_part(r, rows, ring_row, halfway);
-        vkao_barrier(r, VKAO_SHADERS, VKAO_SHADERS); /* rows wrote the ring -> columns read it */
+        if (halfway.y0 < halfway.y1) /* else the strip before has added all that there is */
+            record_strip_rows(r, pass, ring_row, halfway, strip.y0 > rect.y0);
         record_part(r, columns, ring_row, strip);
         if (r->frame->copies && !e->half_resolution)
             record_copy(r, strip);
