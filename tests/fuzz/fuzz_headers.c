@@ -243,7 +243,9 @@ static bool resolve(const struct exr_info *info, const struct role_request *requ
         fuzz_check_refusal(&err, FUZZ_CODE(EXIT_CHANNELS) | FUZZ_CODE(EXIT_INPUT));
         return false;
     }
-    FUZZ_CHECK(roles->kind[ROLE_DEPTH].found && roles->kind[ROLE_DEPTH].channel_count == 1,
+    const struct role *depth = &roles->kind[ROLE_DEPTH];
+    FUZZ_CHECK(depth->found &&
+                   depth->channel_count == (depth->depth_type == DEPTH_POSITION ? 3 : 1),
                "resolved without depth");
     FUZZ_CHECK(!request->no_normals || !roles->kind[ROLE_NORMAL].found, "unwanted normals");
     for (int kind = 0; kind < ROLE_KINDS; kind++) {

@@ -62,6 +62,10 @@ void fuzz_check_job(const struct fuzz_job *job)
         images.thickness = image_of(VK_FORMAT_R32_SFLOAT);
     if (setting.effect.second_layer)
         images.second_depth = image_of(VK_FORMAT_R32_SFLOAT);
+    if (setting.effect.multi_bounce)
+        images.albedo = image_of(VK_FORMAT_R32G32B32A32_SFLOAT);
+    if (setting.effect.specular)
+        images.specular = image_of(VK_FORMAT_R32G32B32A32_SFLOAT);
     vkao_effect_info effect_info = setting.effect;
     effect_info.stages = VKAO_STAGE_ALL;
     ao_view_describe(job->view, &effect_info);
