@@ -219,8 +219,8 @@ bool option_is_given(const struct options *options, const char *name)
     return false;
 }
 
-/* The preset decides how much is computed, not what: only vbao was chosen with it, and the other
- * methods take its samples as they are. */
+/* The preset decides how much is computed, and how it is blurred, not what: only vbao was chosen
+ * with it, and the other methods take its samples and its blur as they are. */
 static void apply_quality(struct setting *s, int quality)
 {
     const struct setting before = *s;
