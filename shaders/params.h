@@ -103,9 +103,10 @@
 /* What a side of a blur's window counts more where all of the other side lies on the surface as
  * well; where normals keep the blur off edges too, of things that depth does not tell apart, more
  * pays. Chosen by hand on the scenes that vbao is fitted to: without the first RMSE of one slice is
- * 1 % more, without the second that of two .7 %; checked on other frames and cameras of them, which
- * gain as much. More of the first flickers more, and at twice as much the noise that is left
- * outweighs what is gained; more of the second makes a slab's AO rougher than gpu-radius allows. */
+ * 1 % more, without the second that of two .7 %. Checked, with all that `high` has, on 17 other
+ * frames and cameras of them: RMSE .0528 before, .0519 with it. More of the first flickers more,
+ * and at twice as much the noise that is left outweighs what is gained; more of the second makes a
+ * slab's AO rougher than gpu-radius allows. */
 #define VKAO_BLUR_ACROSS 0.35
 #define VKAO_BLUR_ACROSS_NORMALS 0.6
 
