@@ -50,20 +50,23 @@ static const struct vkao_pass vertical_at_half = {
 };
 
 /* Both directions at once. */
-#define TILES(is_half, code, rows, ...)                                                            \
+#define TILES(words, is_half, code, ...)                                                           \
     {                                                                                              \
         .name = "vkao blur", .label = "blur", .stage = VKAO_STAGE_BLUR, VKAO_CODE(code),           \
         .uses = {READS_SURFACE, READS_NOISY, __VA_ARGS__}, .area = VKAO_AREA_RECT,                 \
-        .texels = {1, ((rows)-2 * (VKAO_BLUR_TILE_RADIUS + (is_half))) / ROWS_AT_ONCE},            \
+        .texels = {1,                                                                              \
+                   (VKAO_BLUR_TILE_ROWS(words) - 2 * (VKAO_BLUR_TILE_RADIUS + 1)) / ROWS_AT_ONCE}, \
         .group = {VKAO_BLUR_TILE_WIDTH, ROWS_AT_ONCE}, .forms = (is_half) ? 1 : 2,                 \
     }
+#define TILES_OF(words)                                                                            \
+    {                                                                                              \
+        TILES(words, 0, vkao_blur_tile_last, WRITES_RESULT),                                       \
+            TILES(words, 1, vkao_blur_tile, VKAO_WRITES(TARGET, BLURRED)),                         \
+    }
 enum { ROWS_AT_ONCE = VKAO_BLUR_TILE_THREADS / VKAO_BLUR_TILE_WIDTH };
-static const struct vkao_pass tiles[2][2] = {
-    {TILES(0, vkao_blur_tile_last, VKAO_BLUR_TILE_ROWS, WRITES_RESULT),
-     TILES(0, vkao_blur_tile_last, VKAO_BLUR_TILE_ROWS_BENT, WRITES_RESULT)},
-    {TILES(1, vkao_blur_tile, VKAO_BLUR_TILE_ROWS, VKAO_WRITES(TARGET, BLURRED)),
-     TILES(1, vkao_blur_tile, VKAO_BLUR_TILE_ROWS_BENT, VKAO_WRITES(TARGET, BLURRED))},
-};
+/* By vkao_blur_tile_words and half resolution. */
+static const struct vkao_pass tiles[][2] = {
+    [2] = TILES_OF(2), [3] = TILES_OF(3), [5] = TILES_OF(5)};
 
 static const struct vkao_pass upsample = {
     .name = "vkao upsample",
@@ -82,7 +85,7 @@ void vkao_blur_plan(struct vkao_program *program)
 {
     const vkao_effect_info *e = &program->settings;
     if (e->blur_radius <= VKAO_BLUR_TILE_RADIUS) {
-        vkao_program_add(program, &tiles[e->half_resolution][e->bent_normals]);
+        vkao_program_add(program, &tiles[vkao_blur_tile_words(e)][e->half_resolution]);
     } else {
         vkao_program_add(program, &horizontal);
         vkao_program_add(program, e->half_resolution ? &vertical_at_half : &vertical);

@@ -82,7 +82,7 @@ static const vkao_parameter parameters[] = {
      .standard = 1, .zero_is_standard = VK_TRUE, .stages = VKAO_STAGE_SSAO, .methods = SLICED},
     {COMPILED(step_count, UINT),
      .help = "samples on each side of a slice, or on a ray", .most = 256,
-     .standard = 8, .zero_is_standard = VK_TRUE, .stages = VKAO_STAGE_SSAO,
+     .standard = 9, .zero_is_standard = VK_TRUE, .stages = VKAO_STAGE_SSAO,
      .methods = SLICED | METHOD(RAYMARCH)},
     {CHOICE(thickness_input, thickness_words), .help = "what is known of how thick things are",
      .stages = MAKES_AO, .methods = METHOD(VBAO) | METHOD(RAYMARCH)},
@@ -104,10 +104,11 @@ static const vkao_parameter parameters[] = {
     {FREE(noise_index, UINT, ""), .help = "which noise pattern; 0: the static one",
      .most = UINT32_MAX, .stages = VKAO_STAGE_SSAO},
     {FREE(radius, FLOAT, "scene units"), .help = "how far occluders reach", .above_least = VK_TRUE,
-     .most = FLT_MAX, .standard = 0.5, .stages = VKAO_STAGE_PREPARE | VKAO_STAGE_SSAO},
+     .most = FLT_MAX, .standard = 0.5,
+     .stages = VKAO_STAGE_PREPARE | MAKES_AO},
     {FREE(bias, FLOAT, "radii"),
      .help = "how far the scene must stand in front to block", .most = 1,
-     .standard = 0.005, .stages = VKAO_STAGE_SSAO},
+     .standard = 0.005, .stages = MAKES_AO},
     {FREE(thickness, FLOAT, ""), .help = "of what is seen, relative to the measured default",
      .most = 8, .standard = 1, .zero_is_standard = VK_TRUE, .stages = VKAO_STAGE_SSAO,
      .methods = METHOD(VBAO) | METHOD(RAYMARCH)},
@@ -239,7 +240,7 @@ struct preset {
 
 static const struct preset presets[] = {
     [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f, 200.0f},
-    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 8, 3, 0.0f, 200.0f},
+    [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 9, 3, 0.0f, 200.0f},
     [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 3, 8.0f, 400.0f},
     [VKAO_QUALITY_BEST] = {VK_FALSE, 5, 16, 1, 8.0f, 400.0f},
 };

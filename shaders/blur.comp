@@ -2,9 +2,10 @@
  *
  * One direction of the separable cross-bilateral blur (Petschnigg et al. 2004; Eisemann and Durand
  * 2004). The weight of tap k is blur_weight, times max(0, 1 - sharpness * |z_k - z - slope k| / z),
- * slope being the smaller of the two neighbour differences, times max(0, n.n_k)^normal_power, and
- * less where the other side of the window is not on the surface, see more_across. Where next to
- * nothing counts, all does a little, see leak_of; but bent normals of others are wrong.
+ * slope being the smaller of the two neighbour differences, times max(0, n.n_k)^normal_power or,
+ * without normals, bend_weight, and less where the other side of the window is not on the surface,
+ * see more_across. Where next to nothing counts, all does a little, see leak_of; but bent normals
+ * of others are wrong.
  * Continuing the slope keeps tilted walls in one piece where a plain depth difference would cut
  * them up. AO is not clamped on the way: one slice per texel often sees more than its share, and a
  * clamp would turn that noise into bias. With VKAO_LAST the result is final. */
@@ -57,6 +58,7 @@ vec4 blurred(ivec2 texel, float z)
 {
     float slope = local_slope(texel, z);
     float edge = edge_stop(z, params.sharpness, params.reference_z);
+    float bend = bend_stop(z, slope, VERTICAL ? params.unproject.y : params.unproject.x);
     vec4 normal = NORMAL_POWER > 0.0 ? stored_normal(texel << GRID_SHIFT) : vec4(0.0);
     vec4 sums[2] = vec4[](vec4(0.0), vec4(0.0));
     vec2 weights = vec2(0.0);
@@ -66,8 +68,10 @@ vec4 blurred(ivec2 texel, float z)
         ivec2 at = texel + k * AXIS;
         float tap_z = k == 0 ? 0.0 : load_view_z(at);
         if (tap_z > 0.0) {
-            float off = off_surface(z, slope, tap_z, local_slope(at, tap_z), float(k));
+            float off = off_surface(z, slope, tap_z, float(k));
             float w = weight_alone(k, RADIUS) * max(0.0, 1.0 - edge * off);
+            if (NORMAL_POWER == 0.0)
+                w *= bend_weight(z, tap_z, local_slope(at, tap_z), float(k), bend);
             near += w;
             if (NORMAL_POWER > 0.0)
                 w *= normal_weight(normal, stored_normal(at << GRID_SHIFT), NORMAL_POWER);

@@ -27,15 +27,14 @@ layout(binding = VKAO_BINDING_BENT_SOURCE) uniform texture2D bent_image;
 layout(binding = VKAO_BINDING_TARGET) uniform writeonly image2D target_image;
 #endif
 
-/* The tile, and the texels around it: as far as the blur reaches, and one more for slopes, which
- * rows need at half resolution only. An odd pitch keeps columns in different banks. */
-const int REACH = VKAO_BLUR_TILE_RADIUS, LEFT = REACH + 1, WIDTH = VKAO_BLUR_TILE_WIDTH;
-const int ABOVE = GRID_SHIFT > 0u ? REACH + 1 : REACH;
-const int ROWS = BENT_NORMALS ? VKAO_BLUR_TILE_ROWS_BENT : VKAO_BLUR_TILE_ROWS;
-const int PITCH = WIDTH + 2 * LEFT + 1, TEXELS = ROWS * PITCH;
+/* The tile, and the texels around it: as far as the blur reaches, and one more for slopes. An odd
+ * pitch keeps columns in different banks. */
+const int REACH = VKAO_BLUR_TILE_RADIUS, AROUND = REACH + 1, WIDTH = VKAO_BLUR_TILE_WIDTH;
+const int ROWS = VKAO_BLUR_TILE_ROWS(TILE_WORDS);
+const int PITCH = WIDTH + 2 * AROUND + 1, TEXELS = ROWS * PITCH;
 /* Texels of a row, and of a column, that an invocation blurs in a turn. */
 const int ALONG_X = 4, TURNS = ROWS * WIDTH / ALONG_X / VKAO_BLUR_TILE_THREADS;
-const int ALONG_Y = (ROWS - 2 * ABOVE) * WIDTH / VKAO_BLUR_TILE_THREADS;
+const int ALONG_Y = (ROWS - 2 * AROUND) * WIDTH / VKAO_BLUR_TILE_THREADS;
 #define HAS_NORMALS (NORMAL_POWER > 0.0)
 
 /* The first word of a texel is its view z, below 0 where there is no normal. The second is
@@ -109,27 +108,29 @@ Texel read_texel(int at)
     return t;
 }
 
-/* What the window of a texel gives it; the first and the last are there for slopes. */
-vec4 blurred(Texel window[2 * REACH + 3])
+/* What the window of a texel gives it; the first and the last are there for slopes. unproject: see
+ * bend_stop. */
+vec4 blurred(Texel window[2 * REACH + 3], float unproject)
 {
-    Texel center = window[LEFT];
-    float slope = local_slope(window[LEFT - 1].z, center.z, window[LEFT + 1].z);
+    Texel center = window[AROUND];
+    float slope = local_slope(window[AROUND - 1].z, center.z, window[AROUND + 1].z);
     float edge = edge_stop(center.z, params.sharpness, ORTHOGRAPHIC ? params.reference_z : 0.0);
+    float bend = bend_stop(center.z, slope, unproject);
     vec4 sums[2] = vec4[](vec4(0.0), vec4(0.0));
     vec2 weights = vec2(0.0);
     float near = 0.0, all = 0.0, all_weights = 0.0;
     [[unroll]] for (int k = -REACH; k <= REACH; ++k) {
         if (k == 0 || abs(k) > RADIUS)
             continue;
-        Texel tap = window[LEFT + k];
-        float tap_slope =
-            GRID_SHIFT > 0u ? local_slope(window[LEFT + k - 1].z, tap.z, window[LEFT + k + 1].z)
-                            : 0.0;
-        float off = off_surface(center.z, slope, tap.z, tap_slope, float(k));
+        Texel tap = window[AROUND + k];
+        float off = off_surface(center.z, slope, tap.z, float(k));
         float alone = weight_alone(k, RADIUS), w = clamp(alone - alone * edge * off, 0.0, 1.0);
+        float tap_slope = local_slope(window[AROUND + k - 1].z, tap.z, window[AROUND + k + 1].z);
         if (HAS_NORMALS) {
             near += w;
             w *= normal_weight(center.normal, tap.normal, NORMAL_POWER);
+        } else {
+            w *= bend_weight(center.z, tap.z, tap_slope, float(k), bend);
         }
         sums[int(k > 0)] += w * tap.v;
         weights[int(k > 0)] += w;
@@ -163,18 +164,18 @@ void blur_rows(int lane)
     int first = lane / LANES * PITCH + lane % LANES * ALONG_X;
     const int TURN = VKAO_BLUR_TILE_THREADS / LANES * PITCH;
     [[unroll]] for (int turn = 0; turn < TURNS; ++turn) {
-        Texel t[ALONG_X + 2 * LEFT];
-        [[unroll]] for (int i = 0; i < ALONG_X + 2 * LEFT; ++i)
+        Texel t[ALONG_X + 2 * AROUND];
+        [[unroll]] for (int i = 0; i < ALONG_X + 2 * AROUND; ++i)
             t[i] = read_texel(first + turn * TURN + i);
         [[unroll]] for (int i = 0; i < ALONG_X; ++i) {
-            results[turn][i] = t[LEFT + i];
-            results[turn][i].v = blurred(WINDOW(t, i));
+            results[turn][i] = t[AROUND + i];
+            results[turn][i].v = blurred(WINDOW(t, i), params.unproject.x);
         }
     }
     barrier();
     [[unroll]] for (int turn = 0; turn < TURNS; ++turn) {
         [[unroll]] for (int i = 0; i < ALONG_X; ++i)
-            write_visibility(first + turn * TURN + LEFT + i, results[turn][i]);
+            write_visibility(first + turn * TURN + AROUND + i, results[turn][i]);
     }
     barrier();
 }
@@ -194,28 +195,25 @@ void store(ivec2 texel, Texel t, vec4 v)
 void blur_columns(int lane, ivec2 origin)
 {
     int x = lane % WIDTH, y = lane / WIDTH * ALONG_Y;
-    Texel t[ALONG_Y + 2 * LEFT];
-    [[unroll]] for (int i = 0; i < ALONG_Y + 2 * LEFT; ++i) {
-        /* Rows that are not there are those of slopes that nobody asks for. */
-        int row = clamp(i, LEFT - ABOVE, ALONG_Y + LEFT + ABOVE - 1) - (LEFT - ABOVE);
-        t[i] = read_texel((y + row) * PITCH + LEFT + x);
-    }
+    Texel t[ALONG_Y + 2 * AROUND];
+    [[unroll]] for (int i = 0; i < ALONG_Y + 2 * AROUND; ++i)
+        t[i] = read_texel((y + i) * PITCH + AROUND + x);
     [[unroll]] for (int i = 0; i < ALONG_Y; ++i) {
         ivec2 texel = origin + ivec2(x, y + i);
-        vec4 v = blurred(WINDOW(t, i));
+        vec4 v = blurred(WINDOW(t, i), params.unproject.y);
         if (all(lessThan(texel, unpack_texel(here.rect.y))))
-            store(texel, t[LEFT + i], v);
+            store(texel, t[AROUND + i], v);
     }
 }
 
 void main()
 {
     int lane = int(gl_LocalInvocationIndex);
-    ivec2 size = ivec2(WIDTH, ROWS - 2 * ABOVE);
+    ivec2 size = ivec2(WIDTH, ROWS - 2 * AROUND);
     ivec2 origin = ivec2(gl_WorkGroupID.xy) * size + unpack_texel(here.rect.x);
     /* The tile is as wide as half the group's lanes, twice; what is beside it, as an eighth. */
-    const int BESIDE = 2 * LEFT;
-    ivec2 first = origin - ivec2(LEFT, ABOVE);
+    const int BESIDE = 2 * AROUND;
+    ivec2 first = origin - ivec2(AROUND, AROUND);
     [[unroll]] for (int row = 0; row < ROWS; row += VKAO_BLUR_TILE_THREADS / WIDTH) {
         ivec2 at = ivec2(lane % WIDTH, row + lane / WIDTH);
         write_texel(at.y * PITCH + at.x, load_texel(first + at));

@@ -32,11 +32,4 @@ reals range_weight(reals dz, float radius)
     return t * t * (3.0 - 2.0 * t);
 }
 
-/* How far a view z may be off through the precision of the depth that it came from. */
-real depth_error(real z)
-{
-    real line = params.depth_error.x + params.depth_error.y * z;
-    return ORTHOGRAPHIC ? line : z * line;
-}
-
 #endif

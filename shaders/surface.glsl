@@ -25,13 +25,27 @@ float local_slope(float before, float z, float after)
     return abs(slope) < 0.1 * BACKGROUND_Z ? slope : 0.0;
 }
 
-/* How far a tap k texels away lies off the surface that goes on from the centre by its slope. At
- * half resolution, where a blur spans twice as much and more lies between two texels, the centre
- * must also lie on the tap's surface: what only meets at an edge is told apart without normals. */
-float off_surface(float z, float slope, float tap_z, float tap_slope, float k)
+/* How far a tap k texels away lies off the surface that goes on from the centre by its slope. */
+float off_surface(float z, float slope, float tap_z, float k)
 {
-    float off = abs(tap_z - z - slope * k);
-    return GRID_SHIFT == 0u ? off : max(off, abs(tap_z - z - tap_slope * k));
+    return abs(tap_z - z - slope * k);
+}
+
+/* Where the blur compares no normals: 1 / the distance off a tap's surface at which a tap counts
+ * nothing, but for BEND_LEAST; next to 0 where depth is ignored. unproject: the grid's, along the
+ * blur. */
+float bend_stop(float z, float slope, float unproject)
+{
+    float size = abs(unproject) * (ORTHOGRAPHIC ? 1.0 : z);
+    float distance = abs(slope) + VKAO_BLUR_BEND_TEXELS * size +
+                     VKAO_BLUR_BEND_BIASES * (params.bias + depth_error(z));
+    return params.sharpness > 0.0 ? 1.0 / distance : 1.0e-30;
+}
+
+/* What is left of a tap off whose own surface the centre lies. */
+float bend_weight(float z, float tap_z, float tap_slope, float k, float stop)
+{
+    return max(VKAO_BLUR_BEND_LEAST, 1.0 - stop * off_surface(tap_z, tap_slope, z, -k));
 }
 
 /* 1 / the distance off the continued slope at which a tap counts nothing; never 0, so that
@@ -88,7 +102,7 @@ float is_surface(float z)
 /* What all of the window but background counts besides, as a share of blur_weight. The mean of a
  * few texels alone, as of a bar or a leaf, is noise, which is seen as speckles that crawl when
  * things move. Beside the straight edge of anything wider half a window is left, and that is
- * enough. near: what the taps count alone by their depths; weights: by their normals as well, which
+ * enough. near: what the taps count alone by depth; weights: by their normals as well, which
  * in a small blur may leave none. */
 float leak_of(float near, float weights, int radius)
 {

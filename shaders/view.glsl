@@ -5,6 +5,7 @@
 #define VKAO_VIEW_GLSL_
 
 #include "octahedral.glsl"
+#include "real.glsl"
 #include "settings.glsl"
 
 #include "view_z.glsl"
@@ -29,6 +30,13 @@ vec3 decode_normal(ivec2 texel)
     if (NORMAL_ENCODING == VKAO_GLSL_NORMALS_FROM_DEPTH)
         return vec3(0.0);
     return decode_direction(texelFetch(normals_image, texel, 0).xyz, NORMAL_ENCODING);
+}
+
+/* How far a view z may be off through the precision of the depth that it came from. */
+real depth_error(real z)
+{
+    real line = params.depth_error.x + params.depth_error.y * z;
+    return ORTHOGRAPHIC ? line : z * line;
 }
 
 /* texel may lie between texels; integers are centres. */

@@ -338,7 +338,7 @@ typedef struct vkao_effect_info {
     uint32_t sample_count;
     /* [0,64] HBAO, GTAO, VBAO: directions, each marched to both sides; 0 = 1. Default 1 */
     uint32_t slice_count;
-    /* [0,256] samples on each side of a slice, or on each ray of RAYMARCH; 0 = 8. Default 8 */
+    /* [0,256] samples on each side of a slice, or on each ray of RAYMARCH; 0 = 9. Default 9 */
     uint32_t step_count;
     /* VBAO, RAYMARCH: with true thickness light passes behind what is thin and not through what is
      * thick. It then has no cap, and RAYMARCH does not guess. Default AS_SEEN */
@@ -556,7 +556,8 @@ typedef struct vkao_params {
     uint32_t noise_index;
     float radius; /* (0,inf) scene units that an occluder reaches. Default 0.5 */
     /* [0,1] fraction of radius by which the scene must stand in front of a point to block it; hides
-     * acne from coarse depth or interpolated normals. Default 0.005 */
+     * acne from coarse depth or interpolated normals, and the blur takes it for what depth may be
+     * off by. Default 0.005 */
     float bias;
     /* [0,8] VBAO, RAYMARCH: how thick the scene is behind what is seen, relative to the measured
      * default. VBAO: .92 of its width in the depth image and .046 of what it is longer, at most .38
@@ -567,7 +568,9 @@ typedef struct vkao_params {
     /* (0,inf) 1 / scene units; the constant 50 of SPHERE_LITERAL. Default 50 */
     float blocking_scale;
     /* [0,10000] edge stopping of the blur: a tap whose view z is off the continued slope by more
-     * than 1 / sharpness of its own distance counts nothing. Where that leaves less than .45 of the
+     * than 1 / sharpness of its own distance counts nothing. Where no normals are compared, one
+     * from whose own slope the texel is off counts less, down to .33: off by the texel's slope, .3
+     * texels and 3 times bias and the precision of depth. Where that leaves less than .45 of the
      * window, as on a bar or a leaf, up to .15 of all visibility around is mixed in. 0 = depth is
      * ignored. Default 200; the presets HIGH and BEST set 400 */
     float sharpness;

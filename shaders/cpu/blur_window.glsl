@@ -9,14 +9,16 @@
 #include "ring_texels.glsl"
 #include "surface.glsl"
 
-/* Texels beyond the radius whose depths tell slopes: see off_surface. */
-const int MARGIN = int(GRID_SHIFT);
+/* Texels beyond the radius, whose depths tell slopes. */
+const int MARGIN = 1;
 const int REACH = VKAO_BLUR_REACH, WINDOW = VKAO_BLUR_COUNT + 2 * REACH;
 #define USES_NORMALS (NORMAL_POWER > 0.0)
 
-/* z: surface_z. What nothing uses costs nothing. No constant comes late into a result that is used
- * once: a driver in software then takes lanes apart and goes on with each on its own. */
-void blur(float z[WINDOW], float v[WINDOW], vec4 normal[WINDOW], out float result[VKAO_BLUR_COUNT])
+/* z: surface_z. unproject: see bend_stop. What nothing uses costs nothing. No constant comes late
+ * into a result that is used once: a driver in software then takes lanes apart and goes on with
+ * each on its own. */
+void blur(float z[WINDOW], float v[WINDOW], vec4 normal[WINDOW], float unproject,
+          out float result[VKAO_BLUR_COUNT])
 {
     float slope[WINDOW];
     [[unroll]] for (int i = 1; i < WINDOW - 1; ++i)
@@ -24,16 +26,19 @@ void blur(float z[WINDOW], float v[WINDOW], vec4 normal[WINDOW], out float resul
     [[unroll]] for (int i = 0; i < VKAO_BLUR_COUNT; ++i) {
         int c = REACH + i;
         float edge = edge_stop(z[c], params.sharpness, params.reference_z);
+        float bend = bend_stop(z[c], slope[c], unproject);
         vec2 sums = vec2(0.0), weights = vec2(0.0);
         float near = 0.0, all = 0.0, all_weights = 0.0;
         [[unroll]] for (int k = -RADIUS; k <= RADIUS; ++k) {
             if (k == 0)
                 continue;
-            float off = off_surface(z[c], slope[c], z[c + k], slope[c + k], float(k));
+            float off = off_surface(z[c], slope[c], z[c + k], float(k));
             float alone = weight_alone(k, RADIUS), w = max(0.0, alone - alone * edge * off);
             if (USES_NORMALS) {
                 near += w;
                 w *= normal_weight(normal[c], normal[c + k], NORMAL_POWER);
+            } else {
+                w *= bend_weight(z[c], z[c + k], slope[c + k], float(k), bend);
             }
             sums[int(k > 0)] += w * v[c + k];
             weights[int(k > 0)] += w;

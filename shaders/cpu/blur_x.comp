@@ -39,7 +39,7 @@ void blur(ivec2 texel, out float result[VKAO_BLUR_X_WIDTH])
             normal[4 * j + i] = USES_NORMALS ? unpack_normal(normals4[i]) : vec4(0.0);
         }
     }
-    blur(z, code, normal, result);
+    blur(z, code, normal, params.unproject.x, result);
 }
 
 void main()

@@ -72,7 +72,7 @@ void blur(ivec2 texel)
             column[j] = fine[j][i];
             normal[j] = USES_NORMALS ? unpack_normal(words[j][i]) : vec4(0.0);
         }
-        blur(column_z, column, normal, result);
+        blur(column_z, column, normal, params.unproject.y, result);
         [[unroll]] for (int row = 0; row < VKAO_BLUR_Y_HEIGHT; ++row)
             blurred[row][i] = result[row];
     }

@@ -390,14 +390,15 @@ static void ao_is_not_clamped_before_the_blur(void **state)
         double *want = test_alloc(4800, sizeof *want), *clamped = test_alloc(4800, sizeof *clamped),
                least = 1.0;
         picture_reference_scene(&p, &reference);
+        double bias = (double)p.ssao.bias * (double)p.ssao.radius;
         ref_blur(&reference, &p.blur, p.view.normal_encoding, p.values[SLOT_NORMALS],
-                 noisy.values[SLOT_AO], want);
+                 noisy.values[SLOT_AO], bias, want);
         for (size_t t = 0; t < 4800; ++t) {
             least = fmin(least, noisy.values[SLOT_AO][t]);
             noisy.values[SLOT_AO][t] = fmax(0.0, noisy.values[SLOT_AO][t]);
         }
         ref_blur(&reference, &p.blur, p.view.normal_encoding, p.values[SLOT_NORMALS],
-                 noisy.values[SLOT_AO], clamped);
+                 noisy.values[SLOT_AO], bias, clamped);
         double clamping = difference_of(want, clamped, 4800).mean;
         print_message("    %s: least %.3f, clamping would brighten by %.4f\n", names[methods[i]],
                       least, clamping);

@@ -69,7 +69,7 @@ static void agrees_with_reference_for_every_parameter(void **state)
             picture_run(&p);
             picture_reference_scene(&p, &reference);
             ref_blur(&reference, &p.blur, p.view.normal_encoding, p.values[SLOT_NORMALS],
-                     p.values[SLOT_NOISY], expected);
+                     p.values[SLOT_NOISY], (double)p.ssao.bias * (double)p.ssao.radius, expected);
             snprintf(what, sizeof what, "row %zu, scene %zu", i, s);
             check_close(what, p.values[SLOT_AO], expected, picture_texels(&p), 3e-4, 2e-3, 0.02);
             ref_scene_free(&reference);
@@ -183,6 +183,34 @@ static void tilted_walls_are_blurred_in_one_piece(void **state)
     print_message("    variance of noise %.4f, blurred %.5f\n", before, after);
     assert_true(after < before / 5.0);
     picture_free(&p);
+}
+
+/* A wall, and a dark floor that meets it and comes nearer within what sharpness allows: without
+ * normals slopes keep most of the edge, unless depth is ignored. */
+static void inner_edges_are_kept_without_normals(void **state)
+{
+    (void)state;
+    for (int is_ignored = 0; is_ignored < 2; ++is_ignored) {
+        struct picture p;
+        const struct scene wall = scene_tilted_plane(0.0, 0.0);
+        make(&p, &wall, 0.0);
+        p.view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
+        p.blur.sharpness = is_ignored ? 0.0f : 1.0f;
+        for (size_t i = 0; i < picture_texels(&p); ++i) {
+            double y = (double)(i / p.width) - 29.5;
+            p.values[SLOT_DEPTH][i] = 4.0 - fmax(0.0, y) * 0.1;
+            p.values[SLOT_NOISY][i] = y > 0.0 ? 0.0 : 1.0;
+        }
+        picture_run(&p);
+        double above = p.values[SLOT_AO][29 * p.width + 40],
+               below = p.values[SLOT_AO][30 * p.width + 40];
+        print_message("    %.3f above the edge, %.3f below\n", above, below);
+        if (is_ignored)
+            assert_true(above - below < 0.3);
+        else
+            assert_true(above - below > 0.5);
+        picture_free(&p);
+    }
 }
 
 /* Halfway between its two directions the blur stores 11 bits, and drivers may round them either
@@ -341,6 +369,7 @@ int main(void)
         gpu_test(normal_edges_do_not_leak),
         gpu_test(narrow_things_take_a_share_of_the_window),
         gpu_test(tilted_walls_are_blurred_in_one_piece),
+        gpu_test(inner_edges_are_kept_without_normals),
         gpu_test(constants_are_kept),
         gpu_test(radius_0_copies),
         gpu_test(intensity_and_power_follow_the_formula),

@@ -40,11 +40,12 @@ static void reference(const struct picture *p, double *out)
            *blurred = test_alloc(texels, sizeof *blurred);
     double *result = test_alloc(picture_texels(p), sizeof *result);
     ref_gtao_bent(&half, &p->ssao, ao, bent);
+    double bias = (double)p->ssao.bias * (double)p->ssao.radius;
     for (size_t c = 0; c < 4; ++c) {
         for (size_t i = 0; i < texels; ++i)
             channel[i] = c == 3 ? ao[i] : bent[i * 3 + c];
-        ref_blur_channel_half(&half, &p->blur, p->view.normal_encoding, stored, channel, c == 3,
-                              blurred);
+        ref_blur_channel(&half, &p->blur, p->view.normal_encoding, stored, channel, bias, c == 3,
+                         blurred);
         ref_upsample(&full, &half, &p->blur, p->view.normal_encoding, p->values[SLOT_NORMALS],
                      c == 3 ? 1.0 : 0.0, blurred, result);
         for (size_t i = 0; i < picture_texels(p); ++i)

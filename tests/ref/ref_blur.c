@@ -13,7 +13,8 @@ struct blur {
     const double *stored;
     double ndc_width; /* scene units across the viewport, what sharpness is relative to without
                          perspective */
-    bool half_resolution, is_visibility;
+    double bias;
+    bool is_visibility;
 };
 
 static size_t texel_index(const struct blur *blur, int x, int y)
@@ -50,6 +51,22 @@ static double normal_weight(const struct blur *blur, size_t center, size_t tap)
     return pow(fmax(0.0, ref_dot(a, b)), (double)blur->params->normal_power);
 }
 
+/* What is left of tap k, off whose own surface the centre lies, the blur not comparing normals. */
+static double bend_weight(const struct blur *blur, int x, int y, int dx, int dy, int k)
+{
+    if (!(blur->params->sharpness > 0.0f))
+        return 1.0;
+    double z = ref_scene_z(blur->scene, x, y),
+           tap_z = ref_scene_z(blur->scene, x + k * dx, y + k * dy);
+    double here[3], next[3];
+    ref_view_position(&blur->scene->view, x, y, z, here);
+    ref_view_position(&blur->scene->view, x + dx, y + dy, z, next);
+    double texel = hypot(next[0] - here[0], next[1] - here[1]);
+    double off = fabs(tap_z - z - slope(blur, x + k * dx, y + k * dy, dx, dy) * k);
+    double steps = 3.0 * (blur->bias + ref_view_depth_error(&blur->scene->view, z));
+    return fmax(0.33, 1.0 - off / (fabs(slope(blur, x, y, dx, dy)) + 0.3 * texel + steps));
+}
+
 /* The mean of 4 neighbours that are means of 2 r - 2 each; in small blurs of 2 that are of 2 r. */
 static double flat_weight(int k, int radius)
 {
@@ -61,11 +78,11 @@ static double flat_weight(int k, int radius)
     return (double)shared / box;
 }
 
-/* flat_weight * max(0, 1 - sharpness |z_k - z - slope k| / z) * max(0, n.n_k)^normal_power;
- * at half resolution the larger of the distances by the centre's slope and by the tap's. Visibility
- * where this leaves less than .45 of the window: at most .15 of the flat mean besides; of a small
- * radius with what normals leave, of a large one without. Where normals are not compared, either
- * side of the window counts (1 + .35 p) / 1.35 times, p being what is left of the other side. */
+/* flat_weight * max(0, 1 - sharpness |z_k - z - slope k| / z), times max(0, n.n_k)^normal_power or
+ * bend_weight. Visibility where this leaves less than .45 of the window: at most .15 of the flat
+ * mean besides; of a small radius with what normals leave, of a large one without. Where normals
+ * are not compared, either side of the window counts (1 + .35 p) / 1.35 times, p being what is left
+ * of the other side. */
 static double blurred(const struct blur *blur, const double *ao, int x, int y, int dx, int dy)
 {
     double z = ref_scene_z(blur->scene, x, y), sums[3] = {0}, weights[3] = {0};
@@ -86,12 +103,10 @@ static double blurred(const struct blur *blur, const double *ao, int x, int y, i
         size_t tap = texel_index(blur, x + k * dx, y + k * dy);
         flat += full * ao[tap];
         double off = fabs(tap_z - z - s * k);
-        if (blur->half_resolution) {
-            double beside = fabs(tap_z - z - slope(blur, x + k * dx, y + k * dy, dx, dy) * k);
-            off = fmax(off, beside);
-        }
         w *= fmax(0.0, 1.0 - scale * off);
         double normals = k ? normal_weight(blur, texel_index(blur, x, y), tap) : 1.0;
+        if (k != 0 && !compares_normals(blur))
+            w *= bend_weight(blur, x, y, dx, dy, k);
         if (k != 0)
             near += w * (radius < 3 ? normals : 1.0);
         int side = (k > 0) - (k < 0) + 1;
@@ -114,16 +129,16 @@ double ref_blur_finish(const struct ao_blur *params, double visibility)
     return pow(v, (double)params->power);
 }
 
-static void blur_channel(const struct ref_scene *scene, const struct ao_blur *params,
-                         vkao_normal_encoding encoding, const double *stored, const double *noisy,
-                         bool half_resolution, bool is_visibility, double *out)
+void ref_blur_channel(const struct ref_scene *scene, const struct ao_blur *params,
+                      vkao_normal_encoding encoding, const double *stored, const double *noisy,
+                      double bias, bool is_visibility, double *out)
 {
     double left[3], right[3];
     const double *viewport = scene->view.viewport;
     ref_view_position(&scene->view, viewport[0] - 0.5, 0.0, 1.0, left);
     ref_view_position(&scene->view, viewport[0] + viewport[2] - 0.5, 0.0, 1.0, right);
-    struct blur blur = {scene,           params,       encoding, stored, fabs(right[0] - left[0]),
-                        half_resolution, is_visibility};
+    struct blur blur = {scene, params,       encoding, stored, fabs(right[0] - left[0]),
+                        bias,  is_visibility};
     const VkRect2D *rect = &scene->view.rect, *valid = &scene->view.valid;
     double *halfway = malloc((size_t)scene->width * scene->height * sizeof *halfway);
     if (!halfway)
@@ -140,18 +155,12 @@ static void blur_channel(const struct ref_scene *scene, const struct ao_blur *pa
     free(halfway);
 }
 
-void ref_blur_channel_half(const struct ref_scene *scene, const struct ao_blur *params,
-                           vkao_normal_encoding encoding, const double *stored, const double *noisy,
-                           bool is_visibility, double *out)
-{
-    blur_channel(scene, params, encoding, stored, noisy, true, is_visibility, out);
-}
-
 void ref_blur(const struct ref_scene *scene, const struct ao_blur *params,
-              vkao_normal_encoding encoding, const double *stored, const double *noisy, double *ao)
+              vkao_normal_encoding encoding, const double *stored, const double *noisy, double bias,
+              double *ao)
 {
     const VkRect2D *rect = &scene->view.rect;
-    blur_channel(scene, params, encoding, stored, noisy, false, true, ao);
+    ref_blur_channel(scene, params, encoding, stored, noisy, bias, true, ao);
     for (int y = rect->offset.y; y < rect->offset.y + (int)rect->extent.height; ++y) {
         for (int x = rect->offset.x; x < rect->offset.x + (int)rect->extent.width; ++x) {
             size_t i = (size_t)y * scene->width + (size_t)x;

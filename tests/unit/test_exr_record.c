@@ -195,10 +195,10 @@ static void damaged_values_are_named_with_file_field_and_range(void **unused)
            "a.exr: vkao/params: 'parameters.radius' is missing, want a number > 0 and <= "
            "3.402823466e+38");
     refuse(
-        "\"step_count\":8", "\"step_count\":8.5",
+        "\"step_count\":9", "\"step_count\":8.5",
         "a.exr: vkao/params: 'parameters.step_count' is 8.5, want a whole number >= 0 and <= 256");
     refuse(
-        "\"step_count\":8", "\"step_count\":257",
+        "\"step_count\":9", "\"step_count\":257",
         "a.exr: vkao/params: 'parameters.step_count' is 257, want a whole number >= 0 and <= 256");
     refuse("\"smooth\"", "\"soft\"",
            "a.exr: vkao/params: 'parameters.falloff' is 'soft', want smooth or threshold");

@@ -165,7 +165,7 @@ static void dispatch_covers_what_the_upsampling_reads(void **state)
         check_cover(&w, 0, (struct vkao_rect){0, 0, 51, 30}, WIDTH, HEIGHT, 1);
         check_cover(&w, 1, cases[i].ssao, VKAO_SSAO_GROUP_WIDTH, VKAO_SSAO_GROUP_HEIGHT, 1);
         check_cover(&w, 2, cases[i].blur, VKAO_BLUR_TILE_WIDTH,
-                    VKAO_BLUR_TILE_ROWS - 2 * (VKAO_BLUR_TILE_RADIUS + 1), 1);
+                    VKAO_BLUR_TILE_ROWS(2) - 2 * (VKAO_BLUR_TILE_RADIUS + 1), 1);
         check_cover(&w, 3, cases[i].upsample, 2 * WIDTH, 2 * HEIGHT, 2);
         check_cover(&w, 4, cases[i].upsample, WIDTH, HEIGHT, 1);
         assert_int_equal(fake_count(&w.fake, "vkCmdDispatch"), 5);

@@ -140,7 +140,7 @@ static void ranges_are_those_of_the_header(void **state)
     } rows[] = {
         {"sample_count", 0, 1024, 16, 0},
         {"slice_count", 0, 64, 1, 0},
-        {"step_count", 0, 256, 8, 0},
+        {"step_count", 0, 256, 9, 0},
         {"blur_radius", 0, 16, 3, 0},
         {"blur_normal_power", 0, 128, 0, 0},
         {"radius", 0, FLT_MAX, 0.5, 1},
@@ -199,7 +199,7 @@ static void zero_means_the_default(void **state)
     world_create_effect(&w);
     const vkao_effect_info settings = settings_of(w.effect);
     assert_int_equal(settings.slice_count, 1);
-    assert_int_equal(settings.step_count, 8);
+    assert_int_equal(settings.step_count, 9);
     assert_int_equal(settings.sample_count, 16);
     assert_int_equal(settings.ao_format, VK_FORMAT_R8_UNORM);
     assert_int_equal(settings.bent_encoding, VKAO_NORMALS_XYZ_SNORM);
