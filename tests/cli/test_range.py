@@ -1,11 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Depth that ends where things go on, counts down, or was filled with one value, is said."""
+"""Depth that ends or breaks where things go on, counts down, or was filled with one value, is
+said."""
 import numpy as np
 
 from cli import case, cases, check, equal, main, matches, write_exr
 from evidence import depth_of, inspect
-from scene import FOV, Scene
+from scene import CORNER, FOV, Scene, boxes_along_axes
 
 
 def clamped(low, high):
@@ -118,6 +119,47 @@ def gaps_of_a_fence_are_no_seams(scratch):
     write_exr(scratch.path('in.exr'), {'Z': depth.astype(np.float32)})
     said = str(inspect(scratch, '--fov', FOV)['warnings'])
     check('seams of tiles' not in said, said)
+
+
+# --- Breaks ---
+
+def room(**more):
+    """A corner of a room with boxes in it: edges of depth, and of normals, in all directions."""
+    boxes = [((i - 6, 2.8 - i * 0.3, -5 - i * 0.7), (i - 5.2, 9, -4.2 - i * 0.5)) for i in range(5)]
+    return boxes_along_axes(CORNER + boxes, 384, 216, **more)
+
+
+def put(plane, other, rows, columns):
+    plane = plane.copy()
+    plane[rows, columns] = other[rows, columns]
+    return plane
+
+
+ALL, RIGHT, LOWER = slice(None), slice(192, None), slice(100, None)
+BREAKS = [('as it is', lambda d: d, None),
+          ('half in feet', lambda d: put(d, d * 3.28, ALL, RIGHT), 'before column 192,'),
+          ('lower part nearer', lambda d: put(d, d * 0.95, LOWER, ALL), 'before row 100,'),
+          ('a bad column', lambda d: put(d, d * 0 + 3, ALL, 100), 'before column 100,'),
+          ('a bucket', lambda d: put(d, np.roll(d, (9, 14), (0, 1)), slice(64, 96),
+                                     slice(192, 224)), 'a bucket of 32 x 32 pixels at .192 64.,'),
+          ('things behind a line', None, None)]
+
+
+@cases(BREAKS, name=lambda row: row[0])
+def breaks_along_lines_are_said(scratch, _, change, message):
+    scene = room()
+    if change:
+        scene['Z'] = change(scene['Z']).astype(np.float32)
+    else:
+        # The front of a wall before another, upright and as wide as half of the image.
+        wall = [((-9, -9, -9), (9, 9, -5)), ((-9, -9, -9), (0, 9, -3))]
+        scene = boxes_along_axes(wall, 384, 216, turn=np.eye(3))
+    write_exr(scratch.path('in.exr'), scene)
+    for options in ('--fov', FOV), ():
+        said = str(inspect(scratch, *options)['warnings'])
+        equal('depth breaks' in said, message is not None, f'whether it is in {said}')
+        if message:
+            matches(message + r".* where normals 'N' go on", said, 'the warnings')
 
 
 if __name__ == '__main__':

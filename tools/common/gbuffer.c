@@ -569,8 +569,10 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     }
     gbuffer_warn_of_ramps(g, depth->info->path, report);
     gbuffer_warn_of_holes(g, depth->info->path, report);
-    if (!is_moved)
+    if (!is_moved) {
         gbuffer_warn_of_borders(g, depth->info->path, report);
+        gbuffer_warn_of_breaks(g, depth->info->path, report);
+    }
     /* What is taken out is no fault of the file. */
     if (!take_out(info, g, options, report, err))
         goto failed;

@@ -167,6 +167,9 @@ void gbuffer_warn_of_frame(const struct gbuffer *g, struct frame_memory *memory,
                            struct report *report);
 /* Of depth as prepared and the normals that are used, if any. */
 void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct report *report);
+/* Of depth as prepared and the normals that are used, if any: lines and buckets of the image along
+ * which depth breaks, and normals do not. */
+void gbuffer_warn_of_breaks(const struct gbuffer *g, const char *path, struct report *report);
 /* Of depth as prepared, with its alpha, and the normals that are used, if any: where only one of
  * the two is there. */
 void gbuffer_warn_of_holes(const struct gbuffer *g, const char *path, struct report *report);
