@@ -41,6 +41,26 @@ def background_does_not_depend_on_the_unit(scratch, _, unit):
     check_same(run(scratch, channels, '--fov', 90)[0], wanted, f'unit {unit}')
 
 
+@cases(BACKGROUNDS)
+def much_background_does_not_hide_the_camera(scratch, _, value):
+    # Pyramids without perspective: seen from behind they are hollows.
+    y, x = np.mgrid[:180, :320] / 20
+    u, v = (x + 0.3 * y) % 2 - 1, (y - 0.2 * x) % 1.6 - 0.8
+    is_u, sky = np.abs(u) > np.abs(v), x > 5
+    across, down = np.where(is_u, np.sign(u), -0.2 * np.sign(v)) * 0.6, \
+        np.where(is_u, 0.3 * np.sign(u), np.sign(v)) * 0.6
+    normal = np.stack([across, -down, np.ones_like(x)], axis=-1)
+    normal = np.where(sky[..., None], 0, normal / np.linalg.norm(normal, axis=-1, keepdims=True))
+    normal = normal @ TURN
+    depth = np.where(sky, value, 8 + 0.6 * np.maximum(np.abs(u), np.abs(v)))
+    normals = {f'N.{c}': normal[..., i].astype(np.float32) for i, c in enumerate('XYZ')}
+    write_exr(scratch.path('in.exr'), {'Z': depth.astype(np.float32), **normals})
+    view = inspect(scratch)
+    matches('by depth and normals it is orthographic, width 16', str(view['warnings']), 'warnings')
+    check('do not agree' not in str(view['warnings']), str(view['warnings']))
+    check(view['conventions']['normal_agreement'] > 0.95, str(view['conventions']))
+
+
 @case
 def saturated_halves_are_background(scratch):
     scene = hidden(0.7)
@@ -377,6 +397,17 @@ def steps_of_a_wall_are_no_offset(scratch):
                   attributes=[('cameraFov', 50.0)])
         said = str(inspect(scratch)['warnings'])
         check('only if' not in said, said)
+
+
+@cases([('with a name', 'dd.T', False), ('without', 'Z', True)])
+def near_plane_that_nobody_tells_is_said(scratch, _, name, is_said):
+    scene = Scene(320, 180)
+    write_exr(scratch.path('in.exr'), {name: scene.depth('radial-near'), **scene.normals()})
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    equal(re.search('near plane at 0.5[0-9]*, which normals alone tell', said) is not None, is_said,
+          f'whether it is in {said}')
+    said = str(inspect(scratch, '--fov', FOV, '--near', NEAR)['warnings'])
+    check('which normals alone tell' not in said, said)
 
 
 @case

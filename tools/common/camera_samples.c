@@ -86,7 +86,9 @@ static void find_range(struct field *f)
     const bool usual = same(f->most, 1.0) || same(f->most, 65504.0);
     f->drop_least = at_least * 20 > count;
     f->drop_most = at_most * 20 > count || (usual && at_most > 50);
-    if (count > 0 && negative * 2 > count) {
+    /* Background of -1 turns nothing round, however much of it there is. */
+    const size_t aside = f->drop_least && f->least < 0 ? at_least : 0;
+    if ((negative - aside) * 2 > count - aside) {
         const double least = f->least;
         const bool drop = f->drop_least;
         f->sign = -1;

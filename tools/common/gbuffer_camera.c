@@ -221,6 +221,16 @@ static void tell_near(const struct gbuffer *g, const struct fit *fit, const char
                     path, g->roles.kind[ROLE_DEPTH].label, told, seen, told);
 }
 
+/* Neither name nor camera says that depth begins at a near plane, and what was normalised looks the
+ * same through a narrow lens. */
+static void tell_found_near(const struct gbuffer *g, const char *path, struct report *report)
+{
+    report_warn(report, "found near plane",
+                "%s: depth '%s' is taken for distances from a near plane at %.4g, which normals "
+                "alone tell: if it is normalised, --depth-type normalized --depth-range NEAR,FAR",
+                path, g->roles.kind[ROLE_DEPTH].label, g->camera.near_plane);
+}
+
 /* Nothing else makes all of a scene wider or higher. */
 static void tell_pixels(const struct gbuffer *g, const struct fit *fit, const char *path,
                         struct report *report)
@@ -484,9 +494,13 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
                     "%s: the normals are nearly the same in any field of view: nothing checks that "
                     "of %s",
                     path, g->camera.source);
+    const bool knows_near = g->camera.near_plane > 0 || depth->depth_type == DEPTH_RADIAL_NEAR;
     if (told.is_sure && g->depth_source == DEPTH_ASSUMED &&
-        (gbuffer_type_is_auto(g, options) || lacks_near))
+        (gbuffer_type_is_auto(g, options) || lacks_near)) {
         take_depth_type(g, &told);
+        if (g->depth_type == DEPTH_RADIAL_NEAR && !knows_near)
+            tell_found_near(g, path, report);
+    }
     if (told.is_sure) {
         take_rotation(g, &told);
         see_rotation(g, &told);
