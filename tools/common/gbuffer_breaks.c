@@ -109,10 +109,10 @@ static bool warn_of_seams(const struct gbuffer *g, bool is_row, const char *path
     const char *normals = g->roles.kind[ROLE_NORMAL].label;
     if (s.count > 0)
         report_warn(report, "broken depth",
-                    "%s: depth breaks along a line of the image, before %s %lld, on all that lies "
+                    "%s: depth breaks along a line of the image, before %s %td, on all that lies "
                     "there, where normals '%s' go on: halves of two cameras or units, or a bad "
                     "line? AO is wrong there; write all of the image from one camera in one unit",
-                    path, is_row ? "row" : "column", (long long)(origin + (int64_t)s.first),
+                    path, is_row ? "row" : "column", (ptrdiff_t)(origin + (int64_t)s.first),
                     normals);
     return s.count > 0;
 }
@@ -158,10 +158,10 @@ static void warn_of_buckets(const struct gbuffer *g, const char *path, struct re
         count = count_foreign(g, size, &b);
     if (count > 0)
         report_warn(report, "foreign bucket",
-                    "%s: depth breaks all around a bucket of %zu x %zu pixels at (%lld %lld)%s, "
+                    "%s: depth breaks all around a bucket of %zu x %zu pixels at (%td %td)%s, "
                     "where normals '%s' go on: of another frame? AO is wrong there; render it anew",
-                    path, b.size, b.size, (long long)(g->data_window.x_min + (int64_t)b.x),
-                    (long long)(g->data_window.y_min + (int64_t)b.y),
+                    path, b.size, b.size, (ptrdiff_t)(g->data_window.x_min + (int64_t)b.x),
+                    (ptrdiff_t)(g->data_window.y_min + (int64_t)b.y),
                     count > 1 ? " and others" : "", g->roles.kind[ROLE_NORMAL].label);
 }
 

@@ -383,7 +383,7 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
 {
     const char *path = info->path;
     const struct role *role = &g->roles.kind[ROLE_DEPTH];
-    g->depth_is_half = role->channels[0]->type == EXR_HALF;
+    g->depth_is_half = role->channels[0]->type == EXR_HALF || gbuffer_holds_halves(g);
     g->block_size = gbuffer_block_size(g);
     g->ridge_width = gbuffer_ridge_width(g);
     g->is_median = gbuffer_is_median(g);

@@ -60,6 +60,25 @@ bool gbuffer_find_step(const struct gbuffer *g, double *step)
     return true;
 }
 
+/* Of the mantissa of a float a half has the first ten bits, the last of which is set in half of all
+ * values that are not whole numbers or other round ones. */
+bool gbuffer_holds_halves(const struct gbuffer *g)
+{
+    enum { FEW = 64, MOST = 1 << 16, LAST = 1 << 13 };
+    const size_t stride = gbuffer_texels(g) / MOST + 1;
+    size_t count = 0, longer = 0, full = 0;
+    for (size_t i = 0; i < gbuffer_texels(g); i += stride) {
+        uint32_t word;
+        if (!gbuffer_is_measurable(fabs((double)g->depth[i])))
+            continue;
+        memcpy(&word, &g->depth[i], sizeof word);
+        count++;
+        longer += (word & (LAST - 1)) != 0;
+        full += (word & LAST) != 0;
+    }
+    return count >= FEW && longer * 1000 < count && full * 4 > count;
+}
+
 /* --- Blocks --- */
 
 /* Of changes, so many tell enough. */

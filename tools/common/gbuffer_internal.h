@@ -140,6 +140,8 @@ bool gbuffer_warn_of_curve(struct gbuffer *g, const char *path, struct report *r
 double gbuffer_filtered_share(const struct gbuffer *g);
 /* The step of depth, as stored, that all of it is multiples of, or 0. False if memory ran out. */
 bool gbuffer_find_step(const struct gbuffer *g, double *step);
+/* Of depth as stored, whatever its channel is: it was one of halves before. */
+bool gbuffer_holds_halves(const struct gbuffer *g);
 /* Of depth as stored: 1, or what it was enlarged by without interpolation. */
 unsigned gbuffer_block_size(const struct gbuffer *g);
 /* The same of normals, once they are decoded. */
