@@ -214,5 +214,26 @@ def every_usable_device_can_be_chosen(scratch):
             scratch.render('in.exr', '-o', 'ao.exr', '--overwrite', 'always', '--device', choice)
 
 
+
+@cases([('named radial', 'dd.y', 'radial', ['camera', 'depth type']),
+        ('flat', 'Z', 'planar', ['camera']), ('with normals', 'Z', 'planar', None),
+        ('with positions', 'Z', 'planar', None)],
+       name=lambda row: row[0])
+def what_nothing_confirms_is_told(scratch, what, name, kind, unconfirmed):
+    scene = Scene(320, 180)
+    place = np.stack([scene.x, scene.y, -np.ones_like(scene.x)]) * scene.z
+    more = {'with normals': scene.normals(),
+            'with positions': {f'P.{c}': np.where(scene.sky, 0, p).astype(np.float32)
+                               for c, p in zip('XYZ', place)}}
+    write_exr(scratch.path('in.exr'), {name: scene.depth(kind), **more.get(what, {})})
+    options = () if what == 'with positions' else ('--fov', FOV)
+    said = scratch.run('inspect', 'in.exr', *options).stdout
+    result = json.loads(scratch.run('inspect', 'in.exr', '--json', *options).stdout)
+    equal(result['views'][0]['conventions'].get('unconfirmed'), unconfirmed, 'unconfirmed')
+    words = ' and '.join(unconfirmed or [])
+    equal(f'from depth; nothing in the file can confirm {words}\n' in said,
+          unconfirmed is not None, f'whether it is in {said}')
+
+
 if __name__ == '__main__':
     main()

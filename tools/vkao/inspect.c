@@ -139,6 +139,18 @@ static void add_depth_facts(cJSON *entry, const struct gbuffer *g)
     cJSON_AddNumberToObject(planes, "with_offset", g->planes.offset_share);
 }
 
+/* Without normals or positions wrong options look as right ones do. */
+static void add_unconfirmed(cJSON *entry, const struct gbuffer *g)
+{
+    const enum depth_source source = g->depth_source;
+    if (strcmp(g->camera.source, "positions") == 0)
+        return;
+    cJSON *list = cJSON_AddArrayToObject(entry, "unconfirmed");
+    cJSON_AddItemToArray(list, cJSON_CreateString("camera"));
+    if (source == DEPTH_ASSUMED || source == DEPTH_BY_OPTION || source == DEPTH_BY_NAME)
+        cJSON_AddItemToArray(list, cJSON_CreateString("depth type"));
+}
+
 static void add_conventions(cJSON *object, const struct gbuffer *g)
 {
     cJSON *entry = cJSON_AddObjectToObject(object, "conventions");
@@ -150,8 +162,10 @@ static void add_conventions(cJSON *object, const struct gbuffer *g)
     bool normals = g->normal_space != NORMAL_SPACE_AUTO;
     cJSON_AddStringToObject(entry, "normal_space",
                             normals ? normal_space_name(g->normal_space) : "none");
-    if (!normals)
+    if (!normals) {
+        add_unconfirmed(entry, g);
         return;
+    }
     cJSON_AddStringToObject(entry, "normal_encoding", normal_encoding_name(g->normal_encoding));
     cJSON_AddNumberToObject(entry, "normal_agreement", g->normal_agreement);
 }
@@ -406,7 +420,15 @@ static void print_conventions(const cJSON *c)
         print_share(c, "invalid_share", ", invalid ");
     printf("\n");
     if (!has(c, "normal_encoding")) {
-        printf("  normals   from depth\n");
+        const cJSON *list = cJSON_GetObjectItemCaseSensitive(c, "unconfirmed"), *item;
+        const char *before = "; nothing in the file can confirm ";
+        printf("  normals   from depth");
+        cJSON_ArrayForEach(item, list)
+        {
+            printf("%s%s", before, item->valuestring);
+            before = " and ";
+        }
+        printf("\n");
         return;
     }
     printf("  normals   %s space, %s", text_of(c, "normal_space"), text_of(c, "normal_encoding"));
