@@ -147,6 +147,8 @@ def median_of(depth, which):
 MEDIANS = [('of 9', lambda d: median_of(d, range(9)), True),
            ('of a cross', lambda d: median_of(d, [1, 3, 4, 5, 7]), True),
            ('not at all', lambda d: d, False), ('halves', np.float16, False),
+           ('halves in centimetres',
+            lambda d: np.float32(d.astype(np.float16)) * np.float32(100), False),
            ('16 bits', lambda d: (np.round(d / 30 * 65535) / 65535 * 30), False)]
 
 

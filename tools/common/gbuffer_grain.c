@@ -253,7 +253,7 @@ unsigned gbuffer_ridge_width(const struct gbuffer *g)
 struct twins {
     size_t equal, close; /* not at all, and a little */
     size_t walls;        /* squares of four that are the same */
-    uint32_t bits;       /* of the mantissa, that those which are equal use */
+    double least;        /* of all neighbours that differ a little, as a part of depth */
 };
 
 /* More than rounding, and less than the edges of things: as parts of depth. */
@@ -273,9 +273,10 @@ static void look_for_twins(const struct gbuffer *g, size_t first, size_t step, s
     const float *above = d - across, *below = d + across;
     const double apart = fabs((double)a - (double)b);
     const bool is_equal = !(apart > 0);
-    uint32_t word;
     if (!(apart <= close * fabs((double)a)) || !gbuffer_is_measurable(fabs((double)a)))
         return;
+    if (!is_equal)
+        twins->least = fmin(twins->least, apart / fabs((double)a));
     twins->walls += is_equal && !(fabsf(a - below[step]) > 0) && !(fabsf(a - below[2 * step]) > 0);
     /* What is the same on both sides is symmetrical. What is so in the line before is a wall. */
     if (!is_near_by(a, d[0]) || !is_near_by(a, d[3 * step]) || !(fabsf(d[0] - d[3 * step]) > 0) ||
@@ -284,8 +285,6 @@ static void look_for_twins(const struct gbuffer *g, size_t first, size_t step, s
         return;
     twins->equal += is_equal;
     twins->close += !is_equal;
-    memcpy(&word, &a, sizeof word);
-    twins->bits |= is_equal ? word : 0;
 }
 
 /* A filter of medians gives texels values of their neighbours, and two of them often the same one.
@@ -294,9 +293,9 @@ static void look_for_twins(const struct gbuffer *g, size_t first, size_t step, s
  * 44 are, mostly more than 80. Coarser depth and walls seen straight on tell nothing. */
 bool gbuffer_is_median(const struct gbuffer *g)
 {
-    static const double least = 0.3;
-    enum { FEW = 16, COARSE = 0x1ff };
-    struct twins t = {0};
+    static const double least = 0.3, coarse = 1.6e-5;
+    enum { FEW = 16 };
+    struct twins t = {.least = INFINITY};
     for (size_t y = 1; y + 1 < g->height; y++)
         for (size_t x = 1; x + 1 < g->width; x++) {
             const size_t i = y * g->width + x;
@@ -306,7 +305,7 @@ bool gbuffer_is_median(const struct gbuffer *g)
                 look_for_twins(g, i - g->width, g->width, 1, &t);
         }
     return t.equal >= FEW && (double)t.equal > least * (double)t.close && t.walls < 8 * t.equal &&
-           (t.bits & COARSE) != 0;
+           t.least < coarse;
 }
 
 /* --- Noise --- */
