@@ -357,7 +357,7 @@ typedef struct vkao_effect_info {
      * Default 3 */
     uint32_t blur_radius;
     /* [0,128] edge stopping by normals: weight max(0, n.n')^blur_normal_power; 0 = ignore them, as
-     * without a normals image. 8 is a good value, and on CPUs the blur takes 2.4 times as long.
+     * without a normals image. 8 is a good value, and on CPUs the blur takes twice as long.
      * Default 0 */
     float blur_normal_power;
 

@@ -85,10 +85,10 @@ def sizes_beyond_the_device_are_left_out(scratch):
     ('method', ('--method', 'gtao', '--slices', '3', '--steps', '6'), ['gtao-3x6']),
     ('methods', ('--method', 'vbao,hemisphere,raymarch', '--steps', '2', '--samples', '3'),
      ['vbao-1x2', 'hemisphere-3', 'raymarch-3x2']),
-    ('defaults', ('--method', 'hbao,sphere'), ['hbao-1x8', 'sphere-16']),
+    ('defaults', ('--method', 'hbao,sphere'), ['hbao-1x9', 'sphere-16']),
     ('presets', ('--preset', 'best,fast'), ['vbao-best', 'vbao-fast']),
     ('all', ('--configs', 'gtao-1x8,high', '--preset', 'default', '--method', 'hbao'),
-     ['gtao-1x8', 'vbao-high', 'vbao-default', 'hbao-1x8']),
+     ['gtao-1x8', 'vbao-high', 'vbao-default', 'hbao-1x9']),
 ]])
 def settings_are_chosen_by(scratch, _, arguments, wanted):
     rows = measure(scratch, *arguments)

@@ -43,7 +43,7 @@ static const struct argument rows[] = {
     {"method", "LIST", "sphere, hemisphere, hbao, gtao, vbao, raymarch; with the next three",
      ARGUMENT_TEXT, AT(method), 0, 0, NULL},
     {"slices", "N", "of hbao, gtao and vbao (1)", ARGUMENT_COUNT, AT(slices), 1, 64, NULL},
-    {"steps", "N", "of hbao, gtao, vbao and raymarch (8)", ARGUMENT_COUNT, AT(steps), 1, 256, NULL},
+    {"steps", "N", "of hbao, gtao, vbao and raymarch (9)", ARGUMENT_COUNT, AT(steps), 1, 256, NULL},
     {"samples", "N", "of sphere and hemisphere, rays of raymarch (16)", ARGUMENT_COUNT, AT(samples),
      1, 1024, NULL},
     {"radius", "R", "scene units; the room is 10 deep (0.5)", ARGUMENT_NUMBER, AT(radius), 0, 0,
