@@ -140,32 +140,6 @@ def nearest_and_farthest_samples_are_said(scratch, which, pick):
         check('nearest' not in said and 'bend' not in said, said)
 
 
-def median_of(depth, which):
-    return neighbours(depth, lambda n: np.median(n[..., which], axis=-1))
-
-
-MEDIANS = [('of 9', lambda d: median_of(d, range(9)), True),
-           ('of a cross', lambda d: median_of(d, [1, 3, 4, 5, 7]), True),
-           ('not at all', lambda d: d, False), ('halves', np.float16, False),
-           ('halves in centimetres',
-            lambda d: np.float32(d.astype(np.float16)) * np.float32(100), False),
-           ('16 bits', lambda d: (np.round(d / 30 * 65535) / 65535 * 30), False)]
-
-
-@cases(MEDIANS)
-def medians_of_neighbours_are_said(scratch, _, change, is_said):
-    # Edges that no line of the image goes along; and walls seen straight on, with posts before.
-    boxes = [((i - 6, 2.8 - i * 0.3, -5 - i * 0.7), (i - 5.2, 9, -4.2 - i * 0.5)) for i in range(5)]
-    scene = boxes_along_axes(CORNER + boxes, 400, 225)
-    x, y = np.meshgrid(np.arange(320), np.arange(180))
-    wall = np.where((x % 9 < 2) & (y % 7 < 1 + x // 9 % 3), 5.9 + 0.01 * (x // 9 % 5), 6 + 0 * y)
-    for depth, normals in ((scene.pop('Z'), scene), (wall.astype(np.float32), {})):
-        written = change(depth).astype(np.float32) if normals else depth
-        write_exr(scratch.path('in.exr'), {'Z': written, **normals})
-        said = str(inspect(scratch, '--fov', FOV)['warnings'])
-        equal('filtered by a median' in said, is_said and bool(normals), f'whether in {said}')
-
-
 @cases([('a texel to the right', 0, 1), ('a texel to the left', 0, -1), ('a texel below', 1, 0),
         ('a texel above', -1, 0), ('6 texels to the right', 0, 6), ('8 texels above', -8, 0),
         ('3 texels to the left and 2 texels below', 2, -3)])

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """vkao inspect and vkao devices: what they print, as text and as JSON."""
 import json
+import os
 
 import numpy as np
 
@@ -213,6 +214,13 @@ def every_usable_device_can_be_chosen(scratch):
         for choice in (str(device['index']), device['name'].split(' (')[0]):
             scratch.render('in.exr', '-o', 'ao.exr', '--overwrite', 'always', '--device', choice)
 
+
+@cases(['tools/demo/courtyard.exr', 'tests/golden/courtyard_small.exr'])
+def scenes_of_the_project_are_right(scratch, name):
+    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..', name)
+    for options in (), ('--camera', 'none', '--fov', 56):
+        result = json.loads(scratch.run('inspect', path, '--json', *options).stdout)
+        equal([w for w in result['views'][0]['warnings'] if 'AO is wrong' in str(w)], [], name)
 
 
 @cases([('named radial', 'dd.y', 'radial', ['camera', 'depth type']),

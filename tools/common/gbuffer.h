@@ -138,7 +138,6 @@ struct gbuffer {
     struct background background;
     unsigned block_size;  /* of texels that are the same, as enlarging without interpolation does */
     unsigned ridge_width; /* of texels whose nearest or farthest value each has, likewise */
-    bool is_median;       /* of neighbours, as filters of medians make it */
     double noise;         /* widths of a texel that depth bends by where normals do not */
     double filtered_share; /* [0,1] of edges with texels in between, as filters and blur do */
     enum normal_space normal_space; /* AUTO if there are no normals */

@@ -306,11 +306,6 @@ static void warn_about_grain(const struct gbuffer *g, const char *path, struct r
                     "%s: depth is that of the nearest or the farthest of %u x %u pixels: nothing "
                     "is narrower than that; AO is wrong at borders; render it unfiltered",
                     path, width, width);
-    else if (g->is_median && !(g->depth_step > 0))
-        report_warn(report, "median depth",
-                    "%s: depth is filtered by a median: neighbours are the same where all around "
-                    "differs; AO is wrong at borders; render it unfiltered",
-                    path);
     else if (g->noise > most_noise)
         report_warn(report, "noisy depth",
                     "%s: depth is noisy: where normals say that it is flat it bends by %.2g widths "
@@ -386,7 +381,6 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
     g->depth_is_half = role->channels[0]->type == EXR_HALF || gbuffer_holds_halves(g);
     g->block_size = gbuffer_block_size(g);
     g->ridge_width = gbuffer_ridge_width(g);
-    g->is_median = gbuffer_is_median(g);
     const struct stored_range stored = look_at_range(g);
     if (!gbuffer_resolve_depth_type(g, info, options, report, err) || !check_range(g, path, err) ||
         !check_planes(g, path, err))

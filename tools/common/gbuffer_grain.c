@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * How fine a depth really is: whether it was rounded to steps, enlarged from a smaller image, made
- * of the nearest, the farthest or the median of neighbours, or sampled somewhere in each texel. AO
- * sees ridges in all of these. */
+ * of the nearest or the farthest of neighbours, or sampled somewhere in each texel. AO sees ridges
+ * in all of these. */
 #include "gbuffer_internal.h"
 #include "median.h"
 
@@ -245,67 +245,6 @@ unsigned gbuffer_ridge_width(const struct gbuffer *g)
         look_for_ridges(g->depth + x, g->width, g->height, ridges);
     const unsigned low = least_width(&ridges[0]), high = least_width(&ridges[1]);
     return high > low ? high : low;
-}
-
-/* --- Twins --- */
-
-/* Pairs of neighbours on a slope, in a row or a column, that are less apart than all around. */
-struct twins {
-    size_t equal, close; /* not at all, and a little */
-    size_t walls;        /* squares of four that are the same */
-    double least;        /* of all neighbours that differ a little, as a part of depth */
-};
-
-/* More than rounding, and less than the edges of things: as parts of depth. */
-static bool is_near_by(float depth, float other)
-{
-    static const double least = 1e-4, most = 0.05;
-    const double apart = fabs((double)depth - (double)other) / fabs((double)depth);
-    return apart > least && apart < most;
-}
-
-/* At four texels in a line, of which the two in the middle are the pair. */
-static void look_for_twins(const struct gbuffer *g, size_t first, size_t step, size_t across,
-                           struct twins *twins)
-{
-    static const double close = 1e-4;
-    const float *d = g->depth + first, a = d[step], b = d[2 * step];
-    const float *above = d - across, *below = d + across;
-    const double apart = fabs((double)a - (double)b);
-    const bool is_equal = !(apart > 0);
-    if (!(apart <= close * fabs((double)a)) || !gbuffer_is_measurable(fabs((double)a)))
-        return;
-    if (!is_equal)
-        twins->least = fmin(twins->least, apart / fabs((double)a));
-    twins->walls += is_equal && !(fabsf(a - below[step]) > 0) && !(fabsf(a - below[2 * step]) > 0);
-    /* What is the same on both sides is symmetrical. What is so in the line before is a wall. */
-    if (!is_near_by(a, d[0]) || !is_near_by(a, d[3 * step]) || !(fabsf(d[0] - d[3 * step]) > 0) ||
-        !is_near_by(above[step], above[2 * step]) || !is_near_by(below[step], below[2 * step]) ||
-        !is_near_by(a, above[step]) || !is_near_by(a, below[step]))
-        return;
-    twins->equal += is_equal;
-    twins->close += !is_equal;
-}
-
-/* A filter of medians gives texels values of their neighbours, and two of them often the same one.
- * Surfaces that differ all around are as near only by chance: of clean renders, with 16 bits of
- * mantissa too, at most 19 pairs are equal for 100 that are close. Of medians of 9 texels at least
- * 44 are, mostly more than 80. Coarser depth and walls seen straight on tell nothing. */
-bool gbuffer_is_median(const struct gbuffer *g)
-{
-    static const double least = 0.3, coarse = 1.6e-5;
-    enum { FEW = 16 };
-    struct twins t = {.least = INFINITY};
-    for (size_t y = 1; y + 1 < g->height; y++)
-        for (size_t x = 1; x + 1 < g->width; x++) {
-            const size_t i = y * g->width + x;
-            if (x + 3 <= g->width)
-                look_for_twins(g, i - 1, 1, g->width, &t);
-            if (y + 3 <= g->height)
-                look_for_twins(g, i - g->width, g->width, 1, &t);
-        }
-    return t.equal >= FEW && (double)t.equal > least * (double)t.close && t.walls < 8 * t.equal &&
-           t.least < coarse;
 }
 
 /* --- Noise --- */

@@ -149,8 +149,6 @@ unsigned gbuffer_block_size_of_normals(const struct gbuffer *g);
 /* Of depth as stored: 1, or the side of the square whose nearest or farthest value each texel
  * has. */
 unsigned gbuffer_ridge_width(const struct gbuffer *g);
-/* Of depth as stored: whether each texel has the median of its neighbours. */
-bool gbuffer_is_median(const struct gbuffer *g);
 /* Of depth as prepared, unless a camera is given by hand. */
 void gbuffer_warn_of_panorama(const struct gbuffer *g, const char *path, struct report *report);
 /* Of depth as prepared and the normals that are used, if any, where these belong to other texels.
