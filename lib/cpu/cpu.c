@@ -47,6 +47,7 @@ static_assert(VKAO_BINDING_Z == VKAO_BINDING_CPU, "the CPU's bindings come last"
 #define WRITES_WORDS(name, part) PART(name, part, true, UNDEFINED)
 #define READS_Z READS_TEXELS(Z, Z, R32_SFLOAT)
 #define READS_Z4 READS_TEXELS(Z4, Z, R32G32B32A32_SFLOAT)
+#define READS_DEPTH VKAO_READS(DEPTH, DEPTH), VKAO_READS(NEAREST, SAMPLER)
 #define READS_NORMALS VKAO_READS(NORMALS, NORMALS)
 #define READS_RING_NORMALS READS_TEXELS(RING_NORMALS_READ4, RING_NORMALS, R32G32B32A32_UINT)
 #define READS_BENT_CODES VKAO_READS(BENT_SOURCE, BENT_CODES)
@@ -223,7 +224,7 @@ static void record_upsample(const struct vkao_recording *r, uint32_t pass)
 
 /* --- Rows --- */
 
-#define GROUP .group = {VKAO_GROUP_WIDTH, VKAO_GROUP_HEIGHT}
+#define TEXELS(width, height) .texels = {width, height}, .group = {VKAO_GROUP_OF(width), 1}
 #define ROW_GROUP .group = {VKAO_ROW_GROUP_WIDTH, 1}
 
 static const struct vkao_pass prepare = {
@@ -231,10 +232,9 @@ static const struct vkao_pass prepare = {
     .label = "prepare",
     .stage = VKAO_STAGE_PREPARE,
     VKAO_CODE(vkao_packed_prepare_cpu),
-    .uses = {VKAO_READS(DEPTH, DEPTH), WRITES_WORDS(Z_WORDS, Z)},
+    .uses = {READS_DEPTH, WRITES_WORDS(Z_WORDS, Z)},
     .area = VKAO_AREA_VALID,
-    .texels = {VKAO_PREPARE_WIDTH, 1},
-    GROUP,
+    TEXELS(VKAO_PREPARE_WIDTH, VKAO_PREPARE_HEIGHT),
     .forms = 1,
     .record = record_prepare,
 };
@@ -243,8 +243,8 @@ static const struct vkao_pass prepare = {
     {                                                                                              \
         .name = "vkao breaks " #axis, .label = "prepare", .stage = VKAO_STAGE_PREPARE,             \
         VKAO_CODE(vkao_packed_breaks_##axis##_cpu),                                                \
-        .uses = {READS_Z4, WRITES_WORDS(BREAKS_WORDS, part)}, .texels = {width, height}, GROUP,    \
-        .forms = 1, .record = record_prepare,                                                      \
+        .uses = {READS_Z4, WRITES_WORDS(BREAKS_WORDS, part)}, TEXELS(width, height), .forms = 1,   \
+        .record = record_prepare,                                                                  \
     }
 static const struct vkao_pass breaks_x = BREAKS(x, BREAKS_X, 32, 1),
                               breaks_y = BREAKS(y, BREAKS_Y, VKAO_PREPARE_WIDTH, 32);
@@ -258,8 +258,7 @@ static const struct vkao_pass width = {
     .uses = {READS_TEXELS(BREAKS_X_READ, BREAKS_X, R32_UINT),
              READS_TEXELS(BREAKS_Y_READ4, BREAKS_Y, R32G32B32A32_UINT), READS_Z4,
              WRITES_WORDS(Z_WORDS, Z)},
-    .texels = {VKAO_PREPARE_WIDTH, VKAO_WIDTH_HEIGHT},
-    GROUP,
+    TEXELS(VKAO_PREPARE_WIDTH, VKAO_WIDTH_HEIGHT),
     .forms = 1,
     .record = record_prepare,
 };
@@ -323,8 +322,7 @@ static const struct vkao_pass ring_normals = {
     .stage = VKAO_STAGE_BLUR,
     VKAO_CODE(vkao_packed_ring_normals_cpu),
     .uses = {READS_NORMALS, WRITES_WORDS(RING_NORMALS_WORDS, RING_NORMALS)},
-    .texels = {4, 1},
-    GROUP,
+    TEXELS(4, 1),
     .with_next = true,
     .forms = 1,
     .record = record_blur,
@@ -337,8 +335,7 @@ static const struct vkao_pass packed_blur_x = {
     VKAO_CODE(vkao_packed_blur_x_cpu),
     .uses = {READS_Z4, READS_RING_NORMALS, READS_TEXELS(PACKED_READ4, PACKED, R32_UINT),
              WRITES_WORDS(HALFWAY_WORDS, HALFWAY)},
-    .texels = {VKAO_BLUR_X_WIDTH, 1},
-    GROUP,
+    TEXELS(VKAO_BLUR_X_WIDTH, 1),
     .with_next = true,
     .forms = 1,
     .record = record_rows,
@@ -352,8 +349,7 @@ static const struct vkao_pass packed_blur_y = {
     .uses = {READS_Z4, READS_TEXELS(HALFWAY_READ2, HALFWAY, R32_UINT), READS_RING_NORMALS,
              WRITES_WORDS(BLURRED_WORDS, BLURRED), WRITES_WORDS(STAGED_WORDS, COPIED),
              VKAO_WRITES(AO_WRITE, AO)},
-    .texels = {VKAO_BLUR_Y_WIDTH, VKAO_BLUR_Y_HEIGHT},
-    GROUP,
+    TEXELS(VKAO_BLUR_Y_WIDTH, VKAO_BLUR_Y_HEIGHT),
     .vertical = true,
     .forms = 4,
     .record = record_nothing,
@@ -364,11 +360,10 @@ static const struct vkao_pass packed_upsample = {
     .label = "upsample",
     .stage = VKAO_STAGE_BLUR,
     VKAO_CODE(vkao_packed_upsample_cpu),
-    .uses = {VKAO_READS(DEPTH, DEPTH), READS_Z, READS_Z4, READS_NORMALS,
+    .uses = {READS_DEPTH, READS_Z, READS_Z4, READS_NORMALS,
              READS_TEXELS(BLURRED_READ2, BLURRED, R32_UINT), WRITES_WORDS(STAGED_WORDS, COPIED),
              VKAO_WRITES(AO_WRITE, AO)},
-    .texels = {VKAO_UPSAMPLE_WIDTH, VKAO_UPSAMPLE_HEIGHT},
-    GROUP,
+    TEXELS(VKAO_UPSAMPLE_WIDTH, VKAO_UPSAMPLE_HEIGHT),
     .forms = 4,
     .record = record_upsample,
 };

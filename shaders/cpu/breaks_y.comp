@@ -6,8 +6,9 @@
 #define VKAO_GLSL
 #include "layout.h"
 
-layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
+layout(local_size_x = VKAO_GROUP_OF(VKAO_PREPARE_WIDTH)) in;
 layout(push_constant) uniform Block { vkao_dispatch here; };
+#define VKAO_CONSTANTS_FIRST
 #include "settings.glsl"
 #include "buffers.glsl"
 

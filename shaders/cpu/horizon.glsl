@@ -113,10 +113,15 @@ reals load_sides(ivec2 texel, Offset offset)
 void slice_points(Slice s, Offset offset, reals z, out reals x, out reals y)
 {
     reals dx = both(s.to_x.x * offset.x.number + s.to_x.y * offset.y.number);
-    reals dy = SIDES * both(s.to_y.x * offset.x.number + s.to_y.y * offset.y.number);
-    x = ORTHOGRAPHIC ? dx : z * dx;
-    y = ORTHOGRAPHIC ? both(s.origin) + dy - z * params.inverse_radius
-                     : both(s.origin) + z * (dy - both(s.eye));
+    real dy = s.to_y.x * offset.x.number + s.to_y.y * offset.y.number;
+    if (ORTHOGRAPHIC) {
+        x = dx;
+        y = both(s.origin) + SIDES * both(dy) - z * params.inverse_radius;
+    } else {
+        real rise = dy - s.eye;
+        x = z * dx;
+        y = both(s.origin) + z * reals(rise, -2.0 * s.eye - rise);
+    }
 }
 
 /* Is anything seen there, and outwards from the shaded point? Far off the axis a slice leans so

@@ -22,7 +22,8 @@
 #include "params.h"
 
 /* A CPU runs the lanes of a group one row after the other. It is served best by rows of many
- * texels, written in the order of memory. */
+ * texels, read and written in the order of memory: of 256, or in SSAO of so many invocations. */
+#define VKAO_GROUP_OF(texels) (256 / (texels))
 #define VKAO_ROW_GROUP_WIDTH 64
 
 /* The same memory as storage texel buffers, which a CPU reads with vector gathers and not lane by
@@ -63,6 +64,7 @@
 
 /* Texels per invocation. */
 #define VKAO_PREPARE_WIDTH 4
+#define VKAO_PREPARE_HEIGHT 2
 #define VKAO_WIDTH_HEIGHT 32  /* a part of the 32 whose breaks of a column are a word */
 #define VKAO_TILE_HEIGHT 8    /* least rows of a tile of SSAO; a group is one of its rows */
 #define VKAO_MOST_TILES 65535 /* what every device dispatches; in larger frames tiles are higher */
@@ -72,7 +74,7 @@
 #define VKAO_BLUR_Y_WIDTH 4
 #define VKAO_BLUR_Y_HEIGHT 8
 #define VKAO_UPSAMPLE_WIDTH 8
-#define VKAO_UPSAMPLE_HEIGHT 2
+#define VKAO_UPSAMPLE_HEIGHT 4
 
 /* vkao_constants.path: texels in a row of buffers, and in a row of what is copied. */
 #define VKAO_BREAKS_STRIDE_OF(stride)                                                              \

@@ -9,8 +9,9 @@
 #define VKAO_GLSL
 #include "layout.h"
 
-layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
+layout(local_size_x = VKAO_GROUP_OF(4)) in;
 layout(push_constant) uniform Block { vkao_strip here; };
+#define VKAO_CONSTANTS_FIRST
 #include "settings.glsl"
 layout(binding = VKAO_BINDING_RING_NORMALS_WORDS) writeonly buffer Normals { uvec4 normals[]; };
 #include "view.glsl"

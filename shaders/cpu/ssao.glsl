@@ -84,13 +84,13 @@ struct Planes {
 };
 
 /* Depth's own normals are always computed and seldom taken: that costs less than the branch. */
-Real3 view_normals(ivec2 texel, Real3 position, out Planes plane)
+Real3 view_normals(ivec2 texel, vec3 given[TEXELS], Real3 position, out Planes plane)
 {
     vec3 n[TEXELS], planes[TEXELS];
     float steepest[TEXELS];
     [[unroll]] for (int i = 0; i < TEXELS; ++i) {
         ivec2 at = texel + ivec2(i, 0);
-        vec3 center = lane3(position, i), stored = to_view(decode_normal(at << GRID_SHIFT));
+        vec3 center = lane3(position, i), stored = to_view(given[i]);
         Facet own = facet_of(at, center.z);
         n[i] = trusted_normal(stored, own.normal, center);
         Plane p = plane_of(own, n[i]);
@@ -106,10 +106,14 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane);
 /* What is not seen, background, is open. */
 Visibility shade(ivec2 texel)
 {
+    /* The caller's normals first: their memory is the farthest away. */
+    vec3 given[TEXELS];
+    [[unroll]] for (int i = 0; i < TEXELS; ++i)
+        given[i] = decode_normal(texel + ivec2(i, 0) << GRID_SHIFT);
     real z = load_view_zs(texel);
     Real3 position = view_positions(texel, z);
     Planes plane;
-    Real3 normal = view_normals(texel, position, plane);
+    Real3 normal = view_normals(texel, given, position, plane);
     Visibility v = visibility(texel, position, normal, plane);
     /* Where numbers fail, by a radius of 1e-9 of the distance for one, nothing is known to
      * occlude. */

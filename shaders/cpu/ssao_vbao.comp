@@ -64,11 +64,13 @@ void hide(inout March march, Slice s, Masks m, reals fall, Offset offset, reals 
     reals back_length = sqrt(back_x * back_x + thick_y * thick_y);
     reals inverse = 1.0 / (front_length * back_length);
     reals front = y * (back_length * inverse), back = thick_y * (front_length * inverse);
-    front = greater(front, mix(reals(-2.0), march.last_front, joined));
+    front = mix(front, greater(front, march.last_front), joined);
     march.rounding = mix(reals(0.0), march.rounding, joined);
-    ints high =
-             min(sector(m, greater(front - params.bias_cosine, m.low), march.rounding), ints(31)),
-         low = min(sector(m, greater(back, m.low), reals(0.0)), high);
+    /* Without a sign: a driver then sees that nothing is shifted by more. */
+    uvec4 high = uvec4(sector(m, greater(front - params.bias_cosine, m.low), march.rounding)),
+          low = uvec4(sector(m, greater(back, m.low), reals(0.0)));
+    high = min(high, uvec4(SECTORS));
+    low = min(low, high);
     ints bits = (ints(1) << high) - (ints(1) << low);
     bits = mix(ints(0), bits, seen);
     ints fresh = bits & ~march.mask;

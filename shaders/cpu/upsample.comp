@@ -11,19 +11,20 @@
 #define VKAO_GLSL
 #include "layout.h"
 
-layout(local_size_x = VKAO_GROUP_WIDTH, local_size_y = VKAO_GROUP_HEIGHT) in;
+layout(local_size_x = VKAO_GROUP_OF(VKAO_UPSAMPLE_WIDTH)) in;
 layout(push_constant) uniform Block { vkao_dispatch here; };
+#define VKAO_CONSTANTS_FIRST
 #include "settings.glsl"
 layout(binding = VKAO_BINDING_Z4, rgba32f) uniform readonly imageBuffer view_z4;
 layout(binding = VKAO_BINDING_BLURRED_READ2, r32ui) uniform readonly uimageBuffer blurred_ao;
 #include "view.glsl"
-#include "depth.glsl"
+#include "depths.glsl"
 #include "staged.glsl"
 #include "surface.glsl"
 
-/* One more of each than there are columns, so that the last odd one has a neighbour. */
-const int COLUMNS = VKAO_UPSAMPLE_WIDTH + 1;
-const int HALF_COLUMNS = VKAO_UPSAMPLE_WIDTH / 2 + 1;
+/* One more than is written, so that the last odd column and row have a neighbour. */
+const int COLUMNS = VKAO_UPSAMPLE_WIDTH + 1, ROWS = VKAO_UPSAMPLE_HEIGHT + 1;
+const int HALF_COLUMNS = VKAO_UPSAMPLE_WIDTH / 2 + 1, HALF_ROWS = VKAO_UPSAMPLE_HEIGHT / 2 + 1;
 
 /* Relative to what is open. */
 vec4 unpack_codes(uvec2 words)
@@ -51,12 +52,12 @@ void load_half_row(ivec2 texel, out float z[HALF_COLUMNS], out float fine[HALF_C
         float((int(imageLoad(blurred_ao, code_word + 2).x) & 0xffff) - VKAO_CODE_OPEN);
 }
 
-float full_z(ivec2 texel)
+/* Of a texel of the image; outside of what is valid it is background. */
+float full_z(ivec2 texel, float depth)
 {
     ivec2 low = unpack_texel(params.image_valid.x), high = unpack_texel(params.image_valid.y);
-    ivec2 inside = clamp(texel, low, high - 1);
-    float z = view_z_from_depth(inside);
-    return inside == texel ? surface_z(z) : BACKGROUND_Z;
+    float z = view_z_of(depth, texel);
+    return texel == clamp(texel, low, high - 1) ? surface_z(z) : BACKGROUND_Z;
 }
 
 vec4 full_normal(ivec2 texel)
@@ -103,13 +104,63 @@ float blend(int dx, int dy, float z, vec4 normal, vec2 slope, Neighbour n[4])
 }
 
 /* A row of the window. */
-void put(ivec2 texel, float z[VKAO_UPSAMPLE_WIDTH], float fine[VKAO_UPSAMPLE_WIDTH])
+void put(ivec2 texel, float z[COLUMNS], float fine[VKAO_UPSAMPLE_WIDTH])
 {
     [[unroll]] for (int i = 0; i < VKAO_UPSAMPLE_WIDTH; i += 4) {
         vec4 v = vec4(fine[i], fine[i + 1], fine[i + 2], fine[i + 3]);
         vec4 depths = vec4(z[i], z[i + 1], z[i + 2], z[i + 3]);
         put_ao(texel + ivec2(i, 0), v * (1.0 / (VKAO_CODE_SCALE * VKAO_CODE_FINE)) + 1.0,
                greaterThanEqual(depths, vec4(BACKGROUND_Z)));
+    }
+}
+
+/* What half resolution knows, and of the image the columns and rows between. */
+struct Window {
+    float half_z[HALF_ROWS][HALF_COLUMNS], fine[HALF_ROWS][HALF_COLUMNS], z[ROWS][COLUMNS];
+    vec4 normal[ROWS][COLUMNS];
+};
+
+void load_depths(ivec2 texel, inout Window w)
+{
+    [[unroll]] for (int row = 0; row < ROWS; row += 2) {
+        [[unroll]] for (int i = 0; i < COLUMNS; i += 2) {
+            ivec2 at = texel + ivec2(i - 1, row);
+            vec4 depth = four_depths(at);
+            w.z[row][i] = w.half_z[row / 2][i / 2];
+            if (i > 0)
+                w.z[row][i - 1] = full_z(at, depth.x);
+            if (row + 1 == ROWS)
+                continue;
+            w.z[row + 1][i] = full_z(at + ivec2(1, 1), depth.w);
+            if (i > 0)
+                w.z[row + 1][i - 1] = full_z(at + ivec2(0, 1), depth.z);
+        }
+    }
+}
+
+/* An even row and the odd one below it, as fine codes. */
+void blend_rows(Window w, int even, out float result[2][VKAO_UPSAMPLE_WIDTH])
+{
+    const int odd = even + 1, below = even + 2;
+    [[unroll]] for (int i = 0; i < VKAO_UPSAMPLE_WIDTH; ++i) {
+        bool is_half = (i & 1) == 0;
+        int left = is_half ? i : i - 1, right = is_half ? i : i + 1;
+        Neighbour n[4];
+        [[unroll]] for (int k = 0; k < 4; ++k) {
+            int row = (k >> 1) == 0 ? even : below, column = (k & 1) == 0 ? left : right;
+            n[k] = Neighbour(w.half_z[row / 2][column / 2], w.fine[row / 2][column / 2],
+                             w.normal[row][column]);
+        }
+        vec2 slope = vec2(0.0, local_slope(w.z[even][i], w.z[odd][i], w.z[below][i]));
+        if (is_half) {
+            result[0][i] = w.fine[even / 2][i / 2];
+            result[1][i] = blend(0, 1, w.z[odd][i], w.normal[odd][i], slope, n);
+        } else {
+            slope.x = local_slope(w.z[odd][left], w.z[odd][i], w.z[odd][right]);
+            vec2 across = vec2(local_slope(w.z[even][left], w.z[even][i], w.z[even][right]), 0.0);
+            result[0][i] = blend(1, 0, w.z[even][i], w.normal[even][i], across, n);
+            result[1][i] = blend(1, 1, w.z[odd][i], w.normal[odd][i], slope, n);
+        }
     }
 }
 
@@ -121,42 +172,18 @@ void main()
     texel += ivec2(round_down(low.x, VKAO_UPSAMPLE_WIDTH), round_down(low.y, VKAO_UPSAMPLE_HEIGHT));
     if (any(greaterThanEqual(texel, high)))
         return;
-    /* Half-resolution rows above and below, the two rows of the image and the one below them, which
-     * is half's again. */
-    float half_z[2][HALF_COLUMNS], fine[2][HALF_COLUMNS], z[3][COLUMNS];
-    vec4 normal[3][COLUMNS];
-    load_half_row(texel >> 1, half_z[0], fine[0]);
-    load_half_row((texel >> 1) + ivec2(0, 1), half_z[1], fine[1]);
-    [[unroll]] for (int i = 0; i < COLUMNS; ++i) {
-        [[unroll]] for (int row = 0; row < 3; ++row) {
-            bool is_half = (i & 1) == 0 && row != 1;
-            z[row][i] = is_half ? half_z[row / 2][i / 2] : full_z(texel + ivec2(i, row));
-            normal[row][i] = NORMAL_POWER > 0.0 ? full_normal(texel + ivec2(i, row)) : vec4(0.0);
-        }
+    Window w;
+    [[unroll]] for (int row = 0; row < HALF_ROWS; ++row)
+        load_half_row((texel >> 1) + ivec2(0, row), w.half_z[row], w.fine[row]);
+    load_depths(texel, w);
+    [[unroll]] for (int row = 0; row < ROWS; ++row) {
+        [[unroll]] for (int i = 0; i < COLUMNS; ++i)
+            w.normal[row][i] = NORMAL_POWER > 0.0 ? full_normal(texel + ivec2(i, row)) : vec4(0.0);
     }
-    float row_z[2][VKAO_UPSAMPLE_WIDTH], row[2][VKAO_UPSAMPLE_WIDTH];
-    [[unroll]] for (int i = 0; i < VKAO_UPSAMPLE_WIDTH; ++i) {
-        bool even = (i & 1) == 0;
-        int left = even ? i : i - 1, right = even ? i : i + 1;
-        Neighbour n[4];
-        [[unroll]] for (int k = 0; k < 4; ++k) {
-            int column = (k & 1) == 0 ? left : right;
-            n[k] = Neighbour(half_z[k >> 1][column / 2], fine[k >> 1][column / 2],
-                             normal[(k >> 1) * 2][column]);
-        }
-        vec2 slope = vec2(0.0, local_slope(z[0][i], z[1][i], z[2][i]));
-        if (even) {
-            row[0][i] = fine[0][i / 2];
-            row[1][i] = blend(0, 1, z[1][i], normal[1][i], slope, n);
-        } else {
-            slope.x = local_slope(z[1][i - 1], z[1][i], z[1][i + 1]);
-            vec2 across = vec2(local_slope(z[0][i - 1], z[0][i], z[0][i + 1]), 0.0);
-            row[0][i] = blend(1, 0, z[0][i], normal[0][i], across, n);
-            row[1][i] = blend(1, 1, z[1][i], normal[1][i], slope, n);
-        }
-        row_z[0][i] = z[0][i];
-        row_z[1][i] = z[1][i];
+    [[unroll]] for (int row = 0; row < VKAO_UPSAMPLE_HEIGHT; row += 2) {
+        float fine[2][VKAO_UPSAMPLE_WIDTH];
+        blend_rows(w, row, fine);
+        put(texel + ivec2(0, row), w.z[row], fine[0]);
+        put(texel + ivec2(0, row + 1), w.z[row + 1], fine[1]);
     }
-    put(texel, row_z[0], row[0]);
-    put(texel + ivec2(0, 1), row_z[1], row[1]);
 }
