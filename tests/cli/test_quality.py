@@ -174,7 +174,7 @@ def errors_are_divided_by_those_of_another_program(scratch):
                         ('means_fitted', ratios['courtyard']), ('means_others', ratios['other'])):
         found = results[key][0]['rmse_to_reference']
         check(abs(found / wanted - 1) < 1e-4, f'{key}: {found}, want {wanted}')
-        matches(f' {wanted:.3f} ', text, 'the tables')
+        matches(f' {found:.3f} ', text, 'the tables')
     matches('it names 2 of the images', text, 'the note')
 
 
