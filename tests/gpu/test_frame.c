@@ -105,13 +105,13 @@ static void split_rects_equal_the_whole(void **state)
 
 /* Dynamic resolution: the valid part of a large image and a small image of that size. What lies
  * beyond is not read: the large one's other texels hold a wall right before the eye. */
-static void valid_part_equals_a_cropped_image(void **state)
+static void check_valid_part(bool half_resolution)
 {
-    (void)state;
     struct picture large, small;
     const struct scene scene = scene_corner();
     struct lens lens = lens_perspective(0.6, 0.45);
     make(&large);
+    large.half_resolution = half_resolution;
     large.formats[SLOT_NOISY] = VK_FORMAT_UNDEFINED;
     large.view.valid = (VkRect2D){{0, 0}, {52, 39}};
     picture_render_scene(&large, &scene, &lens, VK_FORMAT_R32_SFLOAT,
@@ -121,6 +121,7 @@ static void valid_part_equals_a_cropped_image(void **state)
             large.values[SLOT_DEPTH][i] = 0.125;
     }
     picture_init(&small, 52, 39, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR);
+    small.half_resolution = half_resolution;
     small.view.depth_encoding = large.view.depth_encoding;
     small.view.normal_encoding = large.view.normal_encoding;
     picture_render_scene(&small, &scene, &lens, VK_FORMAT_R32_SFLOAT,
@@ -153,6 +154,13 @@ static void valid_part_equals_a_cropped_image(void **state)
     }
     picture_free(&large);
     picture_free(&small);
+}
+
+static void valid_part_equals_a_cropped_image(void **state)
+{
+    (void)state;
+    check_valid_part(false);
+    check_valid_part(true);
 }
 
 typedef void method_reference(const struct ref_scene *scene, const struct ao_ssao *params,
