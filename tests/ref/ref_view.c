@@ -162,9 +162,10 @@ double ref_view_depth_error(const struct ref_view *view, double z)
 {
     double rounding = fabs(z) * 0x1p-22;
     bool half = view->depth_format == VK_FORMAT_R16_SFLOAT;
-    bool fixed =
+    bool short_fixed =
         view->depth_format == VK_FORMAT_D16_UNORM || view->depth_format == VK_FORMAT_R16_UNORM;
-    double step = fixed ? 0x1p-16 : half ? 0x1p-11 : 0x1p-24;
+    bool fixed = short_fixed || view->depth_format == VK_FORMAT_X8_D24_UNORM_PACK32;
+    double step = short_fixed ? 0x1p-16 : half ? 0x1p-11 : 0x1p-24;
     if (view->encoding != VKAO_DEPTH_PROJECTED)
         return rounding + fabs(z) * step;
     double clip[4];

@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <string.h>
 
-enum kind { UNORM, SNORM, HALF, FLOAT, PACKED };
+enum kind { UNORM, UNORM24, SNORM, HALF, FLOAT, PACKED };
 
 static const struct pixel_format {
     VkFormat format;
@@ -16,6 +16,7 @@ static const struct pixel_format {
     {VK_FORMAT_R8_UNORM, 1, UNORM, 1},
     {VK_FORMAT_R16_UNORM, 1, UNORM, 2},
     {VK_FORMAT_D16_UNORM, 1, UNORM, 2},
+    {VK_FORMAT_X8_D24_UNORM_PACK32, 1, UNORM24, 4},
     {VK_FORMAT_R16_SFLOAT, 1, HALF, 2},
     {VK_FORMAT_R32_SFLOAT, 1, FLOAT, 4},
     {VK_FORMAT_D32_SFLOAT, 1, FLOAT, 4},
@@ -100,6 +101,8 @@ static uint32_t encode_component(const struct pixel_format *f, double v)
     switch (f->kind) {
     case UNORM:
         return (uint32_t)nearbyint(clamp(v, 0.0, 1.0) * unorm_max);
+    case UNORM24:
+        return (uint32_t)nearbyint(clamp(v, 0.0, 1.0) * 16777215.0);
     case SNORM:
         return (uint32_t)(int32_t)nearbyint(clamp(v, -1.0, 1.0) * snorm_max);
     case HALF:
@@ -118,6 +121,8 @@ static double decode_component(const struct pixel_format *f, uint32_t word)
     switch (f->kind) {
     case UNORM:
         return word / unorm_max;
+    case UNORM24:
+        return (word & 0xffffffu) / 16777215.0;
     case SNORM:
         return fmax(-1.0, (word > snorm_max ? word - 2.0 * snorm_max - 2.0 : word) / snorm_max);
     case HALF:
