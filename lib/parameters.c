@@ -239,7 +239,7 @@ struct preset {
 };
 
 static const struct preset presets[] = {
-    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f, 200.0f},
+    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 10, 3, 0.0f, 200.0f},
     [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 9, 3, 0.0f, 200.0f},
     [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 3, 8.0f, 400.0f},
     [VKAO_QUALITY_BEST] = {VK_FALSE, 5, 16, 1, 8.0f, 400.0f},

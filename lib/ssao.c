@@ -45,7 +45,8 @@ void vkao_ssao_constants(const struct vkao_recording *r, const vkao_params *para
     const bool is_vbao = effect->method == VKAO_SSAO_VBAO,
                is_given = effect->thickness_input != VKAO_THICKNESS_AS_SEEN;
     out->thickness = thickness;
-    out->thickness_gap = thickness * (float)VKAO_VBAO_THICKNESS_GAP;
+    out->thickness_gap = thickness * (float)(effect->half_resolution ? VKAO_VBAO_THICKNESS_GAP_HALF
+                                                                     : VKAO_VBAO_THICKNESS_GAP);
     out->thickness_base =
         thickness * (float)(is_vbao ? VKAO_VBAO_THICKNESS_BASE : VKAO_THICKNESS_BASE);
     out->thickness_slope =

@@ -182,7 +182,7 @@
 #define VKAO_STEP_LINEAR 0.5 /* hbao, gtao */
 #define VKAO_STEP_LEAST 0.5
 #define VKAO_VBAO_STEP_LINEAR 0.2
-#define VKAO_VBAO_STEP_LEAST 0.34
+#define VKAO_VBAO_STEP_LEAST 0.26
 /* The reach is at most so many times the longer side of what is valid. What lies beyond the image
  * is not known, and the farther samples went the less they would hide: at last all would be open.
  * At once the side what a slab hides at 2000 texels comes out too large: the bounds are
@@ -219,6 +219,7 @@
 #define VKAO_VBAO_THICKNESS_WIDE 1.0
 #define VKAO_VBAO_THICKNESS_WIDER 10.0
 #define VKAO_VBAO_THICKNESS_GAP 2.38
+#define VKAO_VBAO_THICKNESS_GAP_HALF 2.0 /* at half resolution */
 #define VKAO_VBAO_THICKNESS_GIVEN_GAP 0.5 /* where thickness is an input, which has no cap */
 #define VKAO_VBAO_THICKNESS_BASE 0.384
 #define VKAO_VBAO_THICKNESS_SLOPE 0.79

@@ -76,6 +76,9 @@ vec2 bound_of(Bounds b, vec2 x, vec2 y, float bias)
 /* y of what is not seen: far behind all. */
 const float NOWHERE = -1.0e15;
 
+const float THICKNESS_GAP =
+    GRID_SHIFT == 0u ? VKAO_VBAO_THICKNESS_GAP : VKAO_VBAO_THICKNESS_GAP_HALF;
+
 /* y of the back of what is sampled. is_given: view z has the truth, and a sample stands for its gap
  * alone. */
 vec2 back_of(vec2 z, vec2 x, vec2 y, vec2 gap, bool is_given)
@@ -83,7 +86,7 @@ vec2 back_of(vec2 z, vec2 x, vec2 y, vec2 gap, bool is_given)
     vec2 width = width_of(z);
     if (is_given)
         return y - max(params.thickness * width, VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
-    width = max(width, VKAO_VBAO_THICKNESS_GAP * gap);
+    width = max(width, THICKNESS_GAP * gap);
     return y - params.thickness *
                    min(width, VKAO_VBAO_THICKNESS_BASE + VKAO_VBAO_THICKNESS_SLOPE * x);
 }
@@ -117,7 +120,7 @@ void hide(inout March march, inout Trail last, Slice s, Masks m, Bounds b, float
     x = mix(slice_x(s, offset, vec2(center_z)), x, seen);
     vec2 gap = x - last.x, height = mix(vec2(0.0), y + x * (SIDES * s.fall), seen);
     y = mix(vec2(NOWHERE), y, seen);
-    bvec2 joined = lessThan(abs(height - last.height), VKAO_VBAO_JOIN * abs(gap));
+    bvec2 joined = lessThanEqual(abs(height - last.height), VKAO_VBAO_JOIN * abs(gap));
     last.rounding = mix(vec2(VKAO_VBAO_ROUND), last.rounding, joined);
     vec2 inner_x = x - VKAO_VBAO_GAP_FRONT * gap;
     bvec2 moves = bvec2(!joined.x && height.x > 0.0, !joined.y && height.y > 0.0);

@@ -52,7 +52,7 @@ void hide(inout March march, Slice s, Masks m, reals fall, Offset offset, reals 
     if (!ORTHOGRAPHIC) /* see is_seen */
         seen = bools(ivec4(seen) * ivec4(greaterThan(x, reals(0.0))));
     reals gap = x - march.last_x, height = mix(reals(0.0), y + x * fall, seen);
-    bools joined = lessThan(abs(height - march.last_height), VKAO_VBAO_JOIN * abs(gap));
+    bools joined = lessThanEqual(abs(height - march.last_height), VKAO_VBAO_JOIN * abs(gap));
     reals inner_x = x - VKAO_VBAO_GAP_FRONT * gap;
     reals front_x = mix(x, inner_x, greaterThan(height, reals(0.0)));
     front_x = mix(front_x, x, joined);

@@ -14,7 +14,7 @@ from cli import (INPUT, OK, USAGE, beside_vkao, case, cases, check, equal, main,
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..')
 NAME, RADIUS = 'courtyard', 0.5
 # The preset 'fast' by hand: all but its resolution.
-FAST_AT_FULL = ('--quality', 'default', '--slices', 1, '--steps', 8, '--blur', 3,
+FAST_AT_FULL = ('--quality', 'default', '--slices', 1, '--steps', 10, '--blur', 3,
                 '--blur-normal-power', 0)
 
 

@@ -16,8 +16,10 @@ static VkRect2D halved(VkRect2D r)
 void ref_scene_half(const struct ref_scene *full, const struct ao_view *view, const double *stored,
                     struct ref_scene *half, double **half_stored)
 {
-    *half = (struct ref_scene){
-        .view = full->view, .width = (full->width + 1) / 2, .height = (full->height + 1) / 2};
+    *half = (struct ref_scene){.view = full->view,
+                               .width = (full->width + 1) / 2,
+                               .height = (full->height + 1) / 2,
+                               .is_half = true};
     size_t texels = (size_t)half->width * half->height;
     bool given = view->normal_encoding != VKAO_NORMALS_FROM_DEPTH;
     /* Texel i lies at 2i: (2i + 1/2 - x) / w = (i + 1/2 - (x + 1/2) / 2) / (w / 2) */

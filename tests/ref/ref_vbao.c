@@ -84,7 +84,8 @@ static double depth_of(const struct side *s, const struct ref_scene *layer,
     double thickness = ref_width_thickness(layer, radius, p->x, p->y);
     if (first->thickness)
         return fmax(scale * thickness, VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
-    return scale * fmin(fmax(thickness, VKAO_VBAO_THICKNESS_GAP * gap),
+    double least = (first->is_half ? VKAO_VBAO_THICKNESS_GAP_HALF : VKAO_VBAO_THICKNESS_GAP) * gap;
+    return scale * fmin(fmax(thickness, least),
                         VKAO_VBAO_THICKNESS_BASE * radius + VKAO_VBAO_THICKNESS_SLOPE * p->out);
 }
 
@@ -100,7 +101,7 @@ static void take(struct side *s, struct trail *last, const struct ref_scene *lay
     bool known = ref_slice_sample(&slice, s->sign, t, reach * radius, &p);
     double gap = p.out - last->out, height = known ? p.up + p.out * fall : 0.0;
     double joined_angle = last->angle;
-    bool joined = fabs(height - last->height)<VKAO_VBAO_JOIN * fabs(gap), above = height> 0.0;
+    bool joined = fabs(height - last->height) <= VKAO_VBAO_JOIN * fabs(gap), above = height > 0.0;
     last->all_joined = last->all_joined && joined;
     last->out = p.out;
     last->height = height;

@@ -24,6 +24,7 @@ struct ref_view {
 struct ref_scene {
     struct ref_view view;
     uint32_t width, height;
+    bool is_half;    /* every other texel of every other row of what is shaded */
     double *z;       /* positive away from the eye; NAN = background or outside the valid texels */
     double *normals; /* 3 a texel, unit, view space, facing the eye */
     double *planes;  /* the same of the depth image */
