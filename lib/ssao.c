@@ -44,13 +44,17 @@ void vkao_ssao_constants(const struct vkao_recording *r, const vkao_params *para
     out->bias_cosine = params->bias;
     const bool is_vbao = effect->method == VKAO_SSAO_VBAO,
                is_given = effect->thickness_input != VKAO_THICKNESS_AS_SEEN;
+    const float share = (float)VKAO_VBAO_THICKNESS_SEEN +
+                        (float)VKAO_VBAO_THICKNESS_MISSED / (float)effect->step_count;
     out->thickness = thickness;
-    out->thickness_gap = thickness * (float)(effect->half_resolution ? VKAO_VBAO_THICKNESS_GAP_HALF
-                                                                     : VKAO_VBAO_THICKNESS_GAP);
+    out->thickness_seen = thickness * share;
+    out->thickness_gap =
+        (float)(effect->half_resolution ? VKAO_VBAO_THICKNESS_GAP_HALF : VKAO_VBAO_THICKNESS_GAP) /
+        share;
     out->thickness_base =
-        thickness * (float)(is_vbao ? VKAO_VBAO_THICKNESS_BASE : VKAO_THICKNESS_BASE);
-    out->thickness_slope =
-        thickness * (float)(is_vbao ? VKAO_VBAO_THICKNESS_SLOPE : VKAO_THICKNESS_SLOPE);
+        is_vbao ? (float)VKAO_VBAO_THICKNESS_BASE / share : thickness * (float)VKAO_THICKNESS_BASE;
+    out->thickness_slope = is_vbao ? (float)VKAO_VBAO_THICKNESS_SLOPE / share
+                                   : thickness * (float)VKAO_THICKNESS_SLOPE;
     if (vkao_has_thickness(effect)) /* in the last bits of view z */
         out->depth_error[effect->projection == VKAO_PROJECTION_ORTHOGRAPHIC] +=
             (float)VKAO_THICKNESS_DEPTH_ERROR *

@@ -197,7 +197,10 @@
  * THICKNESS_LENGTH was chosen by hand on the scenes of the search. STEP_LEAST, GAP_FRONT, GAP_BACK,
  * WIDTH_HIDDEN, THICKNESS_WIDTH, _WIDE, _BASE and _SLOPE were moved after that on these scenes, as
  * far as test_artifacts.c, test_noise.c, test_planes.c, test_radius.c and test_truth.c let them:
- * more of SLOPE is better there, and worse for bent normals behind a fence and below a slab. */
+ * more of SLOPE is better there, and worse for bent normals behind a fence and below a slab.
+ * THICKNESS_SEEN and _MISSED leave nine steps as they were: on the scenes of the search 16 want it
+ * thinner by a tenth, on nine scenes of thin things by a fifth or more. At half resolution
+ * THICKNESS_GAP is less for ten steps to keep test_radius.c's bounds: RMSE there is the same. */
 #define VKAO_VBAO_REACH_SMOOTH 0.82    /* end of the last step: the smooth falloff hides the rest */
 #define VKAO_VBAO_REACH_THRESHOLD 1.08 /* samples beyond stand for what lies before them */
 /* Rise over the surface's plane, per run, up to which two samples join. */
@@ -209,17 +212,19 @@
 #define VKAO_VBAO_ROUND_LESS 0.3
 
 /* What is seen is as thick as it is wide in the depth image, and a little thicker if it is longer,
- * by LENGTH of the difference, as it may be the edge of a board; WIDTH of that, at least GAP of the
- * way from the sample before, for whose gap it stands, and at most BASE + SLOPE of its lateral
- * distance. */
+ * by LENGTH of the difference, as it may be the edge of a board; WIDTH of that, times SEEN plus
+ * MISSED over the number of steps, as fewer samples find less; at least GAP of the way from the
+ * sample before, for whose gap it stands, and at most BASE + SLOPE of its lateral distance. */
 #define VKAO_VBAO_THICKNESS_WIDTH 0.92
 #define VKAO_VBAO_THICKNESS_LENGTH 0.05
+#define VKAO_VBAO_THICKNESS_SEEN 0.73
+#define VKAO_VBAO_THICKNESS_MISSED 2.43
 /* Of what goes on on all sides, but at most WIDER of the width that is seen of it: where the radius
  * is most of the view, and what is seen a sliver of it, that says little. */
 #define VKAO_VBAO_THICKNESS_WIDE 1.0
 #define VKAO_VBAO_THICKNESS_WIDER 10.0
 #define VKAO_VBAO_THICKNESS_GAP 2.38
-#define VKAO_VBAO_THICKNESS_GAP_HALF 2.0 /* at half resolution */
+#define VKAO_VBAO_THICKNESS_GAP_HALF 2.0  /* at half resolution */
 #define VKAO_VBAO_THICKNESS_GIVEN_GAP 0.5 /* where thickness is an input, which has no cap */
 #define VKAO_VBAO_THICKNESS_BASE 0.384
 #define VKAO_VBAO_THICKNESS_SLOPE 0.79
@@ -304,6 +309,9 @@ struct vkao_constants {
     VKAO_FLOAT(break_least); /* scene units, times z in perspective */
     VKAO_FLOAT(width_reach);
     VKAO_FLOAT(thickness); /* VBAO, RAYMARCH: radii, and scale of the thickness in view z */
+    /* VBAO: of thickness as seen, which is in the units of width; the last two are RAYMARCH's too,
+     * in radii */
+    VKAO_FLOAT(thickness_seen);
     VKAO_FLOAT(thickness_gap);
     VKAO_FLOAT(thickness_base);
     VKAO_FLOAT(thickness_slope);

@@ -17,8 +17,9 @@
  *  - its back edge moves out by VKAO_VBAO_GAP_BACK of the gap, as the surface goes on to somewhere
  *    before the next sample;
  *  - sky hides nothing; what follows it is looked at as after a sample of the surface's plane;
- *  - what is seen is as thick as it is wide, which view z holds (width.comp); if it is not seen to
- *    end, VKAO_VBAO_THICKNESS_WIDE or, of a large radius, _WIDER of the width that is followed;
+ *  - what is seen is as thick as it is wide, and the thicker the fewer samples there are to find
+ *    it, which view z holds (width.comp); if it is not seen to end, VKAO_VBAO_THICKNESS_WIDE or, of
+ *    a large radius, _WIDER of the width that is followed;
  *  - that is at least VKAO_VBAO_THICKNESS_GAP of the gap, which it must hide as what lies there
  *    would, and at most VKAO_VBAO_THICKNESS_BASE of the radius and _SLOPE of its lateral
  *    distance. */
@@ -76,9 +77,6 @@ vec2 bound_of(Bounds b, vec2 x, vec2 y, float bias)
 /* y of what is not seen: far behind all. */
 const float NOWHERE = -1.0e15;
 
-const float THICKNESS_GAP =
-    GRID_SHIFT == 0u ? VKAO_VBAO_THICKNESS_GAP : VKAO_VBAO_THICKNESS_GAP_HALF;
-
 /* y of the back of what is sampled. is_given: view z has the truth, and a sample stands for its gap
  * alone. */
 vec2 back_of(vec2 z, vec2 x, vec2 y, vec2 gap, bool is_given)
@@ -86,9 +84,9 @@ vec2 back_of(vec2 z, vec2 x, vec2 y, vec2 gap, bool is_given)
     vec2 width = width_of(z);
     if (is_given)
         return y - max(params.thickness * width, VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
-    width = max(width, THICKNESS_GAP * gap);
-    return y - params.thickness *
-                   min(width, VKAO_VBAO_THICKNESS_BASE + VKAO_VBAO_THICKNESS_SLOPE * x);
+    width = max(width, params.thickness_gap * gap);
+    return y -
+           params.thickness_seen * min(width, params.thickness_base + params.thickness_slope * x);
 }
 
 /* Sectors under a bound. */

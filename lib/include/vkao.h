@@ -560,10 +560,11 @@ typedef struct vkao_params {
      * off by. Default 0.005 */
     float bias;
     /* [0,8] VBAO, RAYMARCH: how thick the scene is behind what is seen, relative to the measured
-     * default. VBAO: .92 of its width in the depth image and .046 of what it is longer, at most .38
-     * radius and .79 of the distance to the side; where something nearer hides a side, that counts
-     * as long as the other, and the width half as much again. RAYMARCH: .19 radius and .42 of that
-     * distance. With THRESHOLD 1.1 times these. 0 = 1. Default 1 */
+     * default. VBAO: .67 + 2.24 / step_count of its width in the depth image, .92 with nine steps,
+     * and a twentieth as much of what it is longer, at most .38 radius and .79 of the distance to
+     * the side; where something nearer hides a side, that counts as long as the other, and the
+     * width half as much again. RAYMARCH: .19 radius and .42 of that distance. With THRESHOLD 1.1
+     * times these. 0 = 1. Default 1 */
     float thickness;
     /* (0,inf) 1 / scene units; the constant 50 of SPHERE_LITERAL. Default 50 */
     float blocking_scale;

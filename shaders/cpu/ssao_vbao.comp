@@ -35,12 +35,11 @@ struct March {
     reals out_moment, eye_moment;
 };
 
-/* In radii, as the width of the surface says. */
-reals thickness_of(reals z)
+/* In radii, as is seen. */
+reals width_of(reals z)
 {
     ints code = floatBitsToInt(z) & VKAO_THICKNESS_MASK;
-    return params.thickness *
-           intBitsToFloat((code << VKAO_THICKNESS_SHIFT) + VKAO_THICKNESS_LEAST_BITS);
+    return intBitsToFloat((code << VKAO_THICKNESS_SHIFT) + VKAO_THICKNESS_LEAST_BITS);
 }
 
 /* Takes what a sample of both sides hides first. */
@@ -56,8 +55,9 @@ void hide(inout March march, Slice s, Masks m, reals fall, Offset offset, reals 
     reals inner_x = x - VKAO_VBAO_GAP_FRONT * gap;
     reals front_x = mix(x, inner_x, greaterThan(height, reals(0.0)));
     front_x = mix(front_x, x, joined);
-    reals thick_y = y - lesser(greater(thickness_of(z), params.thickness_gap * gap),
-                               params.thickness_base + params.thickness_slope * x);
+    reals width = greater(width_of(z), params.thickness_gap * gap);
+    reals thick_y = y - params.thickness_seen * lesser(width, params.thickness_base +
+                                                                  params.thickness_slope * x);
     reals back_x = x + VKAO_VBAO_GAP_BACK * gap;
     /* Cosines of both edges by one division. */
     reals front_length = sqrt(front_x * front_x + y * y);

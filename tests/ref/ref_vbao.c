@@ -84,6 +84,7 @@ static double depth_of(const struct side *s, const struct ref_scene *layer,
     double thickness = ref_width_thickness(layer, radius, p->x, p->y);
     if (first->thickness)
         return fmax(scale * thickness, VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
+    thickness *= VKAO_VBAO_THICKNESS_SEEN + VKAO_VBAO_THICKNESS_MISSED / params->step_count;
     double least = (first->is_half ? VKAO_VBAO_THICKNESS_GAP_HALF : VKAO_VBAO_THICKNESS_GAP) * gap;
     return scale * fmin(fmax(thickness, least),
                         VKAO_VBAO_THICKNESS_BASE * radius + VKAO_VBAO_THICKNESS_SLOPE * p->out);

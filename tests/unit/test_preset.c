@@ -10,7 +10,7 @@ static const struct {
     uint32_t slices, steps, radius;
     float normal_power, sharpness;
 } want[] = {
-    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 8, 3, 0.0f, 200.0f},
+    [VKAO_QUALITY_FAST] = {VK_TRUE, 1, 10, 3, 0.0f, 200.0f},
     [VKAO_QUALITY_DEFAULT] = {VK_FALSE, 1, 9, 3, 0.0f, 200.0f},
     [VKAO_QUALITY_HIGH] = {VK_FALSE, 2, 9, 3, 8.0f, 400.0f},
     [VKAO_QUALITY_BEST] = {VK_FALSE, 5, 16, 1, 8.0f, 400.0f},

@@ -47,7 +47,7 @@ struct config config_of(vkao_ssao_method method, unsigned samples, unsigned slic
 bool config_reads(vkao_ssao_method method, const char *name);
 /* name: length bytes of it. False if there is no such method. */
 bool config_find_method(const char *name, size_t length, vkao_ssao_method *method);
-/* "vbao 1 x 8, half resolution" */
+/* "vbao 1 x 10, half resolution" */
 void config_describe(const struct config *config, char *text, size_t size);
 
 #endif
