@@ -140,6 +140,46 @@ def nearest_and_farthest_samples_are_said(scratch, which, pick):
         check('nearest' not in said and 'bend' not in said, said)
 
 
+def boards(width=640, height=360):
+    """Boards standing on a floor, turned all ways and seen from above: their tops, a texel or two
+    wide, face as the floor behind them does. Depth and normals, in camera space."""
+    scene, random = Scene(width, height), np.random.default_rng(7)
+    up, eye = np.array([0, np.cos(0.7), np.sin(0.7)]), 4.0
+    right, forward = np.array([1.0, 0, 0]), np.array([0, np.sin(0.7), -np.cos(0.7)])
+    ray = np.stack([scene.x, scene.y, -np.ones_like(scene.x)], axis=-1)
+    z, normal = -eye / (ray @ up), np.broadcast_to(up, ray.shape)
+    for _ in range(40):
+        turn, (x, y) = random.uniform(0, np.pi), random.uniform([-2.5, 2.5], [2.5, 7.5])
+        axes = np.stack([right * np.cos(turn) + forward * np.sin(turn),
+                         forward * np.cos(turn) - right * np.sin(turn), up])
+        middle = axes @ (right * x + forward * y + up * (0.25 - eye))
+        half = np.array([0.3, 0.015, 0.25])
+        with np.errstate(divide='ignore', invalid='ignore'):
+            way = ray @ axes.T
+            near, far = np.sort([(middle - half) / way, (middle + half) / way], axis=0)
+        at, face = near.max(axis=-1), near.argmax(axis=-1)
+        is_hit = (at < far.min(axis=-1)) & (at < z)
+        side = -np.sign(np.take_along_axis(way, face[..., None], -1)) * axes[face]
+        z, normal = np.where(is_hit, at, z), np.where(is_hit[..., None], side, normal)
+    return z.astype(np.float32), {f'N.{c}': normal[..., i].astype(np.float32)
+                                  for i, c in enumerate('XYZ')}
+
+
+@case
+def narrow_tops_before_a_floor_are_where_they_are(scratch):
+    for width, height in (640, 360), (320, 180):
+        depth, normals = boards(width, height)
+        write_exr(scratch.path('in.exr'), {'Z': depth, **normals})
+        said = str(inspect(scratch, '--fov', FOV)['warnings'])
+        check('nearest' not in said and 'bend' not in said, said)
+    depth, normals = boards(1600, 900)
+    normals = {n: centres_of(v, 5) for n, v in normals.items()}
+    write_exr(scratch.path('in.exr'),
+              {'Z': texels_of(depth, 5, lambda s: s.min(axis=-1)), **normals})
+    matches("that of the nearest of a pixel's samples",
+            str(inspect(scratch, '--fov', FOV)['warnings']), 'said')
+
+
 @cases([('a texel to the right', 0, 1), ('a texel to the left', 0, -1), ('a texel below', 1, 0),
         ('a texel above', -1, 0), ('6 texels to the right', 0, 6), ('8 texels above', -8, 0),
         ('3 texels to the left and 2 texels below', 2, -3)])

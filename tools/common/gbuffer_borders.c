@@ -22,6 +22,8 @@ enum {
 static const double alike = 0.01;
 /* Two things: 18 degrees. */
 static const double other = 0.1;
+/* The last texel of a thing, if depth bends before it by so many widths of a texel, is its rim. */
+static const double rim = 0.1;
 
 /* Steps in depth from near to far that face one way, by where the normals change. */
 struct steps {
@@ -48,6 +50,24 @@ static double depth_at(const struct gbuffer *g, size_t texel, ptrdiff_t step)
     static const double endless = 1e30;
     const size_t at = (size_t)((ptrdiff_t)texel + step);
     return gbuffer_is_foreground(g, at) ? gbuffer_view_z(g, g->depth[at], at) : endless;
+}
+
+/* What is linear in the image on a plane bends by so many widths of a texel, at the second of the
+ * texels before a border. */
+static double bend_before(const struct gbuffer *g, size_t last, ptrdiff_t way, bool is_row)
+{
+    const bool is_parallel = g->camera.type == CAMERA_ORTHOGRAPHIC;
+    const double column = (double)(last % g->width), row = (double)(last / g->width);
+    double w[3], x[2], y[2];
+    for (int k = 0; k < 3; k++) {
+        const double z = depth_at(g, last, -(k + 1) * way);
+        w[k] = is_parallel ? z : 1.0 / z;
+    }
+    camera_ray(&g->camera, &g->display_window, &g->data_window, column, row, &x[0], &y[0]);
+    camera_ray(&g->camera, &g->display_window, &g->data_window, column + is_row, row + !is_row,
+               &x[1], &y[1]);
+    return fabs(w[0] + w[2] - 2.0 * w[1]) / (fabs(x[1] - x[0]) + fabs(y[1] - y[0])) /
+           (is_parallel ? 1.0 : w[1]);
 }
 
 /* --- Steps --- */
@@ -117,30 +137,17 @@ static void look_at_step(const struct gbuffer *g, size_t near_texel, ptrdiff_t w
     look_at_turn(g, near_texel, way, turns);
     if (!find_change(g, near_texel, way, &place))
         return;
+    /* The top of a thing, a texel wide, faces as the floor behind it does; but depth bends there,
+     * by more than the steps of its format. What a renderer moved lies on the surface before. */
+    if (place < -0.5 && !(g->depth_step > 0) &&
+        bend_before(g, (size_t)((ptrdiff_t)near_texel + way), way, way == 1 || way == -1) > rim)
+        return;
     steps->count++;
     steps->before += place < -0.5;
     steps->behind += place > 0.5;
 }
 
 /* --- Bends --- */
-
-/* What is linear in the image on a plane bends by so many widths of a texel, at the second of the
- * texels before a border. */
-static double bend_before(const struct gbuffer *g, size_t last, ptrdiff_t way, bool is_row)
-{
-    const bool is_parallel = g->camera.type == CAMERA_ORTHOGRAPHIC;
-    const double column = (double)(last % g->width), row = (double)(last / g->width);
-    double w[3], x[2], y[2];
-    for (int k = 0; k < 3; k++) {
-        const double z = depth_at(g, last, -(k + 1) * way);
-        w[k] = is_parallel ? z : 1.0 / z;
-    }
-    camera_ray(&g->camera, &g->display_window, &g->data_window, column, row, &x[0], &y[0]);
-    camera_ray(&g->camera, &g->display_window, &g->data_window, column + is_row, row + !is_row,
-               &x[1], &y[1]);
-    return fabs(w[0] + w[2] - 2.0 * w[1]) / (fabs(x[1] - x[0]) + fabs(y[1] - y[0])) /
-           (is_parallel ? 1.0 : w[1]);
-}
 
 static void look_at_border(const struct gbuffer *g, size_t last, ptrdiff_t way, bool is_row,
                            struct bends *bends)
