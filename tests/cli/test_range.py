@@ -32,6 +32,19 @@ def depth_of_a_range_is_said(scratch, _, change, message):
             check('clamped' not in said, said)
 
 
+@cases([('slanted', 18, True), ('seen straight on', 0, False)])
+def depth_of_a_clamped_wall_is_said(scratch, _, degrees, is_said):
+    # All of what is clamped has one normal, as what faces the camera does.
+    turn = np.radians(degrees)
+    turn = np.array([[np.cos(turn), 0, -np.sin(turn)], [0, 1, 0], [np.sin(turn), 0, np.cos(turn)]])
+    channels = boxes_along_axes([((-20, -20, -7), (20, 20, -6)), ((-2.5, -1.5, -5), (-1.5, 0, -4)),
+                                 ((0.6, 0.4, -5), (1.6, 1, -4))], 320, 180, turn=turn)
+    for depth in (channels['Z'], np.minimum(channels['Z'], np.percentile(channels['Z'], 80))):
+        write_exr(scratch.path('in.exr'), {**channels, 'Z': depth})
+        said = str(inspect(scratch, '--fov', FOV)['warnings'])
+        equal('clamped: ' in said, is_said and depth is not channels['Z'], said)
+
+
 @case
 def things_where_depth_has_nothing_are_said(scratch):
     # A curtain hangs before the wall, which a far plane cuts off.

@@ -15,9 +15,10 @@
 enum place { AT_NEAREST, AT_FARTHEST, AT_NOTHING, AT_FILL, PLACES, ELSEWHERE };
 
 /* Texels well inside of what is all at one value, and how many of them face neither the camera nor
- * the eye, and lie at an edge. */
+ * the eye, and lie at an edge; and the sums of their normals and of cosines to the eye. */
 struct limit {
     size_t texels, turned, edges;
+    double normal[3], to_eye;
 };
 
 struct range {
@@ -87,7 +88,7 @@ static enum place place_of(const struct gbuffer *g, const struct range *range, s
                                                    : AT_FARTHEST;
 }
 
-static bool is_turned(const struct gbuffer *g, size_t texel)
+static void add(const struct gbuffer *g, size_t texel, bool is_edge, struct limit *limit)
 {
     static const double most_cosine = 0.866; /* 30 degrees */
     double v[3], x = 0, y = 0;
@@ -96,7 +97,22 @@ static bool is_turned(const struct gbuffer *g, size_t texel)
         camera_ray(&g->camera, &g->display_window, &g->data_window, (double)(texel % g->width),
                    (double)(texel / g->width), &x, &y);
     const double to_eye = (v[2] - v[0] * x - v[1] * y) / sqrt(1.0 + x * x + y * y);
-    return fabs(v[2]) < most_cosine && fabs(to_eye) < most_cosine;
+    limit->texels++;
+    limit->turned += fabs(v[2]) < most_cosine && fabs(to_eye) < most_cosine;
+    limit->edges += is_edge;
+    for (int c = 0; c < 3; c++)
+        limit->normal[c] += v[c];
+    limit->to_eye += to_eye;
+}
+
+/* What is all at one value faces the camera or the eye. Bumps do not turn the mean of a wall. */
+static bool is_slanted(const struct limit *limit)
+{
+    static const double most_cosine = 0.985; /* 10 degrees */
+    const double *n = limit->normal, all = (double)limit->texels;
+    const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    return length > 0.9 * all && fabs(n[2]) < most_cosine * length &&
+           fabs(limit->to_eye) < most_cosine * all;
 }
 
 static void look_at(const struct gbuffer *g, const struct range *range, size_t texel,
@@ -113,9 +129,7 @@ static void look_at(const struct gbuffer *g, const struct range *range, size_t t
             return;
         is_edge |= gbuffer_apart(g->normals + texel * 4, g->normals + around[k] * 4) > other;
     }
-    limits[place].texels++;
-    limits[place].turned += is_turned(g, texel);
-    limits[place].edges += is_edge;
+    add(g, texel, is_edge, &limits[place]);
 }
 
 /* Of clean renders no texel at all is inside of the nearest or the farthest value, but of walls
@@ -133,7 +147,8 @@ static bool goes_on(const struct gbuffer *g, const struct limit *limit, enum pla
     if (limit->texels < FEW || all < least_share * (double)gbuffer_texels(g))
         return false;
     const bool has_edges = (double)limit->edges > edges * sqrt(all);
-    return ((double)limit->turned > turned * all && (place != AT_NOTHING || has_edges)) ||
+    return (place != AT_NOTHING && is_slanted(limit)) ||
+           ((double)limit->turned > turned * all && (place != AT_NOTHING || has_edges)) ||
            ((double)limit->turned > turned_at_edges * all && has_edges);
 }
 
