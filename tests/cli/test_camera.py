@@ -8,7 +8,8 @@ import numpy as np
 
 from cli import (CHANNELS, INPUT, OUTPUT, USAGE, case, cases, check, check_close, equal, main,
                  matches, read_ao, read_parts, write_exr)
-from scene import CORNER, FOV, NEAR, RADIUS, TURN, Scene, boxes_along_axes, camera, write_camera
+from scene import (CORNER, FOV, NEAR, RADIUS, TURN, Scene, boards, boxes_along_axes, camera,
+                   write_camera)
 
 BASE = ('--radius', RADIUS, '--pixel-type', 'float', '--overwrite', 'always')
 
@@ -205,6 +206,26 @@ def header_that_the_image_contradicts_is_said(scratch, _, told, true, is_said):
     for line in said:
         matches(rf'says {told} degrees .*, but depth and normals ({true}|{true - 1}\.9\d*|'
                 rf'{true}\.\d+) degrees .*that of cameraFov is taken \(--fov', line, 'the doubt')
+
+
+@cases([('right', 60, False), ('nearly right', 61, False), ('too narrow', 48, True),
+        ('too wide', 75, True)])
+def view_is_named_by_the_rotation_that_is_told(scratch, _, told, is_said):
+    # Of boards with rough shading the floor alone has the normals of depth: it fits any view that
+    # may be turned.
+    depth, channels = boards(320, 180)
+    normals = np.stack(list(channels.values()), axis=-1)
+    rough = normals + np.random.default_rng(3).normal(size=normals.shape) * 0.4
+    rough /= np.linalg.norm(rough, axis=-1, keepdims=True)
+    is_floor = normals @ normals[0, 0] > 0.999
+    normals = np.where(is_floor[..., None], normals, rough) @ TURN
+    write_exr(scratch.path('in.exr'), {'Z': depth, **{
+        f'N.{c}': normals[..., i].astype(np.float32) for i, c in enumerate('XYZ')}})
+    write_camera(scratch.path('c.json'), camera(told))
+    said = str(inspect(scratch, '--camera', 'c.json')[0]['warnings'])
+    equal(f'camera file says {told} degrees' in said, is_said, said)
+    if is_said:
+        matches(r'turned as they are normals fit perhaps (59|60)\.\d+ degrees', said, 'the doubt')
 
 
 @case

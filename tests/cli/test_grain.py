@@ -6,7 +6,7 @@ import numpy as np
 
 from cli import CHANNELS, case, cases, check, equal, main, matches, write_exr
 from evidence import depth_of, inspect
-from scene import CORNER, FOV, NEAR, Scene, boxes_along_axes
+from scene import CORNER, FOV, NEAR, Scene, boards, boxes_along_axes
 
 
 def texels_of(fine, size, pick):
@@ -138,31 +138,6 @@ def nearest_and_farthest_samples_are_said(scratch, which, pick):
         write_exr(scratch.path('in.exr'), {'Z': depth, **channels})
         said = str(inspect(scratch, '--fov', FOV)['warnings'])
         check('nearest' not in said and 'bend' not in said, said)
-
-
-def boards(width=640, height=360):
-    """Boards standing on a floor, turned all ways and seen from above: their tops, a texel or two
-    wide, face as the floor behind them does. Depth and normals, in camera space."""
-    scene, random = Scene(width, height), np.random.default_rng(7)
-    up, eye = np.array([0, np.cos(0.7), np.sin(0.7)]), 4.0
-    right, forward = np.array([1.0, 0, 0]), np.array([0, np.sin(0.7), -np.cos(0.7)])
-    ray = np.stack([scene.x, scene.y, -np.ones_like(scene.x)], axis=-1)
-    z, normal = -eye / (ray @ up), np.broadcast_to(up, ray.shape)
-    for _ in range(40):
-        turn, (x, y) = random.uniform(0, np.pi), random.uniform([-2.5, 2.5], [2.5, 7.5])
-        axes = np.stack([right * np.cos(turn) + forward * np.sin(turn),
-                         forward * np.cos(turn) - right * np.sin(turn), up])
-        middle = axes @ (right * x + forward * y + up * (0.25 - eye))
-        half = np.array([0.3, 0.015, 0.25])
-        with np.errstate(divide='ignore', invalid='ignore'):
-            way = ray @ axes.T
-            near, far = np.sort([(middle - half) / way, (middle + half) / way], axis=0)
-        at, face = near.max(axis=-1), near.argmax(axis=-1)
-        is_hit = (at < far.min(axis=-1)) & (at < z)
-        side = -np.sign(np.take_along_axis(way, face[..., None], -1)) * axes[face]
-        z, normal = np.where(is_hit, at, z), np.where(is_hit[..., None], side, normal)
-    return z.astype(np.float32), {f'N.{c}': normal[..., i].astype(np.float32)
-                                  for i, c in enumerate('XYZ')}
 
 
 @case

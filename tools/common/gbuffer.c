@@ -562,7 +562,8 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         goto failed;
     warn_about_assumption(g, report);
     gbuffer_warn_of_frame(g, options->memory, depth->info->path, report);
-    if (!gbuffer_warn_of_move(g, depth->info->path, report, &is_moved) ||
+    if (!gbuffer_warn_of_view(g, depth->info->path, report) ||
+        !gbuffer_warn_of_move(g, depth->info->path, report, &is_moved) ||
         !gbuffer_warn_of_limits(g, depth->info->path, report)) {
         fail(err, EXIT_MEMORY, "%s: out of memory", depth->info->path);
         goto failed;

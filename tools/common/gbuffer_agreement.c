@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CELLS = 6, MOST_TEXELS = 1 << 16 };
+enum { CELLS = 6 };
 
 /* Bumps and smooth shading turn stored normals by some degrees: this much, as a sine, halves what
  * a pair counts. */
@@ -78,10 +78,10 @@ static void weigh(struct normal_pairs *pairs)
         pairs->pair[i].weight = 1.0 / sqrt((double)counts[cell_of(pairs->pair[i].stored)]);
 }
 
-bool gbuffer_pair_normals(const struct gbuffer *g, struct normal_pairs *pairs)
+bool gbuffer_pair_normals(const struct gbuffer *g, size_t most, struct normal_pairs *pairs)
 {
     /* Steps of half values are slopes where differences are small. */
-    const size_t reach = g->depth_is_half ? 4 : 1, step = gbuffer_texels(g) / MOST_TEXELS + 1;
+    const size_t reach = g->depth_is_half ? 4 : 1, step = gbuffer_texels(g) / most + 1;
     *pairs = (struct normal_pairs){
         .pair = malloc((gbuffer_texels(g) / step + 1) * sizeof *pairs->pair), .reach = reach};
     if (!pairs->pair)

@@ -436,7 +436,7 @@ static enum told_doubt choose_cause(const struct camera *c, const struct fit *to
 }
 
 /* Says so where doubts begin. */
-static bool doubt(const struct gbuffer *g, const struct gbuffer_options *options, bool is_exact,
+static bool doubt(struct gbuffer *g, const struct gbuffer_options *options, bool is_exact,
                   struct fit *told, const char *path, struct report *report, struct tool_error *err)
 {
     struct frame_memory *memory = options->memory;
@@ -466,6 +466,7 @@ static bool doubt(const struct gbuffer *g, const struct gbuffer_options *options
         tell_doubt(g, &alike, &seen, path, report);
     if (now == DOUBT_TYPE && now != before)
         gbuffer_tell_type(g, options, told, &other, path, report);
+    g->is_undoubted = now == DOUBT_NOTHING && !is_exact;
     if (memory) {
         memory->told = g->camera;
         memory->told_agreement = told->agreement;
@@ -508,6 +509,56 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
         tell_offset(g, &told, path, report);
         tell_near(g, &told, path, report);
     }
+    return true;
+}
+
+/* Of the normals, turned as they are, through a field of view that is wider by a factor; below 0 if
+ * memory ran out. */
+static double agreement_through(const struct gbuffer *g, double factor)
+{
+    enum { MOST_PAIRS = 1 << 13 };
+    struct gbuffer other = *g;
+    struct normal_pairs pairs;
+    other.camera.half_width *= factor;
+    other.camera.half_height *= factor;
+    if (!gbuffer_pair_normals(&other, MOST_PAIRS, &pairs))
+        return -1;
+    const double share = gbuffer_agreement(&pairs, g->view.normal_to_view).share;
+    gbuffer_free_pairs(&pairs);
+    return share;
+}
+
+/* A floor and what stands on it fit several fields of view if they may be turned as well, and the
+ * image has nothing to say then. Once it is known which way normals point one view fits best. Of
+ * right cameras none gains more than .001; of fields of view that are off by a fifth a quarter. */
+bool gbuffer_warn_of_view(const struct gbuffer *g, const char *path, struct report *report)
+{
+    enum { WAYS = 12 };
+    static const double step = 0.05, least_gain = 0.03;
+    const struct camera *c = &g->camera;
+    char by_told[VIEW_BYTES], by_seen[VIEW_BYTES];
+    if (!g->normals || !g->is_undoubted || g->normal_agreement >= doubtful_agreement)
+        return true;
+    const double told = agreement_through(g, 1.0);
+    double best = told, factor = 1.0;
+    for (int k = -WAYS; told >= 0 && k <= WAYS; k++) {
+        const double wider = exp(step * k), share = agreement_through(g, wider);
+        if (share < 0)
+            return false;
+        if (share > best) {
+            best = share;
+            factor = wider;
+        }
+    }
+    if (best < told + least_gain)
+        return told >= 0;
+    describe(c->type, c->half_width, by_told);
+    describe(c->type, c->half_width * factor, by_seen);
+    report_warn_of_frame(
+        report, "doubted camera",
+        "%s: %s says %s, but turned as they are normals fit perhaps %s (%.0f %% of them agree "
+        "then, and %.0f %% as it says): that of %s is taken (--fov or --camera overrides)",
+        path, c->source, by_told, by_seen, best * 100.0, told * 100.0, c->source);
     return true;
 }
 

@@ -199,8 +199,10 @@ struct normal_pairs {
     struct normal_pair *pair;
     size_t count, reach; /* of the neighbours that lie on the plane of depth, in texels */
 };
-/* Needs the depth as prepared, and decoded normals. False if memory ran out. */
-bool gbuffer_pair_normals(const struct gbuffer *g, struct normal_pairs *pairs);
+enum { GBUFFER_MOST_PAIRS = 1 << 16 };
+/* At most so many, spread evenly. Needs the depth as prepared, and decoded normals. False if memory
+ * ran out. */
+bool gbuffer_pair_normals(const struct gbuffer *g, size_t most, struct normal_pairs *pairs);
 void gbuffer_free_pairs(struct normal_pairs *pairs);
 /* Of stored normals, times the matrix (of columns), with those of depth. 0 without pairs. */
 struct agreement {
@@ -208,6 +210,10 @@ struct agreement {
     double facing; /* [0,1] of them point as those of depth do */
 };
 struct agreement gbuffer_agreement(const struct normal_pairs *pairs, const float matrix[9]);
+
+/* Says that another field of view fits the normals better, turned as they are. Needs them and the
+ * depth as prepared. False if memory ran out. */
+bool gbuffer_warn_of_view(const struct gbuffer *g, const char *path, struct report *report);
 
 /* Decides and undoes the encoding of g->normals as read. */
 bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, const char *path,

@@ -106,7 +106,7 @@ static bool find_places(const struct gbuffer *g, struct places *places)
 {
     const float *m = g->view.normal_to_view;
     struct normal_pairs pairs;
-    if (!gbuffer_pair_normals(g, &pairs))
+    if (!gbuffer_pair_normals(g, GBUFFER_MOST_PAIRS, &pairs))
         return false;
     const size_t x = pairs.reach, y = pairs.reach * g->width;
     *places = (struct places){malloc((pairs.count * NEIGHBOURS + 1) * sizeof *places->list), 0};

@@ -560,7 +560,7 @@ static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const cha
         return fail_without_rotation(path, err);
     if (!choose_space(g, wanted, world, err, path))
         return false;
-    if (!gbuffer_pair_normals(g, &pairs))
+    if (!gbuffer_pair_normals(g, GBUFFER_MOST_PAIRS, &pairs))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     judge_ways(ways, &pairs, g, world);
     ask_depth(g, ways, &pairs, wanted, path, report);
