@@ -137,8 +137,8 @@ static void look_at_step(const struct gbuffer *g, size_t near_texel, ptrdiff_t w
     look_at_turn(g, near_texel, way, turns);
     if (!find_change(g, near_texel, way, &place))
         return;
-    /* The top of a thing, a texel wide, faces as the floor behind it does; but depth bends there,
-     * by more than the steps of its format. What a renderer moved lies on the surface before. */
+    /* The top of a thing, a texel wide, faces as the floor behind it does; but depth bends there.
+     * What a renderer moved lies on the surface before. In depth of steps that is not seen. */
     if (place < -0.5 && !(g->depth_step > 0) &&
         bend_before(g, (size_t)((ptrdiff_t)near_texel + way), way, way == 1 || way == -1) > rim)
         return;

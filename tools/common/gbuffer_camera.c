@@ -542,7 +542,7 @@ bool gbuffer_warn_of_view(const struct gbuffer *g, const char *path, struct repo
     const double told = agreement_through(g, 1.0);
     double best = told, factor = 1.0;
     for (int k = -WAYS; told >= 0 && k <= WAYS; k++) {
-        const double wider = exp(step * k), share = agreement_through(g, wider);
+        const double wider = exp(step * k), share = k ? agreement_through(g, wider) : told;
         if (share < 0)
             return false;
         if (share > best) {
