@@ -11,7 +11,8 @@
  *    VKAO_VBAO_JOIN over the plane that the depth image has at the shaded point, as any plane does;
  *    then all between is hidden;
  *  - if not, and if it rises over that plane, its front edge moves in by VKAO_VBAO_GAP_FRONT of the
- *    gap, as an edge lies somewhere in it;
+ *    gap, as an edge lies somewhere in it. That gap, and that of thickness, is less by
+ *    VKAO_VBAO_GAP_RISE of the rise from the sample before, and so more behind something nearer;
  *  - what it hides counts by the distance to there, joined or not: the nearest that it stands for
  *    hides first;
  *  - its back edge moves out by VKAO_VBAO_GAP_BACK of the gap, as the surface goes on to somewhere
@@ -79,12 +80,12 @@ const float NOWHERE = -1.0e15;
 
 /* y of the back of what is sampled. is_given: view z has the truth, and a sample stands for its gap
  * alone. */
-vec2 back_of(vec2 z, vec2 x, vec2 y, vec2 gap, bool is_given)
+vec2 back_of(vec2 z, vec2 x, vec2 y, vec2 unseen, bool is_given)
 {
     vec2 width = width_of(z);
     if (is_given)
-        return y - max(params.thickness * width, VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
-    width = max(width, params.thickness_gap * gap);
+        return y - max(params.thickness * width, VKAO_VBAO_THICKNESS_GIVEN_GAP * unseen);
+    width = max(width, params.thickness_gap * unseen);
     return y -
            params.thickness_seen * min(width, params.thickness_base + params.thickness_slope * x);
 }
@@ -116,14 +117,16 @@ void hide(inout March march, inout Trail last, Slice s, Masks m, Bounds b, float
     slice_points(s, offset, z, x, y);
     bvec2 seen = is_seen(x, z);
     x = mix(slice_x(s, offset, vec2(center_z)), x, seen);
-    vec2 gap = x - last.x, height = mix(vec2(0.0), y + x * (SIDES * s.fall), seen);
+    vec2 height = mix(vec2(0.0), y + x * (SIDES * s.fall), seen);
+    vec2 gap = x - last.x, rise = height - last.height;
+    vec2 unseen = gap - VKAO_VBAO_GAP_RISE * rise;
     y = mix(vec2(NOWHERE), y, seen);
-    bvec2 joined = lessThanEqual(abs(height - last.height), VKAO_VBAO_JOIN * abs(gap));
+    bvec2 joined = lessThanEqual(abs(rise), VKAO_VBAO_JOIN * gap);
     last.rounding = mix(vec2(VKAO_VBAO_ROUND), last.rounding, joined);
-    vec2 inner_x = x - VKAO_VBAO_GAP_FRONT * gap;
+    vec2 inner_x = x - VKAO_VBAO_GAP_FRONT * unseen;
     bvec2 moves = bvec2(!joined.x && height.x > 0.0, !joined.y && height.y > 0.0);
     vec2 front_x = mix(x, inner_x, moves);
-    vec2 back_y = back_of(z, x, y, gap, is_given), back_x = x + VKAO_VBAO_GAP_BACK * gap;
+    vec2 back_y = back_of(z, x, y, unseen, is_given), back_x = x + VKAO_VBAO_GAP_BACK * gap;
     vec2 front = bound_of(b, front_x, y, params.bias_cosine);
     vec2 back = bound_of(b, back_x, back_y, 0.0);
     joined = bvec2(joined.x && seen.x, joined.y && seen.y);

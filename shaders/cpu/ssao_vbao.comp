@@ -50,12 +50,14 @@ void hide(inout March march, Slice s, Masks m, reals fall, Offset offset, reals 
     slice_points(s, offset, mix(both(s.center_z), z, seen), x, y);
     if (!ORTHOGRAPHIC) /* see is_seen */
         seen = bools(ivec4(seen) * ivec4(greaterThan(x, reals(0.0))));
-    reals gap = x - march.last_x, height = mix(reals(0.0), y + x * fall, seen);
-    bools joined = lessThanEqual(abs(height - march.last_height), VKAO_VBAO_JOIN * abs(gap));
-    reals inner_x = x - VKAO_VBAO_GAP_FRONT * gap;
+    reals height = mix(reals(0.0), y + x * fall, seen);
+    reals gap = x - march.last_x, rise = height - march.last_height;
+    bools joined = lessThanEqual(abs(rise), VKAO_VBAO_JOIN * gap);
+    reals unseen = gap - VKAO_VBAO_GAP_RISE * rise;
+    reals inner_x = x - VKAO_VBAO_GAP_FRONT * unseen;
     reals front_x = mix(x, inner_x, greaterThan(height, reals(0.0)));
     front_x = mix(front_x, x, joined);
-    reals width = greater(width_of(z), params.thickness_gap * gap);
+    reals width = greater(width_of(z), params.thickness_gap * unseen);
     reals thick_y = y - params.thickness_seen * lesser(width, params.thickness_base +
                                                                   params.thickness_slope * x);
     reals back_x = x + VKAO_VBAO_GAP_BACK * gap;

@@ -74,18 +74,19 @@ struct trail {
 
 /* How far back a sample goes. Where thickness is given the second layer has none of its own. */
 static double depth_of(const struct side *s, const struct ref_scene *layer,
-                       const struct ref_sample *p, double gap)
+                       const struct ref_sample *p, double unseen)
 {
     const struct ref_scene *first = s->slice->scene;
     const struct ao_ssao *params = s->slice->params;
     const double radius = (double)params->radius, scale = ref_thickness_scale(params);
     if (first->thickness && layer != first)
-        return fmax(scale * radius * ldexp(1.0, -7), VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
+        return fmax(scale * radius * ldexp(1.0, -7), VKAO_VBAO_THICKNESS_GIVEN_GAP * unseen);
     double thickness = ref_width_thickness(layer, radius, p->x, p->y);
     if (first->thickness)
-        return fmax(scale * thickness, VKAO_VBAO_THICKNESS_GIVEN_GAP * gap);
+        return fmax(scale * thickness, VKAO_VBAO_THICKNESS_GIVEN_GAP * unseen);
     thickness *= VKAO_VBAO_THICKNESS_SEEN + VKAO_VBAO_THICKNESS_MISSED / params->step_count;
-    double least = (first->is_half ? VKAO_VBAO_THICKNESS_GAP_HALF : VKAO_VBAO_THICKNESS_GAP) * gap;
+    double least =
+        (first->is_half ? VKAO_VBAO_THICKNESS_GAP_HALF : VKAO_VBAO_THICKNESS_GAP) * unseen;
     return scale * fmin(fmax(thickness, least),
                         VKAO_VBAO_THICKNESS_BASE * radius + VKAO_VBAO_THICKNESS_SLOPE * p->out);
 }
@@ -102,7 +103,8 @@ static void take(struct side *s, struct trail *last, const struct ref_scene *lay
     bool known = ref_slice_sample(&slice, s->sign, t, reach * radius, &p);
     double gap = p.out - last->out, height = known ? p.up + p.out * fall : 0.0;
     double joined_angle = last->angle;
-    bool joined = fabs(height - last->height) <= VKAO_VBAO_JOIN * fabs(gap), above = height > 0.0;
+    double rise = height - last->height, unseen = gap - VKAO_VBAO_GAP_RISE * rise;
+    bool joined = fabs(rise) <= VKAO_VBAO_JOIN * gap, above = height > 0.0;
     last->all_joined = last->all_joined && joined;
     last->out = p.out;
     last->height = height;
@@ -110,16 +112,16 @@ static void take(struct side *s, struct trail *last, const struct ref_scene *lay
     if (!known)
         return;
     double front_out =
-        !joined && above ? fmax(p.out - VKAO_VBAO_GAP_FRONT * gap, 1.0e-4 * radius) : p.out;
+        !joined && above ? fmax(p.out - VKAO_VBAO_GAP_FRONT * unseen, 1.0e-4 * radius) : p.out;
     double front = fabs(atan2(front_out, p.up));
     if (joined)
         front = fmin(front, joined_angle);
-    double thickness = depth_of(s, layer, &p, gap);
+    double thickness = depth_of(s, layer, &p, unseen);
     double back = fabs(atan2(p.out + VKAO_VBAO_GAP_BACK * gap, p.up - thickness));
     /* The slab's point nearest to P is on P's own height if the slab spans that. */
     double near_up = p.up < 0.0 ? p.up : fmax(0.0, p.up - thickness);
     hide(s, lowered(front, (double)params->bias), last->all_joined ? VKAO_VBAO_ROUND_LESS : 0.0,
-         back, ref_falloff(params, hypot(p.out - VKAO_VBAO_GAP_FRONT * gap, near_up)));
+         back, ref_falloff(params, hypot(p.out - VKAO_VBAO_GAP_FRONT * unseen, near_up)));
 }
 
 static void march(struct side *s)
