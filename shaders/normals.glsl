@@ -78,6 +78,7 @@ struct Facet {
     vec3 normal;   /* unit, towards the eye */
     bool straight; /* depth goes on so in row and column */
     bool alone;    /* no neighbour in one of them: the normal is unknown */
+    bool edge_on;  /* so steep that it may be no surface, but a break of depth */
 };
 
 /* Vectors to the neighbours span the tangent plane. */
@@ -96,11 +97,13 @@ Facet facet_of(ivec2 texel, float center_z)
     vec3 n = vec3(clamp(slope, -VKAO_STEEPEST_FACET, VKAO_STEEPEST_FACET), -1.0);
     if (!ORTHOGRAPHIC)
         n.z -= dot(view_position(vec2(texel), 1.0).xy, n.xy);
-    return Facet(normalize(n), straight_x && straight_y,
-                 !(beside.is_there && below.is_there));
+    float length2 = dot(n, n);
+    return Facet(n * inversesqrt(length2), straight_x && straight_y,
+                 !(beside.is_there && below.is_there),
+                 length2 > VKAO_PLANE_EDGE_ON * VKAO_PLANE_EDGE_ON);
 }
 
-/* The plane of the depth image at a texel. */
+/* The plane that a texel's surface lies in. */
 struct Plane {
     vec3 normal;
     /* cosine to the eye at which it stops getting steeper */
@@ -108,12 +111,14 @@ struct Plane {
 };
 
 /* normal: the shading normal. Things a texel wide have no plane in the depth image: there it is
- * steep only if the shading normal agrees. */
+ * steep only if the shading normal agrees. If it stands edge-on, as where they hide what is beside
+ * a texel, it is the shading normal's. */
 Plane plane_of(Facet own, vec3 normal)
 {
     float agreement = own.alone ? 1.0 : dot(own.normal, normal);
     bool holds = own.straight || agreement > VKAO_PLANE_AGREES;
-    return Plane(agreement > VKAO_PLANE_EQUALS ? normal : own.normal,
+    bool is_own = agreement <= VKAO_PLANE_EQUALS && (holds || !own.edge_on);
+    return Plane(is_own ? own.normal : normal,
                  holds ? VKAO_STEEPEST : VKAO_PLANE_STEEPEST);
 }
 

@@ -228,6 +228,35 @@ static void normals_past_the_outline_do_not_darken(void **state)
     }
 }
 
+/* Hair far in front of a tilted wall, which is seen through gaps of a texel: in rows, or in rows
+ * and columns. The depth image has no plane there; normals have. */
+static void walls_behind_thin_things_are_open(void **state)
+{
+    (void)state;
+    const struct scene wall = scene_tilted_plane(40.0, 25.0);
+    struct lens lens = lens_perspective(0.6, 0.45);
+    const vkao_ssao_method first = VKAO_SSAO_HBAO; /* point methods fade with depth, see above */
+    for (int i = (int)first; i < METHODS * 2; ++i) {
+        struct picture p;
+        if (i % METHODS < (int)first)
+            continue;
+        make(&p, i % METHODS, VKAO_STAGE_SSAO, 80, 60, &wall, &lens);
+        p.ssao.radius = 0.2f;
+        for (size_t t = 0; t < picture_texels(&p); ++t) {
+            bool is_hair = t % p.width % 4 != 0 || (i >= METHODS && t / p.width % 3 != 0);
+            p.values[SLOT_DEPTH][t] = is_hair ? 1.0 : p.values[SLOT_DEPTH][t];
+        }
+        picture_run(&p);
+        double worst = 1.0;
+        for (size_t t = 0; t < picture_texels(&p); ++t)
+            worst = p.values[SLOT_DEPTH][t] > 1.5 ? fmin(worst, p.values[SLOT_AO][t]) : worst;
+        print_message("    %-10s %s: darkest texel of the wall %.4f\n", names[i % METHODS],
+                      i < METHODS ? "slits" : "holes", worst);
+        assert_true(worst >= 0.998);
+        picture_free(&p);
+    }
+}
+
 /* The sky is open, and a wall before it has an open edge. */
 static void the_sky_is_open_and_hides_nothing(void **state)
 {
@@ -422,6 +451,7 @@ int main(void)
         gpu_test(far_walls_are_open),
         gpu_test(facets_under_smooth_normals_hardly_show),
         gpu_test(normals_past_the_outline_do_not_darken),
+        gpu_test(walls_behind_thin_things_are_open),
         gpu_test(the_sky_is_open_and_hides_nothing),
         gpu_test(subpixel_motion_does_not_flicker),
         gpu_test(no_pattern_of_the_noise_is_left),

@@ -69,9 +69,11 @@ void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
     memcpy(slice->n, n, sizeof slice->n);
     const double *own = &scene->planes[((size_t)y * scene->width + (size_t)x) * 3];
     double agreement = is_alone(scene, x, y) ? 1.0 : ref_dot(own, n);
-    memcpy(slice->plane, agreement > VKAO_PLANE_EQUALS ? n : own, sizeof slice->plane);
-    ref_view_eye(&scene->view, p, slice->to_eye);
     bool holds = is_straight(scene, x, y) || agreement > VKAO_PLANE_AGREES;
+    ref_view_eye(&scene->view, p, slice->to_eye);
+    bool edge_on = VKAO_PLANE_EDGE_ON * ref_dot(own, slice->to_eye) < fabs(slice->to_eye[2]);
+    bool is_own = agreement <= VKAO_PLANE_EQUALS && (holds || !edge_on);
+    memcpy(slice->plane, is_own ? own : n, sizeof slice->plane);
     slice->steepest = holds ? VKAO_STEEPEST : VKAO_PLANE_STEEPEST;
     double error = ref_view_depth_error(&scene->view, p[2]);
     if (params->method == VKAO_SSAO_VBAO)
