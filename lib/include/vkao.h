@@ -24,8 +24,9 @@
  * Synchronization contract, the same for every vkao_cmd_* function:
  *  - Before: images that a stage reads are visible to COMPUTE_SHADER / SHADER_READ in their
  *    declared layout. Images that it writes are in VK_IMAGE_LAYOUT_GENERAL, and earlier accesses to
- *    them have finished before COMPUTE_SHADER and TRANSFER. The external dependency of the depth
- *    pass does it for depth and normals: srcStageMask LATE_FRAGMENT_TESTS |
+ *    them have finished before COMPUTE_SHADER and TRANSFER; a barrier that brings them to GENERAL
+ *    has SHADER_WRITE | TRANSFER_WRITE in dstAccessMask. The external dependency of the depth pass
+ *    does it for depth and normals: srcStageMask LATE_FRAGMENT_TESTS |
  *    COLOR_ATTACHMENT_OUTPUT, srcAccessMask DEPTH_STENCIL_ATTACHMENT_WRITE |
  *    COLOR_ATTACHMENT_WRITE, dstStageMask COMPUTE_SHADER, dstAccessMask SHADER_READ.
  *  - After: written images were last touched by COMPUTE_SHADER / SHADER_WRITE, still in GENERAL.
@@ -83,7 +84,7 @@
     static inline name name##_default(void)                                                        \
     {                                                                                              \
         name out;                                                                                  \
-        name##_init(&out, (uint32_t)sizeof out);                                                   \
+        name##_init(&out, sizeof out);                                                             \
         return out;                                                                                \
     }
 
@@ -251,6 +252,9 @@ typedef enum vkao_projection {
 typedef enum vkao_falloff {
     VKAO_FALLOFF_SMOOTH = 0,    /* weight 1 - (t/R)^2 */
     VKAO_FALLOFF_THRESHOLD = 1, /* weight 1 up to R, then 0 */
+    /* SPHERE and HEMISPHERE look at points within R, but at what hides these from the eye, which
+     * may be farther away: by a difference in depth of d > R it counts q^2 (3 - 2 q), q = R/d. What
+     * is seen beside things in front of it is darkened a little far beyond R. */
     VKAO_FALLOFF_MAX_ENUM = 0x7fffffff
 } vkao_falloff;
 
@@ -349,10 +353,11 @@ typedef struct vkao_effect_info {
 
     /* --- Blur. Separable, cross-bilateral: a mean whose taps count less the further they lie off
      * the surface that the local depth slope continues, and the more their normal turns away. The
-     * noise of SSAO repeats after 4 texels, that of 4 or more slices after 2: a radius of 2, or 1
-     * with so many slices, leaves none of it where a surface goes on. On GPUs one of up to 3 takes
-     * one dispatch, a larger one two. It ends the chain, as intensity and power are right only
-     * after the noise is gone. --- */
+     * noise of SSAO repeats after 4 texels along a row, in other directions in each row; that of 4
+     * or more slices after 2, in rows and columns. A radius of 2, or 1 with so many slices, leaves
+     * none of it where a surface goes on. On GPUs one of up to 3 takes one dispatch, a larger one
+     * two. The larger, the longer drivers in software compile at the first use: seconds at 16. It
+     * ends the chain, as intensity and power are right only after the noise is gone. --- */
     /* [0,16] texels on each side; those near the ends count less. 0: intensity and power alone.
      * Default 3 */
     uint32_t blur_radius;
@@ -405,7 +410,9 @@ VKAO_API void vkao_effect_destroy(vkao_effect *effect);
  * one sample, of any level and layer of its image. Layered or stereo images need one view and one
  * frame per layer. Multisampled depth is resolved first: sample 0, MIN or MAX, never the average,
  * which is the depth of nothing. sRGB images are written through a UNORM view, for which the image
- * needs MUTABLE_FORMAT. All zero = slot not used. */
+ * needs MUTABLE_FORMAT. Usage has SAMPLED where it is read and STORAGE where it is written, which
+ * vkao cannot see: validation layers do. All zero = slot not used; one that is given and that SSAO
+ * would use by other settings is a warning. */
 typedef struct vkao_image {
     VkImageView view;
     /* Read slots: SHADER_READ_ONLY_OPTIMAL, DEPTH_STENCIL_READ_ONLY_OPTIMAL,
@@ -414,10 +421,11 @@ typedef struct vkao_image {
     VkFormat format; /* format of the view; UNDEFINED = slot not used */
     /* Optional, of `ao` only: the image behind the view, if the view is of mip level 0 and array
      * layer 0 and usage has TRANSFER_DST. The library then copies rows into it where that is
-     * faster, which takes a CPU a third of BLUR's time. Waiting for the stage's shader writes waits
-     * for the copies too. Leave it out for views of other levels and layers. Validation layers
-     * whose messages of type PERFORMANCE are heard say of each copy that GENERAL is not the best
-     * layout to copy to. That makes no difference to a CPU, and on GPUs nothing is copied. */
+     * faster: a CPU saves a tenth of BLUR's time, and a sixth at half resolution. Waiting for the
+     * stage's shader writes waits for the copies too. Leave it out for views of other levels and
+     * layers. Validation layers whose messages of type PERFORMANCE are heard say of each copy that
+     * GENERAL is not the best layout to copy to. That makes no difference to a CPU, and on GPUs
+     * nothing is copied. */
     VkImage image;
 } vkao_image;
 
@@ -467,8 +475,9 @@ typedef struct vkao_frame vkao_frame;
 typedef struct vkao_frame_info {
     uint32_t struct_size;
     uint32_t padding; /* zero */
-    /* texels; size of every image, at least 1, at most maxImageDimension2D; on a GPU, 8 columns and
-     * 2 rows less than that, as scratch images have a border */
+    /* texels; size of every image, at least 1, at most maxImageDimension2D; 8 columns and 2 rows
+     * less where scratch is images, which have a border: on a GPU, and on a CPU where a buffer
+     * would be larger than maxStorageBufferRange */
     VkExtent2D extent;
     const vkao_images *images; /* read during the call only */
     /* Place scratch here instead of allocating: DEVICE_LOCAL memory satisfying
@@ -525,7 +534,8 @@ typedef struct vkao_view {
     /* Texels that hold depth and normals; nothing outside is read. All 0 = the whole image. For
      * dynamic resolution set this alone: viewport and rect follow. */
     VkRect2D valid;
-    /* Texels that NDC [-1,1] spans; may reach beyond the image. All 0 = valid. Set it when the
+    /* Texels that NDC [-1,1] spans; may reach beyond the image, and has some of valid. All 0 =
+     * valid. Set it when the
      * projection belongs to another rectangle than valid: overscan, a cropped data window, one view
      * of an atlas. */
     VkRect2D viewport;

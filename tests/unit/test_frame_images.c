@@ -387,6 +387,49 @@ static void messages_name_formats_and_layouts(void **state)
     }
 }
 
+/* Normals, thickness or bent normals that the settings leave out. What other stages need is there
+ * without a word. */
+static void images_that_ssao_leaves_out_are_said(void **state)
+{
+    (void)state;
+    static const struct {
+        size_t slot;
+        vkao_stage_flags stages;
+        vkao_normal_encoding encoding;
+        const char *words; /* NULL: none */
+    } cases[] = {
+        {NORMALS, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, VKAO_NORMALS_FROM_DEPTH, "FROM_DEPTH"},
+        {NORMALS, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, VKAO_NORMALS_XYZ_SNORM, NULL},
+        {NORMALS, VKAO_STAGE_BLUR, VKAO_NORMALS_FROM_DEPTH, NULL},
+        {BENT_NORMALS, VKAO_STAGE_SSAO, VKAO_NORMALS_FROM_DEPTH, "bent_normals"},
+        {COLOR, VKAO_STAGE_SSAO, VKAO_NORMALS_FROM_DEPTH, NULL},
+    };
+    for (size_t i = 0; i < COUNT(cases); ++i) {
+        struct world w;
+        world_open(&w);
+        w.effect_info.stages = cases[i].stages;
+        w.effect_info.noisy_ao = VK_FALSE;
+        w.effect_info.normal_encoding = cases[i].encoding;
+        const vkao_image image =
+            cases[i].slot == BENT_NORMALS ? w.bent_normals : *world_slot(&w.images, cases[i].slot);
+        const vkao_image depth = w.images.depth, noisy = w.images.ao_noisy, ao = w.images.ao;
+        w.images = vkao_images_default();
+        w.images.depth = depth;
+        w.images.ao_noisy = cases[i].stages & VKAO_STAGE_SSAO ? w.images.ao_noisy : noisy;
+        w.images.ao = ao;
+        *world_slot(&w.images, cases[i].slot) = image;
+        world_forget_log(&w);
+        assert_int_equal(attempt(&w), VKAO_SUCCESS);
+        assert_int_equal(w.log.lines, cases[i].words ? 1 : 0);
+        if (cases[i].words) {
+            assert_int_equal(w.log.last_level, VKAO_LOG_WARNING);
+            assert_non_null(strstr(w.log.last, world_slot_names[cases[i].slot]));
+            assert_non_null(strstr(w.log.last, cases[i].words));
+        }
+        world_close(&w);
+    }
+}
+
 static void view_without_format_is_refused(void **state)
 {
     (void)state;
@@ -583,6 +626,7 @@ int main(void)
         cmocka_unit_test(formats_fit_their_slots),
         cmocka_unit_test(normals_fit_their_encoding),
         cmocka_unit_test(messages_name_formats_and_layouts),
+        cmocka_unit_test(images_that_ssao_leaves_out_are_said),
         cmocka_unit_test(view_without_format_is_refused),
         cmocka_unit_test(padding_is_refused),
         cmocka_unit_test(each_binding_holds_its_slot),
