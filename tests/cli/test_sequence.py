@@ -2,10 +2,11 @@
 # SPDX-License-Identifier: MIT
 """Many frames and several views."""
 import os
+import re
 
 import numpy as np
 
-from cli import (CHANNELS, INPUT, OUTPUT, SOME_FRAMES, USAGE, case, cases, check, check_close,
+from cli import (CHANNELS, INPUT, OK, OUTPUT, SOME_FRAMES, USAGE, case, cases, check, check_close,
                  equal, main, matches, oiio, read_ao, read_parts, write_exr)
 from exr_raw import read_raw
 from scene import FOV, RADIUS, Scene, camera, write_camera
@@ -224,6 +225,135 @@ def frame_options_are_checked(scratch, _, arguments, message, hint):
 @case
 def no_frames_is_an_error(scratch):
     scratch.fails(INPUT, r'in\.####\.exr: no file matches', 'in.####.exr', '-o', 'ao.####.exr')
+
+
+# --- Frames that show nothing ---
+
+NOTHING = [('1e10', 1e10), ('inf', np.inf), ('0', 0), ('65504', 65504), ('NaN', np.nan)]
+
+
+def empty(value=1e10):
+    like = Scene(*SIZE).depth()
+    return {'Z': np.full_like(like, value), **{f'N.{c}': np.zeros_like(like) for c in 'XYZ'}}
+
+
+def with_empty(scratch, numbers, count=3, value=1e10):
+    sequence(scratch, [n for n in range(1, count + 1) if n not in numbers])
+    for n in numbers:
+        write_exr(scratch.path(f'in.{n:04d}.exr'), empty(value))
+
+
+def check_as_single(scratch, numbers, *options):
+    for n in numbers:
+        scratch.render(f'in.{n:04d}.exr', '-o', 'one.exr', '--overwrite', 'always', *options)
+        equal(read_ao(scratch.path(f'ao.{n:04d}.exr')).tolist(),
+              read_ao(scratch.path('one.exr')).tolist(), f'AO of frame {n}')
+
+
+@cases(NOTHING)
+def a_frame_that_shows_nothing_is_open(scratch, _, value):
+    with_empty(scratch, [2], value=value)
+    run = scratch.render('in.####.exr', '-o', 'ao.####.exr', *VIEW)
+    matches(r"warning: in\.0002\.exr: depth 'Z' is all background: .* AO is 1", run.stderr, 'it')
+    check((read_ao(scratch.path('ao.0002.exr')) == 1).all(), 'AO of nothing is not 1')
+    check_as_single(scratch, (1, 3), *VIEW)
+
+
+@cases([('auto', (), 'auto'), ('percent', ('--radius', '5%'), 'by --radius'),
+        ('typed', ('--depth-type', 'planar'), 'auto')])
+def first_frame_that_shows_something_decides(scratch, _, options, said):
+    with_empty(scratch, [1, 2], count=4)
+    run = scratch.render('in.####.exr', '-o', 'ao.####.exr', '--camera', 'none', *options)
+    equal(outputs(scratch), [f'ao.000{n}.exr' for n in (1, 2, 3, 4)], 'outputs')
+    matches(r'in\.0001\.exr: .*: it is made after the first frame that shows', run.stderr, 'note')
+    for n in (1, 2):
+        check((read_ao(scratch.path(f'ao.000{n}.exr')) == 1).all(), f'AO of frame {n} is not 1')
+    alone = scratch.render('in.0003.exr', '-o', 'one.exr', '--camera', 'none', *options)
+    used = [line for line in alone.stderr.splitlines() if 'using:' in line]
+    check(used[0] in run.stderr.splitlines(), f'not {used} but {run.stderr}')
+    radius, = re.findall(rf'radius=(\S+) \({said}\)', run.stderr)
+    matches(f'the same with --radius {radius}\n', run.stderr, 'the hint')
+    equal(read_ao(scratch.path('ao.0003.exr')).tolist(), read_ao(scratch.path('one.exr')).tolist(),
+          'AO of frame 3')
+    check_as_single(scratch, [4], '--camera', 'none', '--radius', radius, *options[2:])
+
+
+@case
+def a_sequence_of_nothing_is_an_error(scratch):
+    with_empty(scratch, [1, 2])
+    os.remove(scratch.path('in.0003.exr'))
+    run = scratch.run('in.####.exr', '-o', 'ao.####.exr', *VIEW)
+    equal(run.code, CHANNELS, f'exit code of {run}')
+    matches(r"vkao: in\.0001\.exr: depth 'Z' is .*: no picture of anything", run.stderr, 'it')
+    equal(outputs(scratch), [], 'outputs')
+    told = scratch.run('inspect', 'in.####.exr')
+    equal(told.code, CHANNELS, 'exit code of inspect')
+    matches('problem .*no picture of anything', told.stdout, 'what is told')
+
+
+@case
+def a_frame_of_any_other_value_is_an_error(scratch):
+    with_empty(scratch, [2], value=7.3)
+    run = scratch.run('in.####.exr', '-o', 'ao.####.exr', *VIEW)
+    equal(run.code, CHANNELS, f'exit code of {run}')
+    matches(r"in\.0002\.exr: depth 'Z' is 7\.3 everywhere: no picture", run.stderr, 'it')
+    scratch.render('in.####.exr', '-o', 'ao.####.exr', '--overwrite', 'always', '--background', 7,
+                   *VIEW)
+
+
+@case
+def background_of_the_frames_before_is_nothing(scratch):
+    """A far plane that nobody tells: only beside things it is one."""
+    for n in (1, 3):
+        channels = frame(n)
+        channels['Z'] = np.where(channels['Z'] > 1e9, 1000, channels['Z']).astype(np.float32)
+        write_exr(scratch.path(f'in.{n:04d}.exr'), channels)
+    write_exr(scratch.path('in.0002.exr'), empty(1000))
+    scratch.render('in.####.exr', '-o', 'ao.####.exr', *VIEW)
+    check((read_ao(scratch.path('ao.0002.exr')) == 1).all(), 'AO of nothing is not 1')
+
+
+@case
+def transparent_frames_show_nothing(scratch):
+    sequence(scratch, (1, 3))
+    plane = np.full_like(Scene(*SIZE).depth(), 7.3)
+    write_exr(scratch.path('in.0002.exr'), {'Z': plane, **{c: plane * 0 for c in 'RGBA'}})
+    run = scratch.render('in.####.exr', '-o', 'ao.####.exr', *VIEW)
+    matches('in.0002.exr: .* is all background', run.stderr, 'it')
+
+
+@case
+def positions_that_show_nothing_are_open(scratch):
+    for n in (1, 2, 3):
+        scene = Scene(*SIZE, eye=0.2 * n)
+        place = np.stack([scene.x, scene.y, -np.ones_like(scene.x)]) * \
+            np.where(scene.sky | (n == 1), 0, scene.z)
+        write_exr(scratch.path(f'in.{n:04d}.exr'),
+                  {f'P.{c}': p.astype(np.float32) for c, p in zip('XYZ', place)})
+    run = scratch.render('in.####.exr', '-o', 'ao.####.exr', '--radius', RADIUS)
+    matches("in.0001.exr: positions 'P' is all background", run.stderr, 'it')
+    check((read_ao(scratch.path('ao.0001.exr')) == 1).all(), 'AO of nothing is not 1')
+    check((read_ao(scratch.path('ao.0002.exr')) < 0.9).any(), 'AO of something is 1')
+
+
+@case
+def the_first_frame_that_shows_something_is_told(scratch):
+    with_empty(scratch, [1])
+    run = scratch.run('inspect', 'in.####.exr', '--write-camera', 'found.json', *VIEW[:2])
+    equal(run.code, OK, f'exit code of {run}')
+    matches(r'^in\.0002\.exr\n', run.stdout, 'what is told')
+    matches(r'in\.0001\.exr: .* all background', run.stderr, 'what is not')
+
+
+@case
+def one_eye_may_show_nothing(scratch):
+    parts = [({'Z': Scene(*SIZE).depth() if view == 'left' else empty()['Z']},
+              {'name': f'z.{view}', 'view': view}) for view in EYES]
+    for n in (1, 2):
+        write_exr(scratch.path(f'in.{n:04d}.exr'), *parts)
+    run = scratch.render('in.####.exr', '-o', 'ao.####.exr', '--view', 'all', *VIEW)
+    equal(run.stderr.count('all background'), 2, 'warnings')
+    equal(scratch.run('inspect', 'in.####.exr', '--view', 'all').code, OK, 'inspect')
 
 
 # --- Views ---

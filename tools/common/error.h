@@ -27,6 +27,7 @@ enum exit_code {
 struct tool_error {
     int code;           /* enum exit_code; EXIT_OK while nothing went wrong */
     bool ends_run;      /* no other file could do better: there is no device, or it is lost */
+    bool shows_nothing; /* all background, which other frames of the sequence may not be */
     char message[1024]; /* 'FILE: what is wrong', no newline */
     char hint[1024];    /* what to do about it; empty if there is nothing useful to say */
 };

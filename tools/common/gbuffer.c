@@ -49,18 +49,27 @@ static bool wants_positions(const struct gbuffer *g, const struct gbuffer_option
            (g->roles.kind[ROLE_POSITION].found && !(is_told && g->camera.source[0]));
 }
 
-static bool use_positions(struct gbuffer *g, const struct gbuffer_options *options,
-                          struct report *report, struct tool_error *err)
+static const struct role *role_of_positions(const struct gbuffer *g)
 {
-    const struct role *role =
-        &g->roles.kind[g->depth_type == DEPTH_POSITION ? ROLE_DEPTH : ROLE_POSITION];
+    return &g->roles.kind[g->depth_type == DEPTH_POSITION ? ROLE_DEPTH : ROLE_POSITION];
+}
+
+/* *positions: malloc'ed, or NULL where none are wanted. */
+static bool read_positions(const struct gbuffer *g, const struct gbuffer_options *options,
+                           float **positions, struct tool_error *err)
+{
+    *positions = NULL;
     if (!wants_positions(g, options))
         return true;
-    float *positions = gbuffer_read_role(g, role, 4, 0.0f, err);
-    const bool ok =
-        positions && gbuffer_use_positions(g, options, positions, role->info->path, report, err);
-    free(positions);
-    return ok;
+    *positions = gbuffer_read_role(g, role_of_positions(g), 4, 0.0f, err);
+    return *positions != NULL;
+}
+
+static bool use_positions(struct gbuffer *g, const struct gbuffer_options *options,
+                          float *positions, struct report *report, struct tool_error *err)
+{
+    return !positions || gbuffer_use_positions(g, options, positions,
+                                               role_of_positions(g)->info->path, report, err);
 }
 
 static const struct exr_channel *alpha_channel(const struct gbuffer *g)
@@ -210,6 +219,54 @@ static bool read_alpha(struct gbuffer *g, struct tool_error *err)
     const struct role role = {.info = color->info, .part = color->part, .channels = {alpha}};
     g->alpha = gbuffer_read_role(g, &role, 1, 1.0f, err);
     return g->alpha != NULL;
+}
+
+/* --- Frames that show nothing --- */
+
+static bool look_for_nothing(struct gbuffer *g, const struct gbuffer_options *options,
+                             const float *positions, bool *is_empty, struct tool_error *err)
+{
+    *is_empty = false;
+    if (options->empty == EMPTY_IS_MISTAKE)
+        return true;
+    if (g->depth_type == DEPTH_POSITION) {
+        *is_empty = gbuffer_is_one_point(g, positions);
+        return true;
+    }
+    if (!read_alpha(g, err))
+        return false;
+    *is_empty = gbuffer_is_empty(g, options);
+    return true;
+}
+
+/* Such a frame tells nothing of camera and conventions, and all that could be said of it is said by
+ * this: *as_read and *memory, which is not that of the frames before, are for what follows. */
+static bool take_nothing(struct gbuffer *g, const struct gbuffer_options *options,
+                         struct gbuffer_options *as_read, struct frame_memory *memory,
+                         struct report *report, struct tool_error *err)
+{
+    const struct role *depth = &g->roles.kind[ROLE_DEPTH];
+    const char *what = g->depth_type == DEPTH_POSITION ? "positions" : "depth";
+    if (options->empty == EMPTY_IS_LATE) {
+        err->shows_nothing = true;
+        return fail(err, EXIT_CHANNELS, "%s: %s '%s' is all background", depth->info->path, what,
+                    depth->label);
+    }
+    report_warn_of_frame(report, "empty frame",
+                         "%s: %s '%s' is all background: this frame shows nothing, and AO is 1",
+                         depth->info->path, what, depth->label);
+    *as_read = *options;
+    if (options->memory) {
+        *memory = *options->memory;
+        as_read->memory = memory;
+    }
+    as_read->normal_space = NORMAL_SPACE_AUTO;
+    if (options->depth_type == DEPTH_AUTO || g->depth_type == DEPTH_POSITION) {
+        as_read->depth_type = g->depth_type = DEPTH_PLANAR;
+        g->depth_source = DEPTH_BY_OPTION;
+        memset(g->depth, 0, gbuffer_texels(g) * sizeof *g->depth);
+    }
+    return true;
 }
 
 /* What is known beside the depth. A window that lacks a texel knows nothing of it: NaN. */
@@ -536,7 +593,11 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         return false;
     const struct role *depth = &g->roles.kind[ROLE_DEPTH], *normal = &g->roles.kind[ROLE_NORMAL];
     const struct exr_info *normals = normal->found ? normal->info : info;
-    bool is_moved;
+    struct gbuffer_options as_read;
+    struct frame_memory memory;
+    struct report unheard = {.verbosity = REPORT_QUIET};
+    float *positions = NULL;
+    bool is_moved, is_empty;
     if (g->camera.remark[0])
         report_warn(report, "camera remark", "%s: %s", info->path, g->camera.remark);
     if (!read_depth(g, err) || !check_grey(g, report, err))
@@ -549,9 +610,19 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         if (!g->normals)
             goto failed;
     }
-    if (!use_positions(g, options, report, err) || !read_alpha(g, err) ||
+    if (!read_positions(g, options, &positions, err) ||
+        !look_for_nothing(g, options, positions, &is_empty, err) ||
+        (is_empty && !take_nothing(g, options, &as_read, &memory, report, err)))
+        goto failed;
+    if (is_empty) {
+        options = &as_read;
+        report = &unheard;
+    }
+    if ((!is_empty && !use_positions(g, options, positions, report, err)) || !read_alpha(g, err) ||
         !gbuffer_decode_normals(g, options->normal_encoding, normals->path, report, err))
         goto failed;
+    free(positions);
+    positions = NULL;
     gbuffer_turn_depth(g, options, report);
     if (!gbuffer_find_camera(g, options, depth->info->path, report, err) ||
         !read_behind(g, ROLE_THICKNESS, &g->thickness, err) ||
@@ -584,6 +655,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         goto failed;
     return true;
 failed:
+    free(positions);
     gbuffer_free(g);
     return false;
 }

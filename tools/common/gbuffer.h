@@ -72,6 +72,13 @@ enum normal_encoding { NORMAL_ENCODING_AUTO, NORMAL_ENCODING_SIGNED, NORMAL_ENCO
 /* What the image says is wrong of what header and options tell. */
 enum told_doubt { DOUBT_NOTHING, DOUBT_CAMERA, DOUBT_TYPE, DOUBT_PIXELS };
 
+/* What depth that is background all over is taken for. */
+enum empty_depth {
+    EMPTY_IS_MISTAKE, /* no picture of anything, unless somebody says what it measures */
+    EMPTY_IS_LATE,    /* a frame that waits for one that shows something: err->shows_nothing */
+    EMPTY_IS_OPEN     /* a frame of a sequence that shows something: AO is 1, and that is said */
+};
+
 /* What is kept of one view of a sequence, from frame to frame. Zero-initialise. */
 struct frame_memory {
     /* The camera as it was estimated: AO must not flicker with the estimate. */
@@ -87,6 +94,7 @@ struct frame_memory {
     bool has_depth, is_odd_type, is_odd_unit;
     enum depth_type usual_type;
     double usual_z[3]; /* nearest, median and farthest, scene units */
+    double background; /* that repeated, in the unit of depth; 0: none */
 };
 
 struct gbuffer_options {
@@ -96,6 +104,7 @@ struct gbuffer_options {
     struct depth_range depth_range; /* of normalised depth */
     enum background_rule background;
     double background_value; /* in the unit of depth, with BACKGROUND_GIVEN */
+    enum empty_depth empty;
     enum normal_space normal_space;
     enum normal_encoding normal_encoding;
     bool want_color; /* colour is an error if it is missing, and is not read otherwise */

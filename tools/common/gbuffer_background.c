@@ -294,3 +294,55 @@ bool gbuffer_find_background(struct gbuffer *g, const struct gbuffer_options *op
     b->is_transparent = g->alpha && transparent_is_background(g);
     return true;
 }
+
+/* --- Nothing at all --- */
+
+static bool is_near(double a, double b)
+{
+    return a >= b * same_value && a <= b / same_value;
+}
+
+/* A value that is everywhere. */
+static bool is_background_value(const struct gbuffer *g, const struct gbuffer_options *options,
+                                double distance, double stored)
+{
+    static const double most_half = 65504.0;
+    const double before = options->memory ? options->memory->background : 0;
+    const double far_plane = g->camera.far_plane;
+    bool is_transparent = g->alpha != NULL;
+    for (size_t i = 0; is_transparent && i < gbuffer_texels(g); i++)
+        is_transparent = !(g->alpha[i] > 0);
+    return distance < 0 || is_transparent || !(fabs(stored - most_half) > 0) ||
+           (far_plane > 0 && is_near(distance, far_plane)) ||
+           (before > 0 && is_near(distance, before));
+}
+
+bool gbuffer_is_empty(const struct gbuffer *g, const struct gbuffer_options *options)
+{
+    const bool has_ends = g->depth_type == DEPTH_DEVICE || g->depth_type == DEPTH_NORMALIZED;
+    const double limit =
+        options->background == BACKGROUND_GIVEN ? options->background_value : INFINITY;
+    double low = INFINITY, high = -INFINITY, stored = 0;
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        const double d = (double)g->depth[i];
+        const double distance = g->depth_type == DEPTH_INVERSE ? 1.0 / d : d;
+        const bool is_something =
+            has_ends ? d > 0 && d < 1 : gbuffer_is_measurable(fabs(distance)) && distance < limit;
+        if (!is_something)
+            continue;
+        low = fmin(low, distance);
+        high = fmax(high, distance);
+        stored = d;
+    }
+    return low > high ||
+           (!(low < high) && !has_ends && is_background_value(g, options, low, stored));
+}
+
+bool gbuffer_is_one_point(const struct gbuffer *g, const float *positions)
+{
+    for (size_t i = 1; i < gbuffer_texels(g); i++)
+        for (size_t c = 0; c < 3; c++)
+            if (positions[i * 4 + c] < positions[c] || positions[i * 4 + c] > positions[c])
+                return false;
+    return true;
+}

@@ -45,6 +45,8 @@ void gbuffer_warn_of_frame(const struct gbuffer *g, struct frame_memory *memory,
     const double z[3] = {g->min_z, g->median_z, g->max_z};
     if (!memory || !(g->median_z > 0))
         return;
+    if (g->background.reason != BACKGROUND_NONE && g->background.reason != BACKGROUND_DOUBT)
+        memory->background = g->background.value;
     if (!memory->has_depth) {
         memory->has_depth = true;
         memory->usual_type = g->depth_type;

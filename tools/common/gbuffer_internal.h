@@ -128,6 +128,10 @@ double gbuffer_distance(const struct gbuffer *g, float depth);
 /* How much longer the ray of a texel is than its way along the view axis. */
 double gbuffer_ray_length(const struct gbuffer *g, size_t texel);
 
+/* Whether depth as stored is background all over, by its values alone, by the far plane, alpha or
+ * the frames before; and whether positions, of three floats in four, are one point. */
+bool gbuffer_is_empty(const struct gbuffer *g, const struct gbuffer_options *options);
+bool gbuffer_is_one_point(const struct gbuffer *g, const float *positions);
 /* Fills g->background; needs depth as stored, normals and alpha. False if memory ran out. */
 bool gbuffer_find_background(struct gbuffer *g, const struct gbuffer_options *options);
 

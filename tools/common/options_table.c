@@ -644,7 +644,7 @@ const struct option_row option_table[] = {
     {.name = "write-camera", .argument = "FILE",
      .help = "inspect: write the camera that was found, as --camera reads it",
      .commands = INSPECT, .apply = apply_text, .offset = AT(write_camera),
-     .more = "Of a sequence, that of its first frame. It is an error if none was found."},
+     .more = "Of a sequence, that of its first frame that shows something. It is an error if none was found."},
     {.name = "fov", .argument = "DEG[:h|v]",
      .help = "field of view over the display window, horizontal (h) or vertical",
      .commands = RENDER | INSPECT, .apply = apply_fov, .offset = AT(gbuffer.camera.fov_deg)},
@@ -676,7 +676,7 @@ const struct option_row option_table[] = {
     {PARAMETER("radius", params.radius), .letter = 'r', .argument = "R",
      .is_radius = true,
      .help = "or Npx: so many rows of the image at the median distance; N%: percent of that "
-             "distance. Both by the first frame, and kept for the others",
+             "distance. Both by the first frame that shows something, and kept for the others",
      .automatic = "5%, in two digits",
      .more = "What px, % and auto make is rounded to three digits and printed: give that number "
              "to all when parts of a sequence are computed by several processes."},

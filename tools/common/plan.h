@@ -16,6 +16,7 @@ struct plan_frame {
     char *input, *output;
     char *camera, *like, *preview; /* NULL if not asked for */
     char *file[ROLE_FILES];        /* likewise */
+    bool is_late; /* it shows nothing, and waits for a frame that shows something */
 };
 
 struct plan {

@@ -230,11 +230,12 @@ static void hear_warning(void *data, const char *warning)
     cJSON_AddItemToArray(data, cJSON_CreateString(warning));
 }
 
-/* NULL if memory ran out; whatever else is wrong becomes the problem, whose exit code is kept in
- * *code. cameras: where the camera of the view goes, as a camera file has it. */
+/* NULL if memory ran out, or of a frame that shows nothing and is to wait; whatever else is wrong
+ * becomes the problem, whose exit code is kept in *code. cameras: where the camera of the view goes,
+ * as a camera file has it. */
 static cJSON *describe_view(const struct options *options, const struct frame_source *source,
                             const struct view *view, cJSON *cameras, struct report *report,
-                            int *code, struct tool_error *out_of_memory)
+                            int *code, struct tool_error *untold)
 {
     struct gbuffer_options wanted = view_options(options, view);
     struct tool_error err = {0};
@@ -269,11 +270,18 @@ static cJSON *describe_view(const struct options *options, const struct frame_so
         *code = *code ? *code : err.code;
     }
     gbuffer_free(&g);
-    if (err.code != EXIT_MEMORY)
+    if (err.code != EXIT_MEMORY && !err.shows_nothing)
         return object;
-    *out_of_memory = err;
+    *untold = err;
     cJSON_Delete(object);
     return NULL;
+}
+
+static bool shows_something(const cJSON *view)
+{
+    const cJSON *facts = cJSON_GetObjectItemCaseSensitive(view, "conventions");
+    const cJSON *median = cJSON_GetObjectItemCaseSensitive(facts, "median_z");
+    return cJSON_IsNumber(median) && median->valuedouble > 0;
 }
 
 /* A file whose roles are not found is inspected all the same: that is what the command is for.
@@ -303,9 +311,14 @@ static cJSON *describe(const struct options *options, const struct plan_frame *f
         cJSON_AddStringToObject(root, "hint", views_err.hint);
         *code = views_err.code;
     } else {
-        for (size_t i = 0; !err->code && i < source.view_count; i++)
-            cJSON_AddItemToArray(views, describe_view(options, &source, &source.views[i], cameras,
-                                                      report, code, err));
+        struct options seen = *options;
+        for (size_t i = 0; !err->code && i < source.view_count; i++) {
+            cJSON *view =
+                describe_view(&seen, &source, &source.views[i], cameras, report, code, err);
+            if (seen.gbuffer.empty == EMPTY_IS_LATE && shows_something(view))
+                seen.gbuffer.empty = EMPTY_IS_OPEN;
+            cJSON_AddItemToArray(views, view);
+        }
     }
     frame_source_close(&source);
     if (!err->code && json_is_whole(begun))
@@ -578,9 +591,30 @@ static bool write_camera(const struct options *options, const char *input, cJSON
     return ok;
 }
 
-/* Of a sequence, its first frame. Ends as a run would end. */
+/* Of a sequence, its first frame that shows something; the first one if none does. */
+static cJSON *describe_first(const struct options *options, const struct plan *plan, cJSON *cameras,
+                             struct report *report, struct report *silent, int *code, size_t *told,
+                             struct tool_error *err)
+{
+    struct options waiting = *options;
+    waiting.gbuffer.empty = EMPTY_IS_LATE;
+    for (*told = 0; plan->count > 1 && *told < plan->count; ++*told) {
+        struct report listening = *silent;
+        cJSON *root = describe(&waiting, &plan->frames[*told], cameras, &listening, code, err);
+        if (root || !err->shows_nothing)
+            return root;
+        report_note(report, "%s: the first frame that shows something is told", err->message);
+        *err = (struct tool_error){0};
+        *code = EXIT_OK;
+    }
+    *told = 0;
+    return describe(options, &plan->frames[0], cameras, silent, code, err);
+}
+
+/* Ends as a run would end. */
 int command_inspect(const struct options *options, struct report *report)
 {
+    size_t told = 0;
     int code = EXIT_OK;
     struct tool_error err = {0};
     struct plan plan;
@@ -593,9 +627,9 @@ int command_inspect(const struct options *options, struct report *report)
         if (!cameras)
             fail(&err, EXIT_MEMORY, "%s: out of memory", plan.frames[0].input);
         else
-            root = describe(options, &plan.frames[0], cameras, &silent, &code, &err);
-        if (root &&
-            (!options->write_camera || write_camera(options, plan.frames[0].input, cameras, &err)))
+            root = describe_first(options, &plan, cameras, report, &silent, &code, &told, &err);
+        if (root && (!options->write_camera ||
+                     write_camera(options, plan.frames[told].input, cameras, &err)))
             print(root, options->json, &err);
         cJSON_Delete(root);
         cJSON_Delete(cameras);

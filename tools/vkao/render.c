@@ -28,6 +28,8 @@ struct session {
     float auto_radius;     /* 0 = not known yet */
     struct frame_memory memory[MAX_VIEWS]; /* by view */
     bool summarised, is_sequence;
+    bool has_picture;    /* some frame has shown something */
+    bool awaits_picture; /* and one that shows nothing waits for it */
 };
 
 struct times {
@@ -186,6 +188,9 @@ static void open_part(void *data, uint32_t part)
     view_reserve_work(&options, &o->options->setting.effect);
     options.held_bytes = o->held_bytes;
     options.memory = &o->session->memory[o->view - o->source->views];
+    options.empty = o->session->has_picture      ? EMPTY_IS_OPEN
+                    : o->session->awaits_picture ? EMPTY_IS_LATE
+                                                 : EMPTY_IS_MISTAKE;
     const double start = now_ms();
     o->is_read = gbuffer_load(&o->source->info, &options, o->view->camera, o->session->report,
                               o->gbuffer, &o->read_err);
@@ -266,6 +271,7 @@ static bool render_view(struct session *s, const struct options *frame_options,
         return false;
     if (view->record)
         compare_makers(s, view->record);
+    s->has_picture |= s->is_sequence && g->median_z > 0;
     out->setting = options.setting;
     out->setting.params.radius = choose_radius(s, &options, g);
     check_radius(g, out->setting.params.radius, s->report);
@@ -345,23 +351,47 @@ static void hint_at_frames(const struct plan *plan, const struct plan_frame *fra
                   options->input);
 }
 
-static int render_plan(struct session *s, const struct plan *plan)
+/* False if the run ends, with *code. */
+static bool try_frame(struct session *s, const struct plan *plan, struct plan_frame *frame,
+                      size_t *failed, int *code)
 {
-    size_t failed = 0;
+    struct tool_error err = {0};
+    s->report->frame++;
+    if (plan->is_sequence)
+        report_note(s->report, "frame %zu/%zu (%" PRId64 "): %s",
+                    (size_t)(frame - plan->frames) + 1, plan->count, frame->number, frame->output);
+    frame->is_late = false;
+    if (render_frame(s, frame, &err))
+        return true;
+    if (err.shows_nothing) {
+        frame->is_late = true;
+        report_note(s->report, "%s: it is made after the first frame that shows something",
+                    err.message);
+        return true;
+    }
+    hint_at_frames(plan, frame, s->options, &err);
+    report_error(&err);
+    ++*failed;
+    *code = err.code;
+    return s->options->continue_on_error && !err.ends_run;
+}
+
+/* What is kept from frame to frame, as the radius, is that of the first frame that shows something:
+ * those before it come after it, or are mistakes if there is none. */
+static int render_plan(struct session *s, struct plan *plan)
+{
+    size_t failed = 0, first_late = 0;
+    int code = EXIT_OK;
+    s->awaits_picture = plan->is_sequence && plan->count > 1;
     for (size_t i = 0; i < plan->count; i++) {
-        const struct plan_frame *frame = &plan->frames[i];
-        struct tool_error err = {0};
-        s->report->frame++;
-        if (plan->is_sequence)
-            report_note(s->report, "frame %zu/%zu (%" PRId64 "): %s", i + 1, plan->count,
-                        frame->number, frame->output);
-        if (render_frame(s, frame, &err))
-            continue;
-        hint_at_frames(plan, frame, s->options, &err);
-        report_error(&err);
-        if (!s->options->continue_on_error || err.ends_run)
-            return err.code;
-        failed++;
+        if (!try_frame(s, plan, &plan->frames[i], &failed, &code))
+            return code;
+        const bool is_last = i + 1 == plan->count;
+        s->awaits_picture &= !is_last;
+        for (; first_late <= i && (s->has_picture || is_last); first_late++)
+            if (plan->frames[first_late].is_late &&
+                !try_frame(s, plan, &plan->frames[first_late], &failed, &code))
+                return code;
     }
     if (failed)
         report_note(s->report, "%zu of %zu frames failed", failed, plan->count);
