@@ -74,6 +74,10 @@ def ao_of(scratch, *options, planes=None, **layout):
     return compute_ao(scratch, planes or channels(), *BASE, *options, **layout)[0]
 
 
+def ao_and_words(scratch, *options, planes):
+    return compute_ao(scratch, planes, *BASE, *options)[1]
+
+
 METHODS = [('vbao',), ('raymarch',)]
 
 
@@ -209,6 +213,72 @@ def memory_of_the_layers_is_counted(scratch):
     # In host memory and on the device, and of the second layer a copy beside it.
     for need, texel_bytes in zip(needs[1:], (8, 12)):
         check(abs(need - needs[0] - texel_bytes * 1.05) <= 1.1, f'MB needed: {needs}')
+
+
+SURFACE = ~SKY
+WRONG_DEPTHS = [
+    ('in front', np.where(SURFACE, FRONT * 0.5, np.inf), None, 'nearer than depth .* at 100 %'),
+    ('metres', np.where(SURFACE, (FRONT + 1) / 1000, np.inf), None, 'nearer than depth'),
+    ('in part', np.where(ON_CARD, CARD + 1, FRONT * 0.9), 'nearer than depth', None),
+    ('the same', FRONT, 'nowhere behind depth .*, but the same', None),
+    ('negative', -(FRONT + 1), 'has the other sign than depth', None),
+    ('empty', np.full_like(FRONT, np.nan), 'has no value wherever depth', None),
+    ('elsewhere', np.where(SURFACE, np.inf, 9), 'has no value wherever depth', None),
+    ('millimetres', (FRONT + 1) * 1000, 'more than 4 times as far', None)]
+
+
+@cases([(option, *row) for option in ('back-depth', 'layer2') for row in WRONG_DEPTHS],
+       name=lambda row: ', '.join(row[:2]))
+def what_is_not_behind_is_said(scratch, option, what, z, warning, refusal):
+    planes = {**channels(), 'other.V': np.where(np.isinf(z), 1e10, z).astype(np.float32)}
+    write_exr(scratch.path('in.exr'), planes)
+    named = (f'--{option}', 'other')
+    told = scratch.run('inspect', 'in.exr', '--fov', FOV, *named)
+    if refusal:
+        message = rf"in\.exr: --{option} 'other\.V' is {refusal}"
+        scratch.fails(CHANNELS, message, 'in.exr', '-o', 'ao.exr', '--fov', FOV, *named,
+                      hint='exchanged, in other units')
+        equal(told.code, CHANNELS, 'exit code of inspect')
+        matches(f'problem .*{refusal}', told.stdout, 'what is told')
+        return
+    said = scratch.render('in.exr', '-o', 'ao.exr', *BASE, *named).stderr
+    matches(rf"warning: in\.exr: --{option} 'other\.V' .*{warning}", said, 'stderr')
+    matches(f'warning .*{warning}', told.stdout, 'what is told')
+
+
+@case
+def second_layer_beyond_the_radius_is_said(scratch):
+    planes = {**channels(), 'second.V': encoded(np.where(ON_CARD & SURFACE, WALL + 2, np.inf))}
+    for radius, is_said in ((1, True), (3, False)):
+        said = ao_and_words(scratch, '--layer2', 'second', '--radius', radius, planes=planes)
+        equal("begins at 6, more than the radius of 1 behind all" in said, is_said, f'it in {said}')
+
+
+@cases([('0', 0 * Y, 'nowhere above 0'), ('negative', 0 * Y - 1, 'nowhere above 0'),
+        ('NaN', np.nan * Y, 'nowhere above 0'), ('normal', Y, 'is negative at .* %')],
+       name=lambda row: row[0])
+def what_is_no_thickness_is_said(scratch, _, values, warning):
+    planes = {**channels(), 'thick.V': values.astype(np.float32)}
+    said = ao_and_words(scratch, '--thickness-channel', 'thick', planes=planes)
+    matches(rf"warning: in\.exr: --thickness-channel 'thick\.V' .*{warning}", said, 'stderr')
+
+
+@cases([(option, name) for option in ('thickness-channel', 'back-depth', 'layer2')
+        for name in ('Z', 'N.Y')], name=', '.join)
+def depth_and_normals_are_no_layers(scratch, option, name):
+    write_exr(scratch.path('in.exr'), channels())
+    what = 'the depth itself' if name == 'Z' else 'a component of the normals'
+    scratch.fails(CHANNELS, f"--{option} '{name}' is {what}", 'in.exr', '-o', 'ao.exr',
+                  f'--{option}', name, hint='name another channel')
+
+
+@cases(DEPTH_TYPES)
+def right_layers_are_passed_in_silence(scratch, kind, name, planes):
+    for options in (('--back-depth', 'back.V'), ('--layer2', 'second.V'),
+                    ('--thickness-channel', 'thick.V')):
+        said = ao_and_words(scratch, *options, '--depth-type', name, *planes,
+                            planes=channels(kind))
+        check(options[0] not in said, said)
 
 
 @case

@@ -36,6 +36,12 @@ void check_radius(const struct gbuffer *gbuffer, float radius, struct report *re
     const double pixels = (double)radius / row_height(gbuffer), longer = fmax(columns, rows);
     if (!(gbuffer->median_z > 0) || !isfinite(pixels))
         return;
+    if (gbuffer->second_min_z > gbuffer->max_z + (double)radius)
+        report_warn(report, "layer2 reach",
+                    "--layer2 '%s' begins at %.4g, more than the radius of %.3g behind all of the "
+                    "depth, which ends at %.4g: it changes nothing; is it in another unit?",
+                    gbuffer->roles.kind[ROLE_LAYER2].label, gbuffer->second_min_z, (double)radius,
+                    gbuffer->max_z);
     if (pixels < 0.5)
         report_warn(report, "radius",
                     "radius %.3g is %.2g pixels at the median distance of %.3g: nothing so near is "

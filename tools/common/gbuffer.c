@@ -271,12 +271,14 @@ static bool take_nothing(struct gbuffer *g, const struct gbuffer_options *option
 
 /* What is known beside the depth. A window that lacks a texel knows nothing of it: NaN. */
 static bool read_behind(struct gbuffer *g, enum role_kind kind, float **values,
-                        struct tool_error *err)
+                        struct layer_signs *signs, struct tool_error *err)
 {
     const struct role *role = &g->roles.kind[kind];
     if (!role->found)
         return true;
     *values = gbuffer_read_role(g, role, 1, NAN, err);
+    if (*values)
+        *signs = gbuffer_look_at_signs(g, *values, kind != ROLE_THICKNESS && g->depth_is_negated);
     return *values != NULL;
 }
 
@@ -508,6 +510,43 @@ static bool check_light(const struct gbuffer *g, struct tool_error *err)
                 specular->info->path);
 }
 
+static bool has_channel(const struct role *role, const struct exr_channel *channel)
+{
+    for (size_t i = 0; role->found && i < ROLE_MAX_COMPONENTS; i++)
+        if (role->channels[i] == channel)
+            return true;
+    return false;
+}
+
+/* Depth is not behind itself, and neither it nor normals cover anything. */
+static bool check_meaning(const struct gbuffer *g, struct tool_error *err)
+{
+    static const struct {
+        enum role_kind kind;
+        const char *option;
+    } named[] = {{ROLE_THICKNESS, "thickness-channel"},
+                 {ROLE_BACK_DEPTH, "back-depth"},
+                 {ROLE_LAYER2, "layer2"},
+                 {ROLE_HOLDOUT, "holdout"},
+                 {ROLE_NO_CAST, "no-cast"}};
+    static const struct {
+        enum role_kind kind;
+        const char *what;
+    } taken[] = {{ROLE_DEPTH, "the depth itself"},
+                 {ROLE_NORMAL, "a component of the normals"},
+                 {ROLE_POSITION, "a component of the positions"}};
+    for (size_t n = 0; n < sizeof named / sizeof *named; n++)
+        for (size_t t = 0; t < sizeof taken / sizeof *taken; t++) {
+            const struct role *role = &g->roles.kind[named[n].kind];
+            if (!role->found || !has_channel(&g->roles.kind[taken[t].kind], role->channels[0]))
+                continue;
+            fail_hint(err, "name another channel, or leave --%s out", named[n].option);
+            return fail(err, EXIT_CHANNELS, "%s: --%s '%s' is %s", role->info->path,
+                        named[n].option, role->label, taken[t].what);
+        }
+    return true;
+}
+
 /* Everything that the header alone decides. */
 static bool resolve(const struct exr_info *info, const struct gbuffer_options *options,
                     const struct camera *camera_file, struct gbuffer *g, struct tool_error *err)
@@ -550,7 +589,7 @@ static bool resolve(const struct exr_info *info, const struct gbuffer_options *o
     return check_files(info, options, g, err) && check_role(depth, err) &&
            check_role(&g->roles.kind[ROLE_NORMAL], err) &&
            (!options->want_color || check_role(&g->roles.kind[ROLE_COLOR], err)) &&
-           check_light(g, err) && check_budget(info, options, g, err);
+           check_light(g, err) && check_meaning(g, err) && check_budget(info, options, g, err);
 }
 
 /* Curved things alone say nothing; normals that agree with the depth do. */
@@ -596,6 +635,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     struct gbuffer_options as_read;
     struct frame_memory memory;
     struct report unheard = {.verbosity = REPORT_QUIET};
+    struct layer_signs thickness = {0}, second = {0};
     float *positions = NULL;
     bool is_moved, is_empty;
     if (g->camera.remark[0])
@@ -625,10 +665,11 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     positions = NULL;
     gbuffer_turn_depth(g, options, report);
     if (!gbuffer_find_camera(g, options, depth->info->path, report, err) ||
-        !read_behind(g, ROLE_THICKNESS, &g->thickness, err) ||
-        (!g->thickness && !read_behind(g, ROLE_BACK_DEPTH, &g->thickness, err)) ||
-        !read_behind(g, ROLE_LAYER2, &g->second_depth, err) ||
+        !read_behind(g, ROLE_THICKNESS, &g->thickness, &thickness, err) ||
+        (!g->thickness && !read_behind(g, ROLE_BACK_DEPTH, &g->thickness, &thickness, err)) ||
+        !read_behind(g, ROLE_LAYER2, &g->second_depth, &second, err) ||
         !gbuffer_prepare_depth(g, depth->info, options, report, err) ||
+        !gbuffer_check_behind(g, &thickness, &second, report, err) ||
         !gbuffer_prepare_normals(g, options, normals->path, report, err))
         goto failed;
     warn_about_assumption(g, report);

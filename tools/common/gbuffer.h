@@ -131,6 +131,7 @@ struct gbuffer {
      * end. */
     float *thickness;
     float *second_depth; /* as depth */
+    double second_min_z; /* the nearest of it, scene units; 0: there is none */
     /* What the composite does with the colour, see light.h; width * height * 4 each, NULL: nothing
      * else. specular: roughness in alpha. */
     float *kept, *albedo, *specular;

@@ -181,6 +181,19 @@ void gbuffer_warn_of_holes(const struct gbuffer *g, const char *path, struct rep
  * 0 where there are few of them. False if memory ran out. */
 bool gbuffer_measure_noise(const struct gbuffer *g, double *noise);
 
+/* Of a layer beside the depth as stored. */
+struct layer_signs {
+    size_t values, opposite; /* those that measure something, and those of the other sign */
+    double low, high;        /* of the latter */
+};
+struct layer_signs gbuffer_look_at_signs(const struct gbuffer *g, const float *values,
+                                         bool is_negated);
+/* Says what cannot be behind the depth; fills second_min_z. Needs all of it as prepared, and the
+ * signs before. Errors: EXIT_CHANNELS, of what is in front. */
+bool gbuffer_check_behind(struct gbuffer *g, const struct layer_signs *thickness,
+                          const struct layer_signs *second, struct report *report,
+                          struct tool_error *err);
+
 /* Turns negative z round. */
 void gbuffer_turn_depth(struct gbuffer *g, const struct gbuffer_options *options,
                         struct report *report);
