@@ -481,9 +481,38 @@ def cameras_of_a_stereo_file_are_written_by_view(scratch):
     write_exr(scratch.path('in.exr'), *(
         ({'Z': s.depth(), **s.normals(space='world')}, {'view': v, 'name': v})
         for v, s in scenes.items()))
-    scratch.render('inspect', 'in.exr', '--write-camera', 'found.json')
+    scratch.render('inspect', 'in.exr', '--view', 'all', '--write-camera', 'found.json')
     with open(scratch.path('found.json'), encoding='utf-8') as file:
         equal(sorted(json.load(file)['views']), ['left', 'right'], 'views')
+    equal(scratch.run('inspect', 'in.exr', '--write-camera', 'again.json').code, CHANNELS,
+          'exit code without --view')
+    equal(scratch.bytes('again.json'), scratch.bytes('found.json'), 'what is written')
+
+
+@cases(['in.exr.bak', 'found', 'found.exr', '/dev/stdout'])
+def a_camera_is_written_to_json_alone(scratch, name):
+    write_exr(scratch.path('in.exr'), {'Z': Scene().depth()})
+    scratch.write('found.exr', 'mine')
+    scratch.fails(USAGE, f"--write-camera is '{name}', want a name that ends in .json", 'inspect',
+                  'in.exr', '--fov', 50, '--overwrite', 'always', '--write-camera', name,
+                  hint=f'--write-camera {name}.json')
+
+
+@case
+def cameras_of_frames_are_written_each(scratch):
+    for n, fov in ((1, 50), (2, None), (3, 60)):
+        scene = Scene(160, 90, fov or 50)
+        depth = scene.depth() if fov else np.full_like(scene.depth(), np.inf)
+        write_exr(scratch.path(f'in.000{n}.exr'), {'Z': depth, **scene.normals()})
+    run = scratch.render('inspect', 'in.####.exr', '--write-camera', 'c.####.json')
+    equal([f for f in scratch.files() if f.startswith('c.')], ['c.0001.json', 'c.0003.json'],
+          'cameras')
+    matches('in.0002.exr: .* no camera is written for it', run.stderr, 'stderr')
+    for n, fov in ((1, 50), (3, 60)):
+        with open(scratch.path(f'c.000{n}.json'), encoding='utf-8') as file:
+            check(abs(json.load(file)['fov_x_deg'] - fov) < 0.5, f'camera {n}')
+    scratch.fails(USAGE, "--write-camera 'd.####.json' has a frame token, but INPUT", 'inspect',
+                  'in.0001.exr', '--write-camera', 'd.####.json', hint="'####' stands for")
 
 
 @case

@@ -334,8 +334,9 @@ def cameras_of_views_need_views(scratch):
 def existing_outputs_are_kept(scratch):
     gbuffer(scratch)
     scratch.write('out.exr', 'mine')
+    scratch.write('out.png', 'mine')
     scratch.fails(OUTPUT, r'out\.exr: exists', *RUN, hint='--overwrite always')
-    scratch.fails(OUTPUT, r'out\.exr: exists', 'in.exr', '-o', 'new.exr', '--preview', 'out.exr',
+    scratch.fails(OUTPUT, r'out\.png: exists', 'in.exr', '-o', 'new.exr', '--preview', 'out.png',
                   hint='--overwrite always')
     scratch.render(*RUN, '--overwrite', 'always')
 
@@ -390,6 +391,13 @@ def output_directory_must_exist(scratch):
     gbuffer(scratch)
     scratch.fails(OUTPUT, r'no/out\.exr: cannot create: .*(No such|no directory)', 'in.exr',
                   '-o', 'no/out.exr')
+
+
+@case
+def directories_without_room_for_files_are_told(scratch):
+    gbuffer(scratch)
+    scratch.fails(OUTPUT, '/proc/out.exr: cannot create: No such file', 'in.exr', '-o',
+                  '/proc/out.exr', hint='no file can be made in /proc/: name another directory')
 
 
 @case

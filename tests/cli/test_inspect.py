@@ -109,10 +109,21 @@ def orthographic_camera_has_a_width(scratch):
 @case
 def every_view_is_told(scratch):
     stereo(scratch)
-    views = inspect_json(scratch, 'in.exr')['views']
+    views = inspect_json(scratch, 'in.exr', '--view', 'all')['views']
     equal([v['name'] for v in views], ['left', 'right'], 'views')
     equal([v['roles']['depth']['part'] for v in views], [0, 2], 'parts of the depths')
-    matches(r'(?ms)^view left$.*^view right$', inspect(scratch, 'in.exr'), 'text')
+    matches(r'(?ms)^view left$.*^view right$', inspect(scratch, 'in.exr', '--view', 'all'), 'text')
+    # Without --view all the same, but a run would end.
+    told = scratch.run('inspect', 'in.exr', '--json')
+    equal(told.code, scratch.run('in.exr', '-o', 'ao.exr').code, 'exit code: that of a run')
+    facts = json.loads(told.stdout)
+    equal([v['name'] for v in facts['views']], ['left', 'right'], 'views')
+    matches('in.exr: several views: left, right', facts['problem'], 'problem')
+    matches('--view NAME, --view all', facts['hint'], 'hint')
+    text = scratch.run('inspect', 'in.exr').stdout
+    matches(r'(?ms)can process it, with --view left .*can process it, with --view right ', text,
+            'text')
+    matches(r'(?m)^  problem +in.exr: several views: left, right\n +add --view NAME', text, 'text')
     one = inspect_json(scratch, 'in.exr', '--view', 'right')['views']
     equal([v['name'] for v in one], ['right'], 'views')
 
@@ -152,7 +163,8 @@ def multi_view_channels_are_told(scratch):
     views = ('multiView', oiio.TypeDesc('string[2]'), ('left', 'right'))
     write_exr(scratch.path('in.exr'), {'Z': SCENE.depth(), 'right.Z': SCENE.depth()},
               attributes=[views])
-    found = inspect_json(scratch, 'in.exr')['views']
+    equal(scratch.run('inspect', 'in.exr').code, CHANNELS, 'exit code: that of a run')
+    found = inspect_json(scratch, 'in.exr', '--view', 'all')['views']
     equal([(v['name'], v['roles']['depth']['channels']) for v in found],
           [('left', ['Z']), ('right', ['right.Z'])], 'views')
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from cli import CHANNELS, case, cases, check, equal, main, matches, write_exr
 from evidence import check_same, clean, depth_of, hidden, inspect, rotation_header, run
-from scene import CORNER, FOV, TURN, Scene, boxes_along_axes
+from scene import CORNER, FOV, TURN, Scene, boxes_along_axes, write_camera
 
 
 def no_normals_at_all(scene):
@@ -53,6 +53,22 @@ def normals_without_signs_are_said(scratch):
                                            **{n: change(v) for n, v in turned.items()}})
         matches("normals 'N' have no negative component anywhere",
                 str(inspect(scratch, '--fov', FOV)['warnings']), name)
+
+
+@case
+def normals_that_point_inwards_are_said(scratch):
+    scene = Scene()
+    inwards = {n: -v for n, v in scene.normals(space='world').items()}
+    write_camera(scratch.path('camera.json'))
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **inwards})
+    said = str(inspect(scratch, '--camera', 'camera.json', '--normal-space', 'world')['warnings'])
+    matches(r"in\.exr: 100 % of the normals 'N' face away from the camera: they point inwards; "
+            'each is turned towards it', said, 'warnings')
+    check('is --normal-space or the camera wrong' not in said, said)
+    options = ('--camera', 'camera.json', '--normal-space', 'world')
+    ao, _ = run(scratch, {'Z': scene.depth(), **inwards}, *options)
+    wanted, _ = run(scratch, {'Z': scene.depth(), **scene.normals(space='world')}, *options)
+    check_same(ao, wanted, 'AO of both')
 
 
 @case

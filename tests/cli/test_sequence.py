@@ -222,6 +222,20 @@ def frame_options_are_checked(scratch, _, arguments, message, hint):
     scratch.fails(USAGE, message, *arguments, hint=hint)
 
 
+@cases(['shot@2x', 'a#b_ao', '100%done', 'x$FF'])
+def letters_that_are_no_token_stay(scratch, name):
+    sequence(scratch, (1,))
+    scratch.render('in.0001.exr', '-o', f'{name}.exr', '--preview', f'{name}.png', *VIEW)
+    equal(scratch.files(), sorted([f'{name}.exr', 'in.0001.exr', f'{name}.png']), 'files')
+
+
+@cases(['ao.#.exr', 'ao####.exr', 'ao%04d.exr', 'ao.%d.exr', 'ao_@.exr', '$F4.exr'])
+def tokens_need_one_in_the_input(scratch, name):
+    sequence(scratch, (1,))
+    scratch.fails(USAGE, 'has a frame token, but INPUT', 'in.0001.exr', '-o', name,
+                  hint='stands for the number of a frame')
+
+
 @case
 def no_frames_is_an_error(scratch):
     scratch.fails(INPUT, r'in\.####\.exr: no file matches', 'in.####.exr', '-o', 'ao.####.exr')

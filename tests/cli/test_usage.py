@@ -99,6 +99,16 @@ def output_must_be_called_exr(scratch, _, name, remedy):
           hint=re.escape(remedy))
 
 
+@cases(['ao.jpg', 'ao', 'mine.exr', 'ao.png.tif'])
+def preview_must_be_called_png(scratch, name):
+    write_exr(scratch.path('in.exr'), {'Z': Scene(32, 18).depth()})
+    scratch.write('mine.exr', 'mine')
+    fails(scratch, f"--preview is '{name}', want a name that ends in .png: PNG is what is written",
+          'in.exr', '-o', 'ao.exr', '--preview', name, '--overwrite', 'always',
+          hint=f'--preview {name}.png')
+    scratch.render('in.exr', '-o', 'ao.exr', '--preview', 'AO.PNG')
+
+
 @case
 def extension_may_be_upper_case(scratch):
     write_exr(scratch.path('in.exr'), {'Z': Scene(32, 18).depth()})

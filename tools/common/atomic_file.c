@@ -178,7 +178,12 @@ static bool fail_create(const struct atomic_file *file, int error, struct tool_e
 {
     fail(err, EXIT_OUTPUT, "%s: cannot create: %s", file->path, strerror(error));
     size_t directory = directory_length(file->target);
-    if (error == ENOENT)
+    struct stat status;
+    char name[ATOMIC_FILE_PATH_MAX];
+    snprintf(name, sizeof name, "%.*s", (int)directory, file->target);
+    if (error == ENOENT && directory > 0 && stat(name, &status) == 0)
+        fail_hint(err, "no file can be made in %s: name another directory", name);
+    else if (error == ENOENT)
         fail_hint(err, "make the directory %.*s first", (int)directory, file->target);
     return false;
 }

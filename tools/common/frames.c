@@ -226,6 +226,27 @@ static const char *find_token(const char *name, size_t *length, int *digits)
     return NULL;
 }
 
+/* Between separators, or at an end of the name. */
+static bool stands_alone(const char *name, const char *token, size_t length)
+{
+    return (token == name || strchr("._-", token[-1])) && strchr("._-", token[length]);
+}
+
+const char *frame_token_that_is_clear(const char *path, size_t *length)
+{
+    const char *slash = strrchr(path, '/');
+    const char *name = slash ? slash + 1 : path, *p = name;
+    int digits;
+    while ((p = find_token(p, length, &digits)) != NULL) {
+        const bool is_short =
+            *length == 1 || strncmp(p, "%d", *length) == 0 || strncmp(p, "$F", *length) == 0;
+        if (!is_short || stands_alone(name, p, *length))
+            return p;
+        p += *length;
+    }
+    return NULL;
+}
+
 bool frame_pattern_parse(const char *path, struct frame_pattern *pattern, struct tool_error *err)
 {
     *pattern = (struct frame_pattern){0};

@@ -541,7 +541,13 @@ static bool check_normals(struct gbuffer *g, enum normal_space wanted, size_t pa
     }
     if (!measure_facing(g, g->view.normal_to_view, &facing))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
-    if (facing.share < 0.6)
+    if (facing.share < 0.02)
+        report_warn(
+            report, "facing normals",
+            "%s: %.0f %% of the normals '%s' face away from the camera: they point inwards; "
+            "each is turned towards it, as if they were written with the other sign",
+            path, (1.0 - facing.share) * 100.0, label);
+    else if (facing.share < 0.6)
         report_warn(
             report, "facing normals",
             "%s: %.0f %% of the normals face away from the camera: is --normal-space or the "

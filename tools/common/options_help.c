@@ -101,7 +101,7 @@ void options_help(struct text *text)
                    "       vkao devices [--json]\n"
                    "\n"
                    "Ambient occlusion from the depth and the normals of OpenEXR files. INPUT and\n"
-                   "OUTPUT may hold a frame token: ####, %%04d or $F4.\n");
+                   "OUTPUT may hold a frame token: a run of # or @, as ####, %%04d or $F4.\n");
     for (size_t i = 0; i < option_table_count; i++) {
         if (option_table[i].heading)
             text_add(text, "\n%s:\n", option_table[i].heading);

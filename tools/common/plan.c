@@ -11,6 +11,7 @@ enum path_kind {
     PATH_INPUT,
     PATH_OUTPUT,
     PATH_PREVIEW,
+    PATH_WRITE_CAMERA,
     PATH_CAMERA,
     PATH_LIKE,
     PATH_DEPTH,
@@ -24,15 +25,28 @@ struct patterns {
     bool given[PATH_KINDS];
 };
 
-/* one_for_all: one file may serve all frames. */
+/* one_for_all: one file may serve all frames. extension: what is written there. */
 static const struct {
     const char *name;
     bool is_written, one_for_all;
+    const char *extension, *format;
 } path_table[PATH_KINDS] = {
-    [PATH_INPUT] = {"INPUT", false, false},          [PATH_OUTPUT] = {"--output", true, false},
-    [PATH_PREVIEW] = {"--preview", true, false},     [PATH_CAMERA] = {"--camera", false, true},
-    [PATH_LIKE] = {"--like", false, true},           [PATH_DEPTH] = {"--depth-file", false, false},
-    [PATH_NORMAL] = {"--normal-file", false, false}, [PATH_COLOR] = {"--color-file", false, false},
+    [PATH_INPUT] = {.name = "INPUT"},
+    [PATH_OUTPUT] = {.name = "--output", .is_written = true},
+    [PATH_PREVIEW] = {.name = "--preview",
+                      .is_written = true,
+                      .extension = ".png",
+                      .format = "PNG"},
+    [PATH_WRITE_CAMERA] = {.name = "--write-camera",
+                           .is_written = true,
+                           .one_for_all = true,
+                           .extension = ".json",
+                           .format = "JSON"},
+    [PATH_CAMERA] = {.name = "--camera", .one_for_all = true},
+    [PATH_LIKE] = {.name = "--like", .one_for_all = true},
+    [PATH_DEPTH] = {.name = "--depth-file"},
+    [PATH_NORMAL] = {.name = "--normal-file"},
+    [PATH_COLOR] = {.name = "--color-file"},
 };
 
 static bool camera_is_none(const struct options *o)
@@ -47,6 +61,7 @@ static const char *given_path(const struct options *o, enum path_kind kind)
         [PATH_INPUT] = o->input,
         [PATH_OUTPUT] = o->output,
         [PATH_PREVIEW] = o->preview,
+        [PATH_WRITE_CAMERA] = o->write_camera,
         [PATH_CAMERA] = camera_is_none(o) ? NULL : o->camera_file,
         [PATH_LIKE] = o->like,
         [PATH_DEPTH] = o->file[ROLE_DEPTH],
@@ -62,6 +77,7 @@ static char **path_of(struct plan_frame *frame, enum path_kind kind)
         [PATH_INPUT] = &frame->input,
         [PATH_OUTPUT] = &frame->output,
         [PATH_PREVIEW] = &frame->preview,
+        [PATH_WRITE_CAMERA] = &frame->write_camera,
         [PATH_CAMERA] = &frame->camera,
         [PATH_LIKE] = &frame->like,
         [PATH_DEPTH] = &frame->file[ROLE_DEPTH],
@@ -77,31 +93,54 @@ static bool exists(const char *path)
     return lstat(path, &s) == 0;
 }
 
-/* A file that is really called 'x#1.exr' is no pattern. */
-static bool parse_pattern(const char *path, bool is_read, struct frame_pattern *pattern,
+/* A file that is really called 'x#1.exr' is no pattern; nor is 'x@2x.exr' one that is to be written
+ * where there is nothing to count. */
+static bool is_literal(const char *path, enum path_kind kind, bool is_sequence)
+{
+    size_t length;
+    if (!path_table[kind].is_written)
+        return exists(path);
+    return !is_sequence && !frame_token_that_is_clear(path, &length);
+}
+
+static bool parse_pattern(const char *path, bool literally, struct frame_pattern *pattern,
                           struct tool_error *err)
 {
-    if (!is_read || !exists(path))
+    if (!literally)
         return frame_pattern_parse(path, pattern, err);
     *pattern = (struct frame_pattern){.prefix = text_copy(path, strlen(path))};
     return pattern->prefix || fail(err, EXIT_MEMORY, "%s: out of memory", path);
+}
+
+static bool fail_token(const struct options *o, enum path_kind kind, struct tool_error *err)
+{
+    const char *path = given_path(o, kind);
+    size_t length = 0;
+    const char *token = frame_token_that_is_clear(path, &length);
+    if (token)
+        fail_hint(err, "'%.*s' stands for the number of a frame: INPUT needs one too", (int)length,
+                  token);
+    return fail(err, EXIT_USAGE, "%s '%s' has a frame token, but INPUT '%s' has none",
+                path_table[kind].name, path, o->input);
 }
 
 static bool parse_patterns(const struct options *o, struct patterns *patterns,
                            struct tool_error *err)
 {
     *patterns = (struct patterns){0};
+    bool is_sequence = false;
     for (int k = 0; k < PATH_KINDS; k++) {
-        const char *path = given_path(o, (enum path_kind)k);
+        const enum path_kind kind = (enum path_kind)k;
+        const char *path = given_path(o, kind);
         patterns->given[k] = path != NULL;
-        if (path && !parse_pattern(path, !path_table[k].is_written, &patterns->of[k], err))
+        if (path &&
+            !parse_pattern(path, is_literal(path, kind, is_sequence), &patterns->of[k], err))
             return false;
+        if (kind == PATH_INPUT)
+            is_sequence = frame_pattern_has_token(&patterns->of[k]);
+        else if (path && !is_sequence && frame_pattern_has_token(&patterns->of[k]))
+            return fail_token(o, kind, err);
     }
-    bool sequence = frame_pattern_has_token(&patterns->of[PATH_INPUT]);
-    for (int k = PATH_OUTPUT; k < PATH_KINDS; k++)
-        if (!sequence && patterns->given[k] && frame_pattern_has_token(&patterns->of[k]))
-            return fail(err, EXIT_USAGE, "%s '%s' has a frame token, but INPUT '%s' has none",
-                        path_table[k].name, given_path(o, (enum path_kind)k), o->input);
     return true;
 }
 
@@ -285,12 +324,38 @@ static bool check_distinct(struct plan_frame *frame, struct tool_error *err)
         const char *path = path_table[w].is_written ? *path_of(frame, (enum path_kind)w) : NULL;
         for (int k = 0; path && k < PATH_KINDS; k++) {
             const char *other = *path_of(frame, (enum path_kind)k);
+            /* To write a camera where it was read changes nothing of the picture. */
+            if (w == PATH_WRITE_CAMERA && k == PATH_CAMERA)
+                continue;
             if (k != w && other && same_file(path, other)) {
                 fail_hint(err, "write to another file; --mode append keeps all of the input in it");
                 return fail(err, EXIT_USAGE, "%s: %s and %s are the same file", path,
                             path_table[w].name, path_table[k].name);
             }
         }
+    }
+    return true;
+}
+
+static bool ends_in(const char *path, const char *extension)
+{
+    const size_t length = strlen(path), end = strlen(extension);
+    return length > end && text_equal_nocase(path + length - end, extension);
+}
+
+/* What the name of a file says of its contents must be true, as of OUTPUT. */
+static bool check_names(const struct options *o, struct tool_error *err)
+{
+    for (int k = 0; k < PATH_KINDS; k++) {
+        const char *path = given_path(o, (enum path_kind)k);
+        const char *extension = path_table[k].extension;
+        if (!path || !extension || ends_in(path, extension))
+            continue;
+        fail_hint(err, "%s %s%s", path_table[k].name, path, extension);
+        return fail(err, EXIT_USAGE,
+                    "%s is '%s', want a name that ends in %s: %s is what is "
+                    "written",
+                    path_table[k].name, path, extension, path_table[k].format);
     }
     return true;
 }
@@ -379,8 +444,9 @@ bool plan_make(const struct options *options, struct plan *plan, struct tool_err
     *plan = (struct plan){0};
     bool ok = parse_patterns(options, &patterns, err) &&
               list_frames(options, &patterns, plan, err) && plan_take_cameras(options, plan, err);
-    for (size_t i = 0; ok && options->output && i < plan->count; i++)
+    for (size_t i = 0; ok && i < plan->count; i++)
         ok = check_distinct(&plan->frames[i], err);
+    ok = ok && check_names(options, err);
     for (size_t i = 0; ok && options->output && !options->continue_on_error && i < plan->count; i++)
         ok = plan_check_outputs(options, &plan->frames[i], err);
     ok = ok && (options->continue_on_error || check_there(plan, err));

@@ -14,8 +14,8 @@
 struct plan_frame {
     int64_t number;
     char *input, *output;
-    char *camera, *like, *preview; /* NULL if not asked for */
-    char *file[ROLE_FILES];        /* likewise */
+    char *camera, *like, *preview, *write_camera; /* NULL if not asked for */
+    char *file[ROLE_FILES];                       /* likewise */
     bool is_late; /* it shows nothing, and waits for a frame that shows something */
 };
 

@@ -13,7 +13,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static const char *const kind_names[ROLE_KINDS] = {
     "depth",  "normal",    "color",   "position", "ao",       "thickness", "back_depth",
@@ -301,6 +300,8 @@ static cJSON *describe(const struct options *options, const struct plan_frame *f
     for (size_t i = 0; i < source.info.part_count; i++)
         cJSON_AddItemToArray(parts, describe_part(&source.info.parts[i], i));
     struct options every = *options;
+    struct tool_error run_err = {0};
+    frame_source_choose_views(options, frame->camera, &source, &run_err);
     if (!every.view && !every.gbuffer.roles.name[ROLE_DEPTH])
         every.view = roles_view_count(&source.info) > 0 ? "all" : NULL;
     cJSON *views = cJSON_AddArrayToObject(root, "views");
@@ -311,6 +312,11 @@ static cJSON *describe(const struct options *options, const struct plan_frame *f
         cJSON_AddStringToObject(root, "hint", views_err.hint);
         *code = views_err.code;
     } else {
+        if (run_err.code) { /* views are told each, but a run wants one chosen */
+            cJSON_AddStringToObject(root, "problem", run_err.message);
+            cJSON_AddStringToObject(root, "hint", run_err.hint);
+            *code = run_err.code;
+        }
         struct options seen = *options;
         for (size_t i = 0; !err->code && i < source.view_count; i++) {
             cJSON *view =
@@ -460,7 +466,7 @@ static void print_passed_over(const cJSON *view)
     }
 }
 
-static void print_verdict(const cJSON *view)
+static void print_verdict(const cJSON *view, bool is_unchosen)
 {
     const cJSON *v = cJSON_GetObjectItemCaseSensitive(view, "verdict"), *item;
     cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(view, "warnings"))
@@ -468,8 +474,9 @@ static void print_verdict(const cJSON *view)
         printf("  warning   %s\n", item->valuestring);
     }
     if (cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(v, "can_be_processed")))
-        printf("  vkao      can process it, with --radius %g%s --bias %.3g\n",
-               number_of(v, "radius"),
+        printf("  vkao      can process it, with %s%s%s--radius %g%s --bias %.3g\n",
+               is_unchosen ? "--view " : "", is_unchosen ? text_of(view, "name") : "",
+               is_unchosen ? " " : "", number_of(v, "radius"),
                cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(v, "radius_is_auto")) ? " (auto)" : "",
                number_of(v, "bias"));
 }
@@ -483,7 +490,8 @@ static void print_problem(const cJSON *object)
         printf("            %s\n", text_of(object, "hint"));
 }
 
-static void print_view(const cJSON *view)
+/* is_unchosen: one of several, and a run would not know which. */
+static void print_view(const cJSON *view, bool is_unchosen)
 {
     if (*text_of(view, "name"))
         printf("view %s\n", text_of(view, "name"));
@@ -505,7 +513,7 @@ static void print_view(const cJSON *view)
         print_camera(cJSON_GetObjectItemCaseSensitive(view, "camera"));
     if (has(view, "conventions"))
         print_conventions(cJSON_GetObjectItemCaseSensitive(view, "conventions"));
-    print_verdict(view);
+    print_verdict(view, is_unchosen);
     print_problem(view);
 }
 
@@ -514,7 +522,8 @@ static void print_text(const cJSON *root)
     const cJSON *item;
     printf("%s\n", text_of(root, "file"));
     cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "parts")) print_part(item);
-    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "views")) print_view(item);
+    cJSON_ArrayForEach(item, cJSON_GetObjectItemCaseSensitive(root, "views"))
+        print_view(item, has(root, "problem"));
     print_problem(root);
 }
 
@@ -567,28 +576,64 @@ static char *camera_file_text(cJSON *cameras)
     return text;
 }
 
-static bool write_camera(const struct options *options, const char *input, cJSON *cameras,
-                         struct tool_error *err)
+static bool write_camera(const struct options *options, const struct plan_frame *frame,
+                         cJSON *cameras, struct tool_error *err)
 {
     struct atomic_file file = {0};
-    struct stat a, b;
-    if (stat(input, &a) == 0 && stat(options->write_camera, &b) == 0 && a.st_dev == b.st_dev &&
-        a.st_ino == b.st_ino)
-        return fail(err, EXIT_USAGE, "%s: --write-camera and INPUT are the same file", input);
+    const char *path = frame->write_camera;
     if (!cameras->child) {
         fail_hint(err, "give it with --fov, --ortho or --camera");
-        return fail(err, EXIT_CHANNELS, "%s: no camera was found: nothing to write to %s", input,
-                    options->write_camera);
+        return fail(err, EXIT_CHANNELS, "%s: no camera was found: nothing to write to %s",
+                    frame->input, path);
     }
     char *text = camera_file_text(cameras);
     if (!text)
-        return fail(err, EXIT_MEMORY, "%s: out of memory", options->write_camera);
-    bool ok = atomic_file_open(&file, options->write_camera, options->overwrite, err) &&
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    bool ok = atomic_file_open(&file, path, options->overwrite, err) &&
               atomic_file_write(&file, text, strlen(text), err) &&
               atomic_file_write(&file, "\n", 1, err) && atomic_file_commit(&file, err);
     atomic_file_abort(&file);
     free(text);
     return ok;
+}
+
+/* Of a frame that is told no further, unless it shows nothing. */
+static bool write_only(const struct options *options, const struct plan_frame *frame,
+                       const struct report *report, struct tool_error *err)
+{
+    struct options waiting = *options;
+    struct report silent = {.verbosity = REPORT_QUIET};
+    int code = EXIT_OK;
+    waiting.gbuffer.empty = EMPTY_IS_LATE;
+    cJSON *cameras = cJSON_CreateObject();
+    if (!cameras)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", frame->input);
+    cJSON *root = describe(&waiting, frame, cameras, &silent, &code, err);
+    const bool is_empty = !root && err->shows_nothing;
+    if (is_empty) {
+        report_note(report, "%s: no camera is written for it", err->message);
+        *err = (struct tool_error){0};
+    }
+    const bool ok = is_empty || (root && write_camera(options, frame, cameras, err));
+    cJSON_Delete(root);
+    cJSON_Delete(cameras);
+    return ok;
+}
+
+/* That of the frame that is told; with a frame token, those of the others too. */
+static bool write_cameras(const struct options *options, const struct plan *plan, size_t told,
+                          cJSON *cameras, const struct report *report, struct tool_error *err)
+{
+    const char *path = plan->frames[told].write_camera;
+    if (!path)
+        return true;
+    if (!write_camera(options, &plan->frames[told], cameras, err))
+        return false;
+    for (size_t i = told + 1; i < plan->count; i++)
+        if (strcmp(plan->frames[i].write_camera, path) != 0 &&
+            !write_only(options, &plan->frames[i], report, err))
+            return false;
+    return true;
 }
 
 /* Of a sequence, its first frame that shows something; the first one if none does. */
@@ -628,8 +673,7 @@ int command_inspect(const struct options *options, struct report *report)
             fail(&err, EXIT_MEMORY, "%s: out of memory", plan.frames[0].input);
         else
             root = describe_first(options, &plan, cameras, report, &silent, &code, &told, &err);
-        if (root && (!options->write_camera ||
-                     write_camera(options, plan.frames[told].input, cameras, &err)))
+        if (root && write_cameras(options, &plan, told, cameras, report, &err))
             print(root, options->json, &err);
         cJSON_Delete(root);
         cJSON_Delete(cameras);
