@@ -564,6 +564,45 @@ def whole_numbers_of_a_range_are_refused(scratch, _, most, kind):
     check_same(ao, wanted, 'a depth buffer')
 
 
+def as_parts(scene, near, far, most):
+    return (np.where(scene.sky, 1, (scene.z - near) / (far - near)) * most).round()
+
+
+@cases([('16 bits', 2 ** 16 - 1), ('12 bits', 2 ** 12 - 1), ('10 bits', 1023), ('8 bits', 255)])
+def whole_numbers_that_show_no_distances_are_refused(scratch, _, most):
+    scene = Scene()
+    depth = as_parts(scene, 1.5, 9.0, most).astype('uint32')
+    write_exr(scratch.path('in.exr'), {'Z': depth})
+    for options in (), ('--fov', FOV):
+        scratch.fails(CHANNELS, f"in.exr: depth 'Z' is whole numbers up to {most}, and nothing "
+                      'shows distances', 'in.exr', '-o', 'x.exr', *options,
+                      hint=f'take {255 if most == 255 else 65535} for 1')
+
+
+@cases([('as it is', ''), ('inverted', ',inverted')])
+def bits_that_are_no_bytes_are_said(scratch, _, inverted):
+    scene, near, far, most = Scene(), 1.5, 9.0, 2 ** 14 - 1
+    options = ('--fov', FOV, '--radius', 0.5, '--depth-type', 'normalized', '--depth-range')
+    if inverted:
+        near, far = far, near
+    depth = as_parts(scene, near, far, most).astype('uint32')
+    _, said = run(scratch, {'Z': depth}, *options, f'1.5,9{inverted}')
+    warned = f'whole numbers up to {most}, and parts of 65535 are read: if {most} is 1, distances'
+    check(warned in said, said)
+    remedy = re.findall(r'or --depth-range (\S+)', said)
+    if inverted:
+        equal(remedy, [], 'a range that ends behind the eye')
+        return
+    wanted, _ = clean(scratch, scene, *options[:4], normals=False)
+    scene_only = np.where(scene.sky, 0, depth).astype('uint32')
+    ao, _ = run(scratch, {'Z': scene_only}, *options, remedy[0])
+    check_same(ao, wanted, 'with the range that is said')
+    for bits in (8, 16, 24):
+        _, said = run(scratch, {'Z': as_parts(scene, near, far, 2 ** bits - 1).astype('uint32')},
+                      *options, '1.5,9')
+        check('parts of' not in said, said)
+
+
 @case
 def whole_millimetres_are_distances(scratch):
     scene = Scene()

@@ -106,6 +106,49 @@ def what_does_not_cast_is_background(scratch):
     check(np.abs(without - ao)[matte == 0].max() > 0.05, 'the ball still casts')
 
 
+@cases([('--holdout', 'A'), ('--no-cast', 'A'), ('--holdout', 'mask')], name='.'.join)
+def the_only_channel_of_a_layer_is_the_matte(scratch, option, component):
+    matte = (SCENE.z < 5).astype(np.float32)
+    scene_file(scratch, **{f'logo.{component}': matte})
+    results = []
+    for name in (f'logo.{component}', 'logo'):
+        said = scratch.render('in.exr', '-o', 'x.exr', *VIEW, option, name).stderr
+        check('matte' not in said, said)
+        results.append(read_ao(scratch.path('x.exr')))
+    check_close(*results, 0, 0, 'AO by its layer')
+
+
+@case
+def the_channel_of_a_coloured_matte_is_said(scratch):
+    scene_file(scratch, matte=layer('id', SCENE.z < 5))
+    for name, is_said in (('id', True), ('id.R', False)):
+        said = scratch.render('in.exr', '-o', 'x.exr', *VIEW, '--holdout', name).stderr
+        equal("--holdout 'id' is a layer of several channels: 'id.R' is taken" in said, is_said,
+              f'whether it is in {said}')
+
+
+@cases([('8 bits', 255 * (SCENE.z < 5), r'is above 1 at \d+ % of the image, up to 255'),
+        ('depth', np.where(SCENE.sky, 1e10, SCENE.z), 'is above 1 at .*: a depth'),
+        ('NaN', np.full_like(SCENE.z, np.nan), 'has no number anywhere'),
+        ('normals', -SCENE.normal[..., 2], 'is negative at .*: a component of normals')],
+       name=lambda row: row[0])
+def what_is_no_matte_is_said(scratch, _, values, warning):
+    scene_file(scratch, odd=values.astype(np.float32))
+    for option in ('--holdout', '--no-cast'):
+        said = scratch.render('in.exr', '-o', 'x.exr', *VIEW, option, 'odd').stderr
+        matches(f"warning: in.exr: {option} 'odd' {warning}", said, 'stderr')
+    matches(f"warning .*'odd' {warning}",
+            scratch.run('inspect', 'in.exr', *VIEW[:2], '--holdout', 'odd').stdout, 'inspect')
+
+
+@cases([(option, name) for option in ('--holdout', '--no-cast') for name in ('Z', 'N.Y')],
+       name=' '.join)
+def depth_and_normals_are_no_mattes(scratch, option, name):
+    scene_file(scratch)
+    what = 'the depth itself' if name == 'Z' else 'a component of the normals'
+    scratch.fails(CHANNELS, f"{option} '{name}' is {what}", 'in.exr', '-o', 'x.exr', option, name)
+
+
 # --- Cryptomatte ---
 
 def murmur3(name):

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "gbuffer.h"
 
-#include "cryptomatte.h"
 #include "gbuffer_internal.h"
 #include "placement.h"
 #include "text.h"
 
 #include <math.h>
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -163,47 +163,68 @@ static void compare_depths(const struct gbuffer *g, const struct gbuffer_options
     free(values);
 }
 
+/* Of 10 bits, say, the largest is far below the one that is taken for 1. */
+static void warn_about_bits(const struct gbuffer *g, double most, double full,
+                            struct report *report)
+{
+    const struct role *role = &g->roles.kind[ROLE_DEPTH];
+    const struct depth_range *r = &g->depth_range;
+    char remedy[96] = "";
+    double white = 1.0;
+    while (white < most)
+        white = 2.0 * white + 1.0;
+    const double end = r->zero + (r->one - r->zero) * full / white;
+    if (most * 4.0 > full + 1.0)
+        return;
+    if (r->is_given && end >= 0)
+        snprintf(remedy, sizeof remedy, ", or --depth-range %.6g,%.6g%s", fmin(r->zero, end),
+                 fmax(r->zero, end), r->one < r->zero ? ",inverted" : "");
+    report_warn(report, "few bits",
+                "%s: depth '%s' is whole numbers up to %.10g, and parts of %.10g are read: if "
+                "%.10g is 1, distances and AO are wrong; write it in 8, 16, 24 or 32 bits%s",
+                role->info->path, role->label, most, full, white, remedy);
+}
+
+static double largest_whole(const struct gbuffer *g)
+{
+    float most = 0;
+    for (size_t i = 0; i < gbuffer_texels(g); i++)
+        most = fmaxf(most, g->depth[i]);
+    return (double)most;
+}
+
 /* Whole numbers are units, millimetres say, or parts of the largest that fits into 8, 16, 24 or 32
  * bits. Of a depth buffer or a range that somebody names they are the latter, and become 0 to 1. */
 static bool settle_whole_numbers(struct gbuffer *g, const struct gbuffer_options *options,
                                  struct report *report, struct tool_error *err)
 {
-    static const float full[] = {255.0f, 65535.0f, 16777215.0f, 4294967295.0f};
     static const float far_off = 1048576.0f; /* a kilometre in millimetres */
     const struct role *role = &g->roles.kind[ROLE_DEPTH];
     const bool is_part =
         options->depth_type == DEPTH_DEVICE || options->depth_type == DEPTH_NORMALIZED;
-    float most = 0;
-    size_t seen = 0, far = 0, k = 0;
+    size_t seen = 0, far = 0;
     if (g->depth_type == DEPTH_POSITION || role->channels[0]->type != EXR_UINT)
         return true;
+    const double most = largest_whole(g), full = gbuffer_full_range(most);
     for (size_t i = 0; i < gbuffer_texels(g); i++) {
         const float d = g->depth[i];
-        most = fmaxf(most, d);
-        seen += d > 0 && d < full[3];
-        far += d > far_off && d < full[3];
+        seen += d > 0 && d < 4294967295.0f;
+        far += d > far_off && d < 4294967295.0f;
     }
-    while (most > full[k] && k < 3)
-        k++;
     for (size_t i = 0; is_part && i < gbuffer_texels(g); i++)
-        g->depth[i] /= full[k];
-    if (options->depth_type != DEPTH_AUTO)
+        g->depth[i] /= (float)full;
+    if (options->depth_type == DEPTH_NORMALIZED)
+        warn_about_bits(g, most, full, report);
+    if (options->depth_type != DEPTH_AUTO || far * 2 <= seen)
         return true;
-    if (far * 2 > seen) {
-        fail_hint(err, "--depth-type normalized --depth-range NEAR,FAR[,inverted], or device with "
-                       "--near and --far, take the largest of its bits for 1; planar if these are "
-                       "scene units");
-        return fail(err, EXIT_CHANNELS,
-                    "%s: depth '%s' is whole numbers up to %.6g: parts of a range or a depth "
-                    "buffer, not in scene units?",
-                    role->info->path, role->label, (double)most);
-    }
-    report_warn(report, "whole depth",
-                "%s: depth '%s' is whole numbers up to %.6g, taken for scene units (--depth-type "
-                "normalized --depth-range NEAR,FAR, or device with --near and --far, if they are "
-                "parts)",
-                role->info->path, role->label, (double)most);
-    return true;
+    fail_hint(err,
+              "--depth-type normalized --depth-range NEAR,FAR[,inverted], or device with --near "
+              "and --far, take %.10g for 1; planar if these are scene units",
+              full);
+    return fail(err, EXIT_CHANNELS,
+                "%s: depth '%s' is whole numbers up to %.6g: parts of a range or a depth "
+                "buffer, not in scene units?",
+                role->info->path, role->label, most);
 }
 
 /* Alpha of another part is only read if depth does not say by itself where there is nothing. */
@@ -280,83 +301,6 @@ static bool read_behind(struct gbuffer *g, enum role_kind kind, float **values,
     if (*values)
         *signs = gbuffer_look_at_signs(g, *values, kind != ROLE_THICKNESS && g->depth_is_negated);
     return *values != NULL;
-}
-
-/* How much of each texel named objects cover. */
-static float *read_objects(const struct exr_info *info, const struct gbuffer *g,
-                           const struct gbuffer_options *options, const char *names,
-                           struct report *report, struct tool_error *err)
-{
-    struct cryptomatte matte;
-    const size_t texels = gbuffer_texels(g);
-    const char *view = options->roles.view ? options->roles.view : "";
-    if (!cryptomatte_find(info, view, names, &matte, err))
-        return NULL;
-    float *covered = gbuffer_allocate(texels, 1, info->path, err), sum = 0.0f;
-    if (covered)
-        memset(covered, 0, texels * sizeof *covered);
-    for (size_t r = 0; covered && r < matte.rank_count; r++) {
-        const struct cryptomatte_rank *rank = &matte.ranks[r];
-        const struct role role = {
-            .info = info, .part = rank->part, .channels = {rank->id, rank->coverage}};
-        float *pairs = gbuffer_read_role(g, &role, 2, 0.0f, err);
-        for (size_t i = 0; pairs && i < texels; i++)
-            if (cryptomatte_has(&matte, pairs[i * 2]))
-                covered[i] += pairs[i * 2 + 1];
-        if (!pairs) {
-            free(covered);
-            covered = NULL;
-        }
-        free(pairs);
-    }
-    for (size_t i = 0; covered && i < texels; i++)
-        sum += covered[i];
-    if (covered && !(sum > 0))
-        report_warn(report, "objects", "%s: '%s%s' covers nothing", info->path, CRYPTOMATTE_PREFIX,
-                    names);
-    return covered;
-}
-
-/* A matte by its channel, or by names of objects; *mask is NULL if none was named. */
-static bool read_matte(const struct exr_info *info, const struct gbuffer *g,
-                       const struct gbuffer_options *options, enum role_kind kind, float **mask,
-                       struct report *report, struct tool_error *err)
-{
-    const struct role *role = &g->roles.kind[kind];
-    const size_t prefix = strlen(CRYPTOMATTE_PREFIX);
-    if (!role->label[0])
-        return true;
-    *mask = role->found
-                ? gbuffer_read_role(g, role, 1, 0.0f, err)
-                : read_objects(info, g, options, options->roles.name[kind] + prefix, report, err);
-    return *mask != NULL;
-}
-
-/* Objects that do not cast are not there. */
-static bool take_out(const struct exr_info *info, struct gbuffer *g,
-                     const struct gbuffer_options *options, struct report *report,
-                     struct tool_error *err)
-{
-    float *mask = NULL;
-    if (!read_matte(info, g, options, ROLE_NO_CAST, &mask, report, err))
-        return false;
-    for (size_t i = 0; mask && i < gbuffer_texels(g); i++)
-        if (mask[i] >= 0.5f)
-            g->depth[i] = g->background_depth;
-    free(mask);
-    return true;
-}
-
-/* Only numbers in [0,1] are let through. */
-static bool read_holdout(const struct exr_info *info, struct gbuffer *g,
-                         const struct gbuffer_options *options, struct report *report,
-                         struct tool_error *err)
-{
-    if (!read_matte(info, g, options, ROLE_HOLDOUT, &g->holdout, report, err))
-        return false;
-    for (size_t i = 0; g->holdout && i < gbuffer_texels(g); i++)
-        g->holdout[i] = g->holdout[i] > 0.0f ? fminf(g->holdout[i], 1.0f) : 0.0f;
-    return true;
 }
 
 static bool read_color(struct gbuffer *g, struct tool_error *err)
@@ -687,12 +631,12 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         gbuffer_warn_of_breaks(g, depth->info->path, report);
     }
     /* What is taken out is no fault of the file. */
-    if (!take_out(info, g, options, report, err))
+    if (!gbuffer_take_out(info, g, options, report, err))
         goto failed;
     free(g->alpha);
     g->alpha = NULL;
     if ((options->want_color && !read_light(g, err)) ||
-        !read_holdout(info, g, options, report, err))
+        !gbuffer_read_holdout(info, g, options, report, err))
         goto failed;
     return true;
 failed:

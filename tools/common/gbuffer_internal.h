@@ -194,6 +194,15 @@ bool gbuffer_check_behind(struct gbuffer *g, const struct layer_signs *thickness
                           const struct layer_signs *second, struct report *report,
                           struct tool_error *err);
 
+/* The largest of 8, 16, 24 or 32 bits, whichever holds it: what whole numbers are parts of. */
+double gbuffer_full_range(double most);
+/* Objects that do not cast are not there, in depth as prepared; and g->holdout. */
+bool gbuffer_take_out(const struct exr_info *info, struct gbuffer *g,
+                      const struct gbuffer_options *options, struct report *report,
+                      struct tool_error *err);
+bool gbuffer_read_holdout(const struct exr_info *info, struct gbuffer *g,
+                          const struct gbuffer_options *options, struct report *report,
+                          struct tool_error *err);
 /* Turns negative z round. */
 void gbuffer_turn_depth(struct gbuffer *g, const struct gbuffer_options *options,
                         struct report *report);

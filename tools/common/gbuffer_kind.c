@@ -135,6 +135,52 @@ static bool is_within_one(const struct value_facts *f)
     return f->low >= 0 && f->high <= 1.0 && !f->is_endless;
 }
 
+double gbuffer_full_range(double most)
+{
+    static const double full[] = {255.0, 65535.0, 16777215.0, 4294967295.0};
+    size_t k = 0;
+    while (most > full[k] && k < 3)
+        k++;
+    return full[k];
+}
+
+/* Whole numbers that are no distances by what they show, or that nothing shows to be and that end
+ * where some bits do: as values from 0 to 1 are. */
+static bool are_parts(const struct gbuffer *g, const struct value_facts *f, enum planes_say say)
+{
+    const bool is_linear = say == SAY_LINEAR && g->camera.type == CAMERA_PERSPECTIVE;
+    double bits = 255.0;
+    while (bits < f->high)
+        bits = 2.0 * bits + 1.0;
+    return g->roles.kind[ROLE_DEPTH].channels[0]->type == EXR_UINT && !is_constant(f) &&
+           (say == SAY_OFFSET || is_linear || (say == SAY_NOTHING && !(f->high < bits)));
+}
+
+static bool fail_parts(const struct gbuffer *g, const struct value_facts *f, const char *path,
+                       struct tool_error *err)
+{
+    fail_hint(err,
+              "--depth-type normalized --depth-range NEAR,FAR[,inverted], or device with --near "
+              "and --far, take %.10g for 1; planar, radial or inverse if these are scene units",
+              gbuffer_full_range(f->high));
+    return fail(err, EXIT_CHANNELS,
+                "%s: depth '%s' is whole numbers up to %.10g, and nothing shows distances: parts "
+                "of a range or a depth buffer, not in scene units?",
+                path, g->roles.kind[ROLE_DEPTH].label, f->high);
+}
+
+static void warn_about_whole(const struct gbuffer *g, const struct value_facts *f,
+                             struct report *report)
+{
+    const struct role *role = &g->roles.kind[ROLE_DEPTH];
+    if (role->channels[0]->type == EXR_UINT)
+        report_warn(report, "whole depth",
+                    "%s: depth '%s' is whole numbers up to %.10g, taken for scene units "
+                    "(--depth-type normalized --depth-range NEAR,FAR, or device with --near and "
+                    "--far, take %.10g for 1)",
+                    role->info->path, role->label, f->high, gbuffer_full_range(f->high));
+}
+
 /* White is where normalised depth is clamped; a far background is far behind all else. */
 static bool is_clamped(const struct value_facts *f)
 {
@@ -280,13 +326,18 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
     const struct role *role = &g->roles.kind[ROLE_DEPTH];
     g->background.limit = INFINITY;
     const bool is_auto = options->depth_type == DEPTH_AUTO && role->depth_type == DEPTH_AUTO;
-    if (g->depth_source == DEPTH_BY_POSITIONS || (g->depth_source == DEPTH_BY_NORMALS && !is_auto))
-        return true;
+    const bool is_by_normals = g->depth_source == DEPTH_BY_NORMALS && !is_auto;
     if (role->depth_type == DEPTH_POSITION) {
-        take(g, DEPTH_PLANAR, DEPTH_BY_POSITIONS);
+        if (g->depth_source != DEPTH_BY_POSITIONS && !is_by_normals)
+            take(g, DEPTH_PLANAR, DEPTH_BY_POSITIONS);
         return true;
     }
     const struct value_facts seen = look_at_values(g);
+    const bool is_found = g->depth_source == DEPTH_BY_POSITIONS || is_by_normals;
+    if (options->depth_type == DEPTH_AUTO && (is_found || !is_auto))
+        warn_about_whole(g, &seen, report);
+    if (is_found)
+        return true;
     if (options->depth_type != DEPTH_AUTO) {
         take(g, options->depth_type, DEPTH_BY_OPTION);
         return g->depth_type != DEPTH_NORMALIZED || !g->depth_range.is_given ||
@@ -296,11 +347,16 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
         take(g, role->depth_type, DEPTH_BY_NAME);
         return true;
     }
-    if (g->depth_source == DEPTH_BY_NORMALS)
+    if (g->depth_source == DEPTH_BY_NORMALS) {
+        warn_about_whole(g, &seen, report);
         return check_scale(g, info, &seen, report, err);
+    }
     if (!gbuffer_read_planes(g, &g->planes))
         return fail(err, EXIT_MEMORY, "%s: out of memory", info->path);
     const enum planes_say say = listen(g, &g->planes);
+    if (are_parts(g, &seen, say))
+        return fail_parts(g, &seen, info->path, err);
+    warn_about_whole(g, &seen, report);
     if (is_of_nuke(info, role)) {
         take_from_nuke(g, &seen, say, info->path, report);
         return true;

@@ -375,6 +375,32 @@ void role_search_named(struct role_search *s, enum role_kind kind, const char *n
         }
     }
 }
+void role_search_only(struct role_search *s, const char *name)
+{
+    s->count = 0;
+    for (size_t i = 0; i < s->info->part_count; i++) {
+        const struct exr_part *part = &s->info->parts[i];
+        const size_t length = part->name ? strlen(part->name) : 0;
+        const bool has_part =
+            length && strncmp(name, part->name, length) == 0 && name[length] == '/';
+        const char *rest = has_part ? name + length + 1 : name;
+        struct role_hit hit = {.part = i, .channel_count = 1};
+        size_t count = 0;
+        for (size_t c = 0; role_part_has_view(part, s->view) && c < part->channel_count; c++) {
+            struct role_channel channel;
+            if (!role_channel_read(part, part->channels[c].name, s->view, s->info->part_count > 1,
+                                   &channel) ||
+                !names_layer(s, i, &part->channels[c], &channel, rest))
+                continue;
+            hit.channels[0] = &part->channels[c];
+            count++;
+        }
+        if (count != 1)
+            continue;
+        snprintf(hit.layer, sizeof hit.layer, "%s", hit.channels[0]->name);
+        add_hit(s, &hit);
+    }
+}
 /* --- Labels --- */
 
 /* Whether another part of the view has a channel of the same name. */

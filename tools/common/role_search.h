@@ -78,6 +78,9 @@ void role_search_row(struct role_search *s, const struct role_row *row);
 void role_search_layer(struct role_search *s, enum role_kind kind, size_t part, const char *wanted);
 /* The hits are those of a channel, a layer, a part or part/one of these. */
 void role_search_named(struct role_search *s, enum role_kind kind, const char *name);
+/* The hits are those channels that are the only one of a layer or a part of that name, whatever
+ * they are called. */
+void role_search_only(struct role_search *s, const char *name);
 /* Adds channels of other views, by their whole name. */
 void role_search_in_full(struct role_search *s, const char *wanted);
 

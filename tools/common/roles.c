@@ -254,6 +254,8 @@ static bool resolve_named(struct role_search *s, enum role_kind kind, const char
     if (kind == ROLE_DEPTH && names_positions(s, name, role))
         return true;
     role_search_named(s, kind, name);
+    if (s->count == 0 && role_is_scalar(kind))
+        role_search_only(s, name);
     const bool in_view = s->count > 0;
     if (!in_view && role_is_scalar(kind))
         role_search_in_full(s, name);
