@@ -41,8 +41,8 @@ struct frame_pattern {
     bool is_printf; /* %04d: the sign is one of the digits, as in C */
 };
 
-/* The first token of a path that nothing else is likely to mean, as @ of x@2x.exr and %d of 100%done
- * may, or NULL. */
+/* The first token of a path that is no part of a word, as @ of x@2x.exr and %d of 100%done are, or
+ * NULL. */
 const char *frame_token_that_is_clear(const char *path, size_t *length);
 /* Errors: EXIT_USAGE for mixed (#@) and repeated tokens. */
 bool frame_pattern_parse(const char *path, struct frame_pattern *pattern, struct tool_error *err);

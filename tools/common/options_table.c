@@ -494,8 +494,8 @@ const struct option_row option_table[] = {
     {.name = "preview", .argument = "FILE",
      .help = "write an 8-bit PNG too: AO * 255 without gamma, or the composite in sRGB",
      .commands = RENDER, .apply = apply_text, .offset = AT(preview),
-     .more = "Its name ends in .png. The composite is clamped. Of several views each gets its name put before the "
-             "extension."},
+     .more = "Its name ends in .png. The composite is clamped. Of several views each gets its name "
+             "put before the extension."},
     {.name = "overwrite", .argument = "WHEN", .fallback = "never",
      .help = "never or always: what to do if an output exists",
      .commands = RENDER | INSPECT, .apply = apply_word, .offset = AT(overwrite),
@@ -645,8 +645,9 @@ const struct option_row option_table[] = {
     {.name = "write-camera", .argument = "FILE",
      .help = "inspect: write the camera that was found, as --camera reads it",
      .commands = INSPECT, .apply = apply_text, .offset = AT(write_camera),
-     .more = "Its name ends in .json. Of a sequence, that of the first frame that shows something, or "
-             "with a frame token that of each frame that does. It is an error if none was found."},
+     .more = "Its name ends in .json. Of a sequence, that of the first frame that shows "
+             "something, or with a frame token that of each frame that does. It is an error if "
+             "none was found."},
     {.name = "fov", .argument = "DEG[:h|v]",
      .help = "field of view over the display window, horizontal (h) or vertical",
      .commands = RENDER | INSPECT, .apply = apply_fov, .offset = AT(gbuffer.camera.fov_deg)},

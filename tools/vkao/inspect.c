@@ -230,8 +230,8 @@ static void hear_warning(void *data, const char *warning)
 }
 
 /* NULL if memory ran out, or of a frame that shows nothing and is to wait; whatever else is wrong
- * becomes the problem, whose exit code is kept in *code. cameras: where the camera of the view goes,
- * as a camera file has it. */
+ * becomes the problem, whose exit code is kept in *code. cameras: where the camera of the view
+ * goes, as a camera file has it. */
 static cJSON *describe_view(const struct options *options, const struct frame_source *source,
                             const struct view *view, cJSON *cameras, struct report *report,
                             int *code, struct tool_error *untold)
