@@ -271,7 +271,20 @@ static struct fit_solution refined(const struct fit_samples *s, const struct fit
     return t;
 }
 
-/* A lens shift has to win clearly at the same scale. What is neither won nor lost is doubt. */
+/* Where flat faces are few and point few ways, a wrong field of view may suit them as well as the
+ * right one with its shift. Round things tell the two apart, at a scale that is theirs. Of renders
+ * that are whole none gains as much. */
+static bool is_seen_in_all(const struct fit_samples *s, const struct fit_solution *with,
+                           const struct fit_solution *without)
+{
+    static const double least = 0.02;
+    const double sigma = fmax(with->sigma, least);
+    const struct fit_solution a = refined(s, with, sigma), b = refined(s, without, sigma);
+    return a.cost < 0.85 * b.cost && fit_paired_z(&a, &b) > 3;
+}
+
+/* A lens shift has to win clearly at the same scale. What is neither won nor lost is doubt: of most
+ * whole renders a shift, which is not there, gains less than 3 of 100. */
 static void try_shift(const struct fit_samples *s, const struct fit_solution *coarse, double sigma,
                       struct fit_solution *best)
 {
@@ -288,14 +301,32 @@ static void try_shift(const struct fit_samples *s, const struct fit_solution *co
     const double ratio = with.cost / fmax(without.cost, 1e-12);
     const double sigmas = fmax(fabs(p[FIT_CX]) / fmax(deviation[FIT_CX], 0.002),
                                fabs(p[FIT_CY]) / fmax(deviation[FIT_CY], 0.002));
-    if (sigmas <= 5 || fmax(fabs(p[FIT_CX]), fabs(p[FIT_CY])) <= 0.01 || ratio >= 0.95 ||
-        (z <= 3 && ratio >= 0.6) || without.cost - with.cost <= 0.01)
+    if (sigmas <= 5 || fmax(fabs(p[FIT_CX]), fabs(p[FIT_CY])) <= 0.01 ||
+        without.cost - with.cost <= 0.01)
         return;
-    if (ratio < 0.6 && fmax(deviation[FIT_CX], deviation[FIT_CY]) < 0.03) {
+    const bool is_clear =
+        ratio < 0.6 || (ratio < 0.9 && z > 3 && is_seen_in_all(s, &with, &without));
+    if (is_clear && fmax(deviation[FIT_CX], deviation[FIT_CY]) < 0.03) {
         *best = t;
         best->shifted = true;
-    } else {
+    } else if (ratio < 0.6 || (ratio < 0.97 && z > 1.5)) {
         best->doubt = fabs(p[FIT_LN_K] - without.p[FIT_LN_K]);
+    }
+}
+
+/* Far off the axis another model, or another field of view, may seem best as long as there is no
+ * shift. */
+static void try_shift_of_rivals(const struct fit_samples *s, const struct found *f, double sigma,
+                                struct fit_solution *best)
+{
+    enum { MOST = 4 };
+    for (size_t i = 1; i < f->count && i < MOST && !best->shifted; i++) {
+        if (fit_model_is_ortho(f->list[i].model))
+            continue;
+        struct fit_solution t = sharpened(s, &f->list[i]);
+        try_shift(s, &f->list[i], sigma, &t);
+        if (t.shifted && is_seen_in_all(s, &t, best))
+            *best = t;
     }
 }
 
@@ -427,6 +458,18 @@ static bool difference(const struct fit_samples *s, const struct fit_solution *a
     return true;
 }
 
+static void tell_rival(const struct fit_solution *rival, struct fit *fit)
+{
+    const double half_width = exp(rival->p[FIT_LN_K]);
+    const char *name = fit_model_name(rival->model);
+    if (fit_model_is_ortho(rival->model))
+        snprintf(fit->why, sizeof fit->why, "%s depth of a view %.4g wide fits as well", name,
+                 2.0 * half_width);
+    else
+        snprintf(fit->why, sizeof fit->why, "%s depth of %.4g degrees fits as well", name,
+                 2.0 * atan(half_width) * 180.0 / PI);
+}
+
 /* Another solution that fits as well and is not the same geometry; fit->why says which. */
 static bool find_rival(const struct fit_samples *s, const struct found *f, double sigma,
                        const struct fit_solution *best, struct fit *fit)
@@ -448,8 +491,7 @@ static bool find_rival(const struct fit_samples *s, const struct found *f, doubl
         if (!difference(s, best, &rival, &apart))
             return false;
         if (apart > 0.03 && !fit->why[0])
-            snprintf(fit->why, sizeof fit->why, "%s depth of %.4g degrees fits as well",
-                     fit_model_name(rival.model), 2.0 * atan(exp(rival.p[FIT_LN_K])) * 180.0 / PI);
+            tell_rival(&rival, fit);
     }
     return true;
 }
@@ -497,6 +539,12 @@ static double unseen_change(const struct fit_samples *s, const struct fit_soluti
     return sharpest_sigma / fmax(fit_sensitivity(s, at), 1e-9);
 }
 
+static void tell_uncertain(struct fit *fit)
+{
+    snprintf(fit->why, sizeof fit->why, "the field of view is uncertain by %.2g %%",
+             fit->bound * 100.0);
+}
+
 static bool judge(const struct fit_samples *s, const struct found *f, double sigma,
                   const struct fit_solution *best, struct fit *fit)
 {
@@ -517,8 +565,7 @@ static bool judge(const struct fit_samples *s, const struct found *f, double sig
     else if (fit->bound > 1.0)
         snprintf(fit->why, sizeof fit->why, "the normals are the same in any field of view");
     else if (fit->bound > sure_bound)
-        snprintf(fit->why, sizeof fit->why, "the field of view is uncertain by %.2g %%",
-                 fit->bound * 100.0);
+        tell_uncertain(fit);
     else if (best->shifted && fmax(best->deviation[FIT_CX], best->deviation[FIT_CY]) > 0.02)
         snprintf(fit->why, sizeof fit->why, "the lens shift is uncertain");
     if (!fit->why[0] && !find_rival(s, f, sigma, best, fit))
@@ -613,6 +660,8 @@ static bool attempt(const struct fit_input *input, unsigned blur, struct attempt
                 a->best = sharpened(&s, &coarse);
                 if (!fit_model_is_ortho(coarse.model))
                     try_shift(&s, &coarse, sigma, &a->best);
+                if (1.0 - fit_cost(&s, &a->best, FIT_HALF_AGREEMENT) < all_agree)
+                    try_shift_of_rivals(&s, &f, sigma, &a->best);
             }
             settle_offset(&s, input, &a->best);
             settle_sign(&s, &a->best);
@@ -630,17 +679,38 @@ static bool attempt(const struct fit_input *input, unsigned blur, struct attempt
     return ok;
 }
 
+/* What may lack a lens shift has nothing to say against one. */
 static bool contradict(const struct attempt *a, const struct attempt *b)
 {
-    const double spread = b->best.deviation[FIT_LN_K];
+    const double spread = b->best.deviation[FIT_LN_K] + (a->best.shifted ? b->best.doubt : 0);
     return spread < 0.03 && b->near_share > 0.25 && a->best.model == b->best.model &&
            fabs(a->best.p[FIT_LN_K] - b->best.p[FIT_LN_K]) >
                3.0 * (spread + a->best.deviation[FIT_LN_K]) + 0.02;
 }
 
+/* Where one attempt leaves open whether there is a lens shift, it is open for all that have none
+ * and found the same. */
+static void take_doubts(const struct attempt *best, const struct attempt attempts[], size_t count,
+                        struct fit *fit)
+{
+    static const double same = 0.05;
+    for (size_t i = 0; i < count && !best->best.shifted; i++) {
+        const struct fit_solution *s = &attempts[i].best;
+        if (s->model == best->best.model && !s->shifted &&
+            fabs(s->p[FIT_LN_K] - best->best.p[FIT_LN_K]) < same)
+            fit->bound = fmax(fit->bound, s->doubt);
+    }
+    if (!fit->is_sure || fit->bound <= sure_bound)
+        return;
+    fit->is_sure = false;
+    fit->is_usable = is_likely(fit);
+    tell_uncertain(fit);
+}
+
+/* Patches blur what tells a lens shift that single normals have shown. */
 static bool is_settled(const struct attempt *a)
 {
-    return a->fit.is_sure && a->fit.bound < 0.008;
+    return a->fit.is_sure && (a->fit.bound < 0.008 || a->best.shifted);
 }
 
 /* Normals that are those of the depth in any field of view: patches mix those of faces, and would
@@ -682,9 +752,12 @@ bool camera_fit(const struct fit_input *input, struct fit *fit, struct tool_erro
     fit->pixel_aspect = attempts[0].fit.pixel_aspect;
     fit->squeezed = attempts[0].fit.squeezed;
     fit->other_aspect = best->best.shifted ? attempts[0].fit.other_aspect : 0;
-    fit->tone = attempts[0].fit.tone;
+    /* A curve may stand in for a lens shift that patches alone have shown. */
+    const bool is_shift = best->best.shifted && best->fit.agreement >= attempts[0].fit.toned;
+    fit->tone = is_shift ? 0 : attempts[0].fit.tone;
     fit->curve = attempts[0].fit.curve;
     fit->toned = attempts[0].fit.toned;
+    take_doubts(best, attempts, count, fit);
     for (size_t i = 0; i < count && fit->is_sure; i++)
         if (contradict(best, &attempts[i])) {
             fit->is_sure = false;
