@@ -80,5 +80,13 @@ def what_a_shift_may_explain_is_not_sure(scratch, window):
           f'{view["camera"]["fov_x_deg"]} degrees, want {fov}: {said}')
 
 
+@cases([('m3_sponza_a', (7, 79, 388, 132))])
+def ends_of_things_are_no_bucket(scratch, name, window):
+    fov = write_crop(scratch, load(name), window)[0]
+    for options in (), ('--fov', fov):
+        said = str(inspect(scratch, *options)['warnings'])
+        check('a bucket of' not in said, said)
+
+
 if __name__ == '__main__':
     main()

@@ -123,6 +123,14 @@ struct bucket {
     size_t size, x, y;
 };
 
+/* What is of another frame seldom goes on over a whole side: the ends of things that lie in a line
+ * with one side of a bucket are no bucket. */
+static bool goes_on_over(const struct side *before, const struct side *after, size_t few)
+{
+    const size_t alike = after->alike - before->alike, broken = after->broken - before->broken;
+    return alike >= few && broken * 4 < alike;
+}
+
 static bool is_foreign(const struct gbuffer *g, const struct bucket *b)
 {
     const size_t right = b->x + b->size, below = b->y + b->size;
@@ -133,8 +141,12 @@ static bool is_foreign(const struct gbuffer *g, const struct bucket *b)
                                       {false, b->x, b->y, y_end},
                                       {false, right, b->y, y_end}};
     struct side side = {0};
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 4; k++) {
+        const struct side before = side;
         look_along(g, &borders[k], &side);
+        if (goes_on_over(&before, &side, b->size / 2))
+            return false;
+    }
     return is_seam(&side, b->size);
 }
 
