@@ -88,5 +88,18 @@ def ends_of_things_are_no_bucket(scratch, name, window):
         check('a bucket of' not in said, said)
 
 
+@cases([('t2_terrain_r10',)])
+def rough_ground_with_normals_of_bytes_is_not_noisy(scratch, name):
+    depth, normal, _, camera = load(name)
+    write_exr(scratch.path('in.exr'),
+              {'Z': depth.astype(np.float32),
+               **{f'N.{c}': (np.round((normal[..., i] * 0.5 + 0.5) * 255) / 255).astype(np.float16)
+                  for i, c in enumerate('XYZ')}})
+    with open(scratch.path('c.json'), 'w', encoding='utf-8') as file:
+        json.dump({key: camera[key] for key in ('type', 'fov_x_deg', 'world_to_view')}, file)
+    said = str(inspect(scratch, '--camera', 'c.json')['warnings'])
+    equal('depth is noisy' in said, False, said)
+
+
 if __name__ == '__main__':
     main()

@@ -292,10 +292,13 @@ static void warn_about_depth(const struct gbuffer *g, const char *path, struct r
 
 /* A quarter of a texel's width is more than roundness makes, and less than AO shows. */
 static const double most_noise = 0.25;
+/* Of rough ground beside normals in steps of half a degree. */
+static const double most_noise_of_bytes = 0.5;
 
 static void warn_about_grain(const struct gbuffer *g, const char *path, struct report *report)
 {
     const unsigned width = g->ridge_width;
+    const bool is_coarse = g->noise > most_noise && gbuffer_are_normals_of_bytes(g);
     if (g->block_size > 1)
         report_warn(report, "enlarged depth",
                     "%s: depth is enlarged %u times without interpolation: AO shows its blocks; "
@@ -306,7 +309,7 @@ static void warn_about_grain(const struct gbuffer *g, const char *path, struct r
                     "%s: depth is that of the nearest or the farthest of %u x %u pixels: nothing "
                     "is narrower than that; AO is wrong at borders; render it unfiltered",
                     path, width, width);
-    else if (g->noise > most_noise)
+    else if (g->noise > (is_coarse ? most_noise_of_bytes : most_noise))
         report_warn(report, "noisy depth",
                     "%s: depth is noisy: where normals say that it is flat it bends by %.2g widths "
                     "of a texel; AO shows that; take one sample, in the centre of the pixel",

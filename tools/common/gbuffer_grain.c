@@ -266,6 +266,24 @@ static bool is_flat(const struct gbuffer *g, const size_t at[5])
     return true;
 }
 
+bool gbuffer_are_normals_of_bytes(const struct gbuffer *g)
+{
+    /* Halves near 1, times 255, are this far from whole numbers, which one of seven is anyway. */
+    enum { MOST = 1 << 14, FEW = 200 };
+    static const double steps = 127.5, tolerance = 0.07;
+    const size_t stride = gbuffer_texels(g) / MOST + 1;
+    size_t count = 0, whole = 0;
+    for (size_t i = 0; i < gbuffer_texels(g); i += stride)
+        for (size_t c = 0; c < 3; c++) {
+            const double times = ((double)g->normals[i * 4 + c] + 1.0) * steps;
+            if (!(fabs((double)g->normals[i * 4 + c]) > 0))
+                continue;
+            count++;
+            whole += fabs(times - round(times)) < tolerance;
+        }
+    return count >= FEW && whole * 10 > count * 9;
+}
+
 /* What is linear in the image on a plane bends by so much, in widths of a texel. */
 static double bend_at(const struct gbuffer *g, const size_t at[5])
 {

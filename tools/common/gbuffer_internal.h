@@ -203,6 +203,10 @@ bool gbuffer_take_out(const struct exr_info *info, struct gbuffer *g,
 bool gbuffer_read_holdout(const struct exr_info *info, struct gbuffer *g,
                           const struct gbuffer_options *options, struct report *report,
                           struct tool_error *err);
+
+/* Decoded normals have the 256 steps of a picture, which make round things flat. */
+bool gbuffer_are_normals_of_bytes(const struct gbuffer *g);
+
 /* Turns negative z round. */
 void gbuffer_turn_depth(struct gbuffer *g, const struct gbuffer_options *options,
                         struct report *report);
