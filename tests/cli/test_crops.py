@@ -101,5 +101,15 @@ def rough_ground_with_normals_of_bytes_is_not_noisy(scratch, name):
     equal('depth is noisy' in said, False, said)
 
 
+@cases([('b5_suzannes_a', 55)])
+def wrong_field_of_view_is_no_near_plane(scratch, name, fov):
+    depth, normal, _, camera = load(name)
+    write_crop(scratch, (depth, normal, None, camera), (0, 0, *reversed(depth.shape)))
+    with open(scratch.path('c.json'), 'w', encoding='utf-8') as file:
+        json.dump({'fov_x_deg': fov, 'world_to_view': camera['world_to_view']}, file)
+    said = str(inspect(scratch, '--camera', 'c.json')['warnings'])
+    check('but depth and normals' in said and 'near plane' not in said, said)
+
+
 if __name__ == '__main__':
     main()

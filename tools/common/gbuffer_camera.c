@@ -435,9 +435,10 @@ static enum told_doubt choose_cause(const struct camera *c, const struct fit *to
     return is_view ? DOUBT_CAMERA : DOUBT_NOTHING;
 }
 
-/* Says so where doubts begin. */
+/* Says so where doubts begin; *doubted is what of. */
 static bool doubt(struct gbuffer *g, const struct gbuffer_options *options, bool is_exact,
-                  struct fit *told, const char *path, struct report *report, struct tool_error *err)
+                  struct fit *told, enum told_doubt *doubted, const char *path,
+                  struct report *report, struct tool_error *err)
 {
     struct frame_memory *memory = options->memory;
     const enum told_doubt before = memory ? memory->doubt : DOUBT_NOTHING;
@@ -466,6 +467,7 @@ static bool doubt(struct gbuffer *g, const struct gbuffer_options *options, bool
         tell_doubt(g, &alike, &seen, path, report);
     if (now == DOUBT_TYPE && now != before)
         gbuffer_tell_type(g, options, told, &other, path, report);
+    *doubted = now;
     g->is_undoubted = now == DOUBT_NOTHING && !is_exact;
     if (memory) {
         memory->told = g->camera;
@@ -485,8 +487,9 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
     const bool is_exact = strcmp(g->camera.source, "positions") == 0;
     const bool is_new = told.half_width > 0 && !is_exact &&
                         !(options->memory && is_same_view(&options->memory->told, &g->camera));
+    enum told_doubt doubted = options->memory ? options->memory->doubt : DOUBT_NOTHING;
     if (!was_asked(options->memory, &g->camera, &told) &&
-        !doubt(g, options, is_exact, &told, path, report, err))
+        !doubt(g, options, is_exact, &told, &doubted, path, report, err))
         return false;
     const bool lacks_near = options->depth_type == DEPTH_AUTO &&
                             depth->depth_type == DEPTH_RADIAL_NEAR && !(g->camera.near_plane > 0);
@@ -506,6 +509,9 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
         take_rotation(g, &told);
         see_rotation(g, &told);
         g->depth_range.is_radial = told.model == FIT_RADIAL_NORMALIZED;
+    }
+    /* Through a field of view that is wrong depth seems to begin at a near plane. */
+    if (told.is_sure && doubted != DOUBT_CAMERA) {
         tell_offset(g, &told, path, report);
         tell_near(g, &told, path, report);
     }
