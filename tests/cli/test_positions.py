@@ -146,6 +146,20 @@ def positions_contradict_the_header(scratch):
     equal(inspect(scratch, '--fov', 50)['camera']['source'], '--fov', 'source with --fov')
 
 
+@cases([('none', None, True), ('the same', NEAR, True), ('another', 2 * NEAR, False)])
+def depth_beside_positions_may_begin_at_a_near_plane(scratch, _, told, is_known):
+    scene = Scene()
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth('radial-near'), **positions(scene)})
+    options = ()
+    if told:
+        options = '--camera', write_camera(scratch.path('c.json'), camera(near=told))
+    view = inspect(scratch, *options)
+    said = str(view['warnings'])
+    equal('is not that of the positions' in said, not is_known, f'what is in {said}')
+    if is_known:
+        equal(view['conventions']['depth_type'], 'radial-near', 'type of depth')
+
+
 @case
 def positions_of_a_plane_need_a_camera(scratch):
     scene = Scene()

@@ -121,8 +121,8 @@ struct comparison {
     double lack;  /* of it, scene units */
 };
 
-/* False if memory runs out. */
-static bool hold_against_positions(const struct gbuffer *g, enum depth_type type,
+/* near: added to what depth says. False if memory runs out. */
+static bool hold_against_positions(const struct gbuffer *g, enum depth_type type, double near,
                                    const struct position_camera *camera, const float *positions,
                                    struct comparison *c)
 {
@@ -130,7 +130,8 @@ static bool hold_against_positions(const struct gbuffer *g, enum depth_type type
     double *logs = malloc(room * sizeof *logs), *lacks = malloc(room * sizeof *lacks);
     size_t count = 0;
     for (size_t i = 0; logs && lacks && i < gbuffer_texels(g); i += step) {
-        const double z = position_depth(camera, positions + i * 4), own = planar_by(g, type, i);
+        const double z = position_depth(camera, positions + i * 4);
+        const double own = planar_by(g, type, i) + near;
         if (!positions_are_there(positions + i * 4) || !(z > 0 && gbuffer_is_measurable(own)))
             continue;
         logs[count] = log(own / z);
@@ -162,7 +163,7 @@ static bool settle_near_plane(struct gbuffer *g, const struct position_camera *c
     struct comparison c;
     if (g->camera.near_plane > 0)
         return true;
-    if (!hold_against_positions(g, DEPTH_RADIAL, camera, positions, &c))
+    if (!hold_against_positions(g, DEPTH_RADIAL, 0, camera, positions, &c))
         return fail_memory(err);
     if (isfinite(c.apart)) {
         g->camera.near_plane = c.lack > 0 ? c.lack : 0;
@@ -196,6 +197,30 @@ static void warn_about_unit(const struct gbuffer *g, double ratio, const char *p
                     g->roles.kind[ROLE_POSITION].label, g->roles.kind[ROLE_POSITION].label);
 }
 
+/* Radial from a near plane, where that is not to be seen in a name: at the distance that the camera
+ * tells, or that positions show. Halves leave a thousandth. */
+static bool find_near_plane(struct gbuffer *g, const struct position_camera *camera,
+                            const float *positions, bool *is_found, struct tool_error *err)
+{
+    static const double exact = 0.002;
+    struct comparison c;
+    *is_found = false;
+    if (!hold_against_positions(g, DEPTH_RADIAL, 0, camera, positions, &c))
+        return fail_memory(err);
+    const double near = g->camera.near_plane > 0 ? g->camera.near_plane : c.lack;
+    if (!isfinite(c.apart) || !(near > 0))
+        return true;
+    if (!hold_against_positions(g, DEPTH_RADIAL, near, camera, positions, &c))
+        return fail_memory(err);
+    *is_found = c.apart < exact && fabs(c.unit) < exact;
+    if (*is_found) {
+        g->camera.near_plane = near;
+        g->depth_type = DEPTH_RADIAL_NEAR;
+        g->depth_source = DEPTH_BY_POSITIONS;
+    }
+    return true;
+}
+
 /* What the depth beside the positions is, where nobody says so. What they do not explain, they
  * replace. */
 static bool settle_depth_type(struct gbuffer *g, const struct position_camera *camera,
@@ -207,7 +232,7 @@ static bool settle_depth_type(struct gbuffer *g, const struct position_camera *c
     struct comparison best = {.apart = HUGE_VAL}, c;
     enum depth_type type = DEPTH_PLANAR;
     for (size_t i = 0; i < sizeof types / sizeof *types; i++) {
-        if (!hold_against_positions(g, types[i], camera, positions, &c))
+        if (!hold_against_positions(g, types[i], 0, camera, positions, &c))
             return fail_memory(err);
         if (c.apart + 0.1 * fabs(c.unit) < best.apart + 0.1 * fabs(best.unit)) {
             best = c;
@@ -221,6 +246,11 @@ static bool settle_depth_type(struct gbuffer *g, const struct position_camera *c
         warn_about_unit(g, best.unit, path, report);
         return true;
     }
+    bool is_near;
+    if (!find_near_plane(g, camera, positions, &is_near, err))
+        return false;
+    if (is_near)
+        return true;
     report_warn(report, "depth beside positions",
                 "%s: depth '%s' is not that of the positions '%s', neither planar nor radial nor "
                 "1/z: depth is taken from them (--depth '%s' takes it all the same)",
