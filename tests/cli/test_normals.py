@@ -164,6 +164,18 @@ def mirrored_worlds_are_found(scratch, _, flip, is_said):
     equal('face it once their x is turned round: mirrored' in said, is_said, f'what is in {said}')
 
 
+@case
+def normals_inside_out_are_turned(scratch):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene)
+    outside = scene.normals(space='world')
+    channels = {'Z': scene.depth(), **{name: -plane for name, plane in outside.items()}}
+    ao, said = run(scratch, channels, '--camera', write_camera(scratch.path('c.json')))
+    check_same(ao, wanted, 'inside out')
+    matches("the normals 'N' face away from the camera, 100 % of them, .*they are turned round",
+            said, 'stderr')
+
+
 @cases([('40', 40), ('8', 8)])
 def background_with_normals_is_doubted(scratch, _, value):
     # Colours of normals are (.5, .5, 1) where there is nothing, which faces the camera.

@@ -447,6 +447,25 @@ static bool ask_mirrors(struct gbuffer *g, const struct normal_pairs *pairs, con
     return true;
 }
 
+/* All of them away from the eye, and along those of depth: inside out, whatever made them so. */
+static bool ask_whether_inside_out(struct gbuffer *g, const struct normal_pairs *pairs,
+                                   const char *path, struct report *report)
+{
+    static const double least_away = 0.99, half = 0.5;
+    struct facing facing;
+    if (!measure_facing(g, g->view.normal_to_view, &facing))
+        return false;
+    if (1.0 - facing.share < least_away ||
+        gbuffer_agreement(pairs, g->view.normal_to_view).share < half)
+        return true;
+    turn_round(g->view.normal_to_view);
+    report_warn(report, "mirrored normals",
+                "%s: the normals '%s' face away from the camera, %.0f %% of them, and lie along "
+                "those of the depth: they are turned round",
+                path, g->roles.kind[ROLE_NORMAL].label, (1.0 - facing.share) * 100.0);
+    return true;
+}
+
 /* --- The choice --- */
 
 /* By name, camera and looks; AUTO: none of them tells. */
@@ -572,8 +591,9 @@ static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const cha
     ask_depth(g, ways, &pairs, wanted, path, report);
     const size_t count = pairs.count;
     const bool alike = are_alike(&pairs);
-    const bool ok = count < FEW_PAIRS || g->normal_space == NORMAL_SPACE_AUTO ||
-                    ask_mirrors(g, &pairs, path, report);
+    const bool ok =
+        count < FEW_PAIRS || g->normal_space == NORMAL_SPACE_AUTO ||
+        (ask_whether_inside_out(g, &pairs, path, report) && ask_mirrors(g, &pairs, path, report));
     gbuffer_free_pairs(&pairs);
     if (!ok)
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
