@@ -461,7 +461,7 @@ static bool ask_whether_inside_out(struct gbuffer *g, const struct normal_pairs 
     turn_round(g->view.normal_to_view);
     report_warn(report, "mirrored normals",
                 "%s: the normals '%s' face away from the camera, %.0f %% of them, and lie along "
-                "those of the depth: they are turned round",
+                "those of the depth: they point inwards and are turned round",
                 path, g->roles.kind[ROLE_NORMAL].label, (1.0 - facing.share) * 100.0);
     return true;
 }
@@ -560,13 +560,7 @@ static bool check_normals(struct gbuffer *g, enum normal_space wanted, size_t pa
     }
     if (!measure_facing(g, g->view.normal_to_view, &facing))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
-    if (facing.share < 0.02)
-        report_warn(
-            report, "facing normals",
-            "%s: %.0f %% of the normals '%s' face away from the camera: they point inwards; "
-            "each is turned towards it, as if they were written with the other sign",
-            path, (1.0 - facing.share) * 100.0, label);
-    else if (facing.share < 0.6)
+    if (facing.share < 0.6)
         report_warn(
             report, "facing normals",
             "%s: %.0f %% of the normals face away from the camera: is --normal-space or the "
