@@ -87,8 +87,9 @@ ivec4 free_behind(uvec4 bits, int most)
 }
 
 /* Shares of a step that the surface goes on for to both sides, at most so many steps to each. at:
- * of the texels, along the line; they lie in one word. own: 1 if a bit has several texels. */
-ivec4 run_of(Line line, ivec4 at, int most, int own)
+ * of the texels, along the line; they lie in one word. own: 1 if a bit has several texels, which
+ * it has in rows or columns if is_coarse. */
+ivec4 run_of(Line line, ivec4 at, int most, int own, bool is_coarse)
 {
     uvec4 k = uvec4(at & 31);
     uvec4 farther = bits_ahead(line.here.farther, line.after.farther, k),
@@ -108,15 +109,35 @@ ivec4 run_of(Line line, ivec4 at, int most, int own)
     shares = mix(shares, mix(shares, hidden, lessThan(behind, ivec4(most))), open_behind);
     /* What is hidden does not count as going on for being wide alone. */
     shares = min(shares, max(seen, 2 * VKAO_VBAO_WIDTH_SHARES * most - 1));
-    if (own > 0) {
+    if (is_coarse) {
         /* Some of these texels lie before the break that their bit has, some behind it. Which is
          * not known: all get the narrower of both sides, and none is left between two breaks. */
         ivec4 beyond = min(free_ahead(lowest(breaks >> 1u), most), behind);
         bvec4 has_both = notEqual(first & farther & nearer, uvec4(0u));
         shares = mix(shares, mix(VKAO_VBAO_WIDTH_SHARES * beyond, ivec4(0), has_both),
-                     equal(ahead, ivec4(0)));
+                     lessThan(ahead, ivec4(own)));
     }
     return shares;
+}
+
+/* Of so many rows, which share the words of their columns. */
+void widths(Reach reach, ivec2 first, ivec2 texel, ivec2 size, int count, bool is_coarse)
+{
+    ivec2 words = ((size - 1) >> (5 + reach.shift)) + 1, own = min(reach.shift, ivec2(1));
+    ivec2 word = texel >> (5 + reach.shift);
+    ivec4 x = (texel.x + ivec4(0, 1, 2, 3)) >> reach.shift.x;
+    Line column = Line(breaks_of_columns(texel.x, word.y - 1, words.y),
+                       breaks_of_columns(texel.x, word.y, words.y),
+                       breaks_of_columns(texel.x, word.y + 1, words.y));
+    for (int i = 0; i < count; ++i) {
+        int y = texel.y + i, at = (z_row(first.y + y) + first.x + texel.x) >> 2;
+        vec4 z = imageLoad(view_z4, at);
+        Line row = Line(breaks_of_row(y, word.x - 1, words.x), breaks_of_row(y, word.x, words.x),
+                        breaks_of_row(y, word.x + 1, words.x));
+        ivec4 along_x = run_of(row, x, reach.steps.x, own.x, is_coarse),
+              along_y = run_of(column, ivec4(y >> reach.shift.y), reach.steps.y, own.y, is_coarse);
+        view_z[at] = with_thickness(z, along_x, along_y, reach);
+    }
 }
 
 void main()
@@ -128,20 +149,9 @@ void main()
     if (any(greaterThanEqual(texel, size)))
         return;
     Reach reach = width_reach();
-    ivec2 words = ((size - 1) >> (5 + reach.shift)) + 1, own = min(reach.shift, ivec2(1));
-    ivec2 word = texel >> (5 + reach.shift);
-    ivec4 x = (texel.x + ivec4(0, 1, 2, 3)) >> reach.shift.x;
-    Line column = Line(breaks_of_columns(texel.x, word.y - 1, words.y),
-                       breaks_of_columns(texel.x, word.y, words.y),
-                       breaks_of_columns(texel.x, word.y + 1, words.y));
     int count = min(VKAO_WIDTH_HEIGHT, size.y - texel.y);
-    for (int i = 0; i < count; ++i) {
-        int y = texel.y + i, at = (z_row(first.y + y) + first.x + texel.x) >> 2;
-        vec4 z = imageLoad(view_z4, at);
-        Line row = Line(breaks_of_row(y, word.x - 1, words.x), breaks_of_row(y, word.x, words.x),
-                        breaks_of_row(y, word.x + 1, words.x));
-        ivec4 along_x = run_of(row, x, reach.steps.x, own.x),
-              along_y = run_of(column, ivec4(y >> reach.shift.y), reach.steps.y, own.y);
-        view_z[at] = with_thickness(z, along_x, along_y, reach);
-    }
+    /* A driver in software runs both sides of a branch, but a loop without turns only once. */
+    bool is_coarse = any(greaterThan(reach.shift, ivec2(0)));
+    widths(reach, first, texel, size, is_coarse ? 0 : count, false);
+    widths(reach, first, texel, size, is_coarse ? count : 0, true);
 }
