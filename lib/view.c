@@ -147,29 +147,11 @@ static vkao_result resolve_rect(const struct vkao_logger *log, const char *name,
     return VKAO_SUCCESS;
 }
 
-/* None of it may be valid texels only by mistake. */
-static vkao_result check_viewport(const struct vkao_logger *log, const VkRect2D *viewport,
-                                  struct vkao_rect valid)
-{
-    const int64_t x0 = viewport->offset.x, y0 = viewport->offset.y;
-    if (is_none(*viewport) || (x0 < (int64_t)valid.x1 && y0 < (int64_t)valid.y1 &&
-                               x0 + viewport->extent.width > (int64_t)valid.x0 &&
-                               y0 + viewport->extent.height > (int64_t)valid.y0))
-        return VKAO_SUCCESS;
-    return vkao_refuse(
-        log, VKAO_ERROR_INVALID_ARGUMENT,
-        "view.viewport is %ux%u at (%d,%d), want one that has any of (%u,%u)..(%u,%u)",
-        viewport->extent.width, viewport->extent.height, viewport->offset.x, viewport->offset.y,
-        valid.x0, valid.y0, valid.x1, valid.y1);
-}
-
 static vkao_result resolve_rects(const struct vkao_logger *log, const vkao_view *view,
                                  VkExtent2D extent, struct vkao_rect *valid, struct vkao_rect *rect)
 {
     struct vkao_rect image = {0, 0, extent.width, extent.height};
     vkao_result result = resolve_rect(log, "valid", view->valid, image, valid);
-    if (result == VKAO_SUCCESS)
-        result = check_viewport(log, &view->viewport, *valid);
     return result == VKAO_SUCCESS ? resolve_rect(log, "rect", view->rect, *valid, rect) : result;
 }
 

@@ -534,10 +534,9 @@ typedef struct vkao_view {
     /* Texels that hold depth and normals; nothing outside is read. All 0 = the whole image. For
      * dynamic resolution set this alone: viewport and rect follow. */
     VkRect2D valid;
-    /* Texels that NDC [-1,1] spans; may reach beyond the image, and has some of valid. All 0 =
-     * valid. Set it when the
-     * projection belongs to another rectangle than valid: overscan, a cropped data window, one view
-     * of an atlas. */
+    /* Texels that NDC [-1,1] spans; may reach beyond the image, or lie beside it. All 0 = valid.
+     * Set it when the projection belongs to another rectangle than valid: overscan, a cropped data
+     * window, one view of an atlas. */
     VkRect2D viewport;
     /* Texels to write, inside valid. All 0 = valid. Use it to split work; the parts add up to the
      * whole. */
