@@ -334,6 +334,7 @@ vkao_result vkao_frame_create(const vkao_effect *effect, const vkao_frame_info *
     vkao_result result = describe(effect, caller_info, true, &info, &own, &described);
     if (result != VKAO_SUCCESS)
         return result;
+    vkao_slots_warn(described.program, &described.images);
     vkao_frame *frame = vkao_calloc(ctx->allocator, sizeof *frame);
     if (!frame)
         return vkao_refuse(&ctx->log, VKAO_ERROR_OUT_OF_HOST_MEMORY,

@@ -151,9 +151,7 @@ static vkao_result check_slot(const struct vkao_program *program, uint32_t i,
     return VKAO_SUCCESS;
 }
 
-/* Stages may share a vkao_images that has what others need; what SSAO would read or write if its
- * settings said so is more likely a mistake. */
-static void warn_of_unused(const struct vkao_program *program, uint32_t i)
+void vkao_slots_warn(const struct vkao_program *program, const vkao_images *images)
 {
     static const char *const members[VKAO_SLOT_COUNT] = {
         [VKAO_RESOURCE_NORMALS] = "normal_encoding is FROM_DEPTH",
@@ -161,9 +159,15 @@ static void warn_of_unused(const struct vkao_program *program, uint32_t i)
         [VKAO_RESOURCE_SECOND_DEPTH] = "second_layer is VK_FALSE, or its method knows one layer",
         [VKAO_RESOURCE_BENT_NORMALS] = "bent_normals is VK_FALSE",
     };
-    if (members[i] && program->settings.stages & VKAO_STAGE_SSAO)
-        vkao_log(&program->ctx->log, VKAO_LOG_WARNING, "%s is given, but not used: effect.%s",
-                 slots[i].name, members[i]);
+    if (!(program->settings.stages & VKAO_STAGE_SSAO))
+        return;
+    for (uint32_t i = 0; i < VKAO_SLOT_COUNT; ++i) {
+        if (members[i] && vkao_slot_image(images, i)->format &&
+            !vkao_program_reads(program, (enum vkao_resource)i) &&
+            !vkao_program_writes(program, (enum vkao_resource)i))
+            vkao_log(&program->ctx->log, VKAO_LOG_WARNING, "%s is given, but not used: effect.%s",
+                     slots[i].name, members[i]);
+    }
 }
 
 vkao_result vkao_slots_check(const struct vkao_program *program, const vkao_images *images,
@@ -180,8 +184,6 @@ vkao_result vkao_slots_check(const struct vkao_program *program, const vkao_imag
         vkao_result result = check_slot(program, i, image, reads, writes);
         if (result != VKAO_SUCCESS)
             return result;
-        if (need_views && image->format && !reads && !writes)
-            warn_of_unused(program, i);
         if (need_views && image->format && (reads || writes) && !image->view)
             return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "%s.view is VK_NULL_HANDLE",
                                slots[i].name);

@@ -14,5 +14,8 @@ const char *vkao_slot_name(uint32_t slot);
  * null. */
 vkao_result vkao_slots_check(const struct vkao_program *program, const vkao_images *images,
                              bool need_views);
+/* Says what SSAO would read or write by other settings. Stages may share a vkao_images, so that
+ * what others need is no mistake. */
+void vkao_slots_warn(const struct vkao_program *program, const vkao_images *images);
 
 #endif

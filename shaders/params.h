@@ -204,9 +204,9 @@
  * .0537 with it. At half resolution THICKNESS_GAP is less for ten steps to keep test_radius.c's
  * bounds: RMSE of the scenes is the same, of the twelve others .0682 before, .0679 with it.
  * GAP_RISE was chosen by hand on the scenes of the search and the twelve others, and GAP_FRONT and
- * both GAPs moved with it as far as test_radius.c lets them: RMSE of the twelve .0612 before and
- * .0604 with it, of `best` .0537 and .0530. Checked on the nine of thin things: .0719 and .0720,
- * .0700 and .0697. */
+ * both GAPs moved with it as far as test_radius.c lets them: RMSE of `default` on the twelve .0612
+ * before and .0604 with it, of `best` .0537 and .0530. Checked on the nine of thin things: .0719
+ * and .0720, .0700 and .0697. */
 #define VKAO_VBAO_REACH_SMOOTH 0.82    /* end of the last step: the smooth falloff hides the rest */
 #define VKAO_VBAO_REACH_THRESHOLD 1.08 /* samples beyond stand for what lies before them */
 /* Rise over the surface's plane, per run, up to which two samples join. */

@@ -412,7 +412,7 @@ VKAO_API void vkao_effect_destroy(vkao_effect *effect);
  * which is the depth of nothing. sRGB images are written through a UNORM view, for which the image
  * needs MUTABLE_FORMAT. Usage has SAMPLED where it is read and STORAGE where it is written, which
  * vkao cannot see: validation layers do. All zero = slot not used; one that is given and that SSAO
- * would use by other settings is a warning. */
+ * would use by other settings is a warning when the frame is created. */
 typedef struct vkao_image {
     VkImageView view;
     /* Read slots: SHADER_READ_ONLY_OPTIMAL, DEPTH_STENCIL_READ_ONLY_OPTIMAL,

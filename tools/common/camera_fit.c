@@ -284,7 +284,10 @@ static bool is_seen_in_all(const struct fit_samples *s, const struct fit_solutio
 }
 
 /* A lens shift has to win clearly at the same scale. What is neither won nor lost is doubt: of most
- * whole renders a shift, which is not there, gains less than 3 of 100. */
+ * whole renders a shift, which is not there, gains less than 3 of 100. These bounds were chosen on
+ * 240 random crops of eight renders: of those said to be sure 24 of 214 were wrong before, 5 of 218
+ * with them. Checked on 100 others of the same, 9 of 87 and 3 of 88, and on 100 of twenty other
+ * scenes, 8 of 77 and 4 of 82. */
 static void try_shift(const struct fit_samples *s, const struct fit_solution *coarse, double sigma,
                       struct fit_solution *best)
 {

@@ -170,9 +170,7 @@ static void warn_about_bits(const struct gbuffer *g, double most, double full,
     const struct role *role = &g->roles.kind[ROLE_DEPTH];
     const struct depth_range *r = &g->depth_range;
     char remedy[96] = "";
-    double white = 1.0;
-    while (white < most)
-        white = 2.0 * white + 1.0;
+    const double white = gbuffer_all_bits(most, 1.0);
     const double end = r->zero + (r->one - r->zero) * full / white;
     if (most * 4.0 > full + 1.0)
         return;

@@ -196,6 +196,9 @@ bool gbuffer_check_behind(struct gbuffer *g, const struct layer_signs *thickness
 
 /* The largest of 8, 16, 24 or 32 bits, whichever holds it: what whole numbers are parts of. */
 double gbuffer_full_range(double most);
+/* The least that is not below most of the numbers whose bits are all set, from least on, which is
+ * one. */
+double gbuffer_all_bits(double most, double least);
 /* Objects that do not cast are not there, in depth as prepared; and g->holdout. */
 bool gbuffer_take_out(const struct exr_info *info, struct gbuffer *g,
                       const struct gbuffer_options *options, struct report *report,

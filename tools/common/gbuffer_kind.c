@@ -144,14 +144,19 @@ double gbuffer_full_range(double most)
     return full[k];
 }
 
+double gbuffer_all_bits(double most, double least)
+{
+    while (least < most)
+        least = 2.0 * least + 1.0;
+    return least;
+}
+
 /* Whole numbers that are no distances by what they show, or that nothing shows to be and that end
  * where some bits do: as values from 0 to 1 are. */
 static bool are_parts(const struct gbuffer *g, const struct value_facts *f, enum planes_say say)
 {
     const bool is_linear = say == SAY_LINEAR && g->camera.type == CAMERA_PERSPECTIVE;
-    double bits = 255.0;
-    while (bits < f->high)
-        bits = 2.0 * bits + 1.0;
+    const double bits = gbuffer_all_bits(f->high, 255.0);
     return g->roles.kind[ROLE_DEPTH].channels[0]->type == EXR_UINT && !is_constant(f) &&
            (say == SAY_OFFSET || is_linear || (say == SAY_NOTHING && !(f->high < bits)));
 }
