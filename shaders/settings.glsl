@@ -35,14 +35,10 @@ const int THICKNESS_SHIFT = VKAO_THICKNESS_SHIFT - (IS_GIVEN ? VKAO_THICKNESS_FI
 const int THICKNESS_MASK =
     IS_GIVEN ? (VKAO_THICKNESS_MASK + 1 << VKAO_THICKNESS_FINER) - 1 : VKAO_THICKNESS_MASK;
 
-/* Behind a branch a driver in software reads a constant lane by lane. Passes that begin with one
- * read all of theirs before it. */
-#ifdef VKAO_CONSTANTS_FIRST
+/* All that is read is read first: behind a branch and in a loop a driver in software reads a
+ * constant lane by lane. */
 layout(binding = VKAO_BINDING_CONSTANTS) uniform Constants { vkao_constants constants; };
 vkao_constants params = constants;
-#else
-layout(binding = VKAO_BINDING_CONSTANTS) uniform Constants { vkao_constants params; };
-#endif
 
 ivec2 unpack_texel(uint packed_texel)
 {

@@ -11,7 +11,6 @@
 
 layout(local_size_x = VKAO_GROUP_OF(VKAO_BLUR_Y_WIDTH)) in;
 layout(push_constant) uniform Block { vkao_strip here; };
-#define VKAO_CONSTANTS_FIRST
 #include "settings.glsl"
 layout(binding = VKAO_BINDING_Z4, rgba32f) uniform readonly imageBuffer view_z4;
 layout(binding = VKAO_BINDING_HALFWAY_READ2, r32ui) uniform readonly uimageBuffer halfway;

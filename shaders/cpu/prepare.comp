@@ -11,7 +11,6 @@
 
 layout(local_size_x = VKAO_GROUP_OF(VKAO_PREPARE_WIDTH)) in;
 layout(push_constant) uniform Block { vkao_dispatch here; };
-#define VKAO_CONSTANTS_FIRST
 #include "settings.glsl"
 layout(binding = VKAO_BINDING_Z_WORDS) writeonly buffer ViewZ { vec4 view_z[]; };
 #include "buffers.glsl"

@@ -11,7 +11,6 @@
 
 layout(local_size_x = VKAO_GROUP_OF(4)) in;
 layout(push_constant) uniform Block { vkao_strip here; };
-#define VKAO_CONSTANTS_FIRST
 #include "settings.glsl"
 layout(binding = VKAO_BINDING_RING_NORMALS_WORDS) writeonly buffer Normals { uvec4 normals[]; };
 #include "view.glsl"

@@ -16,21 +16,31 @@
 /* Is all to be unrolled, steps and slices? Unknown counts, 0, are not. */
 bool unrolls()
 {
-    return SLICES * STEPS - 1u < VKAO_VBAO_MOST_UNROLLED;
+    return SLICES * STEPS - 1u < (SLICES == 1u ? VKAO_VBAO_MOST_AT_ONCE : VKAO_VBAO_MOST_UNROLLED);
 }
 
-/* Steps that are unrolled in a loop over the rest. */
+/* Steps in chunks of n. */
+uint padded(uint n)
+{
+    return (STEPS + n - 1u) / n * n;
+}
+
+/* Steps that are unrolled in a loop over the rest: those that leave the fewest to take for nothing
+ * at the end. */
 uint chunk()
 {
-    uint chunks = (STEPS + VKAO_VBAO_MOST_AT_ONCE - 1u) / VKAO_VBAO_MOST_AT_ONCE;
-    return STEPS == 0u ? 1u : (STEPS + chunks - 1u) / chunks;
+    const uint most = VKAO_VBAO_MOST_AT_ONCE;
+    if (STEPS <= most)
+        return max(STEPS, 1u);
+    uint fewer = padded(most - 1u) <= padded(most - 2u) ? most - 1u : most - 2u;
+    return padded(most) <= padded(fewer) ? most : fewer;
 }
 
 /* How far a march of both sides has come. */
 struct March {
     ints mask; /* sectors that are hidden */
     reals last_x, last_height, last_front;
-    reals rounding; /* taken off upper bounds while all samples join the point's own surface */
+    reals upper;    /* k0 of upper bounds: less while all samples join the point's own surface */
     reals hidden;   /* sectors, weighted */
     reals out_moment, eye_moment;
 };
@@ -67,10 +77,10 @@ void hide(inout March march, Slice s, Masks m, reals fall, Offset offset, reals 
     reals inverse = 1.0 / (front_length * back_length);
     reals front = y * (back_length * inverse), back = thick_y * (front_length * inverse);
     front = mix(front, greater(front, march.last_front), joined);
-    march.rounding = mix(reals(0.0), march.rounding, joined);
+    march.upper = mix(m.k0, march.upper, joined);
     /* Without a sign: a driver then sees that nothing is shifted by more. */
-    uvec4 high = uvec4(sector(m, greater(front - params.bias_cosine, m.low), march.rounding)),
-          low = uvec4(sector(m, greater(back, m.low), reals(0.0)));
+    uvec4 high = uvec4(sector(m, greater(front - params.bias_cosine, m.low), march.upper)),
+          low = uvec4(sector(m, greater(back, m.low), m.k0));
     high = min(high, uvec4(SECTORS));
     low = min(low, high);
     ints bits = (ints(1) << high) - (ints(1) << low);
@@ -120,7 +130,7 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter, bool unrolled)
     const reals none = reals(0.0);
     Steps steps = make_steps(s, jitter, reach, VKAO_VBAO_STEP_LINEAR);
     March march =
-        March(ints(0), none, none, reals(-2.0), reals(VKAO_VBAO_ROUND_LESS), none, none, none);
+        March(ints(0), none, none, reals(-2.0), m.k0 - VKAO_VBAO_ROUND_LESS, none, none, none);
     if (unrolled) {
         [[unroll]] for (uint t = 0u; t < STEPS; ++t)
             take_step(march, s, m, fall, texel, steps, t);
@@ -139,11 +149,11 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter, bool unrolled)
 }
 
 void add_slice(inout Visibility v, uint k, ivec2 texel, Real3 position, Real3 normal, Planes plane,
-               Real3 to_eye, real turn, real jitter, bool unrolled)
+               Real3 to_eye, Noise noise, bool unrolled)
 {
     float share = 1.0 / float(slice_count());
-    Slice s = make_slice((float(k) + turn) * share, position, normal, plane, to_eye);
-    Hidden hidden = hidden_mass(s, texel, jitter, unrolled);
+    Slice s = make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye);
+    Hidden hidden = hidden_mass(s, texel, noise.jitter, unrolled);
     v.open -= s.normal_length * hidden.mass * share;
     Real3 moment = plus(times(s.outward, hidden.out_moment), times(to_eye, hidden.eye_moment));
     v.bent = plus(v.bent, times(moment, -share * s.normal_length));
@@ -157,13 +167,12 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
     Visibility v = Visibility(times(normal, real(2.0 / 3.0)), real(1.0));
     if (unrolls()) {
         [[unroll]] for (uint k = 0u; k < SLICES; ++k)
-            add_slice(v, k, texel, position, normal, plane, to_eye, noise.turn, noise.jitter, true);
+            add_slice(v, k, texel, position, normal, plane, to_eye, noise, true);
     } else {
         uint k = 0u;
         [[dont_unroll]] for (;;) {
-            add_slice(v, k, texel, position, normal, plane, to_eye, noise.turn, noise.jitter,
-                      false);
-            if (++k >= slice_count())
+            add_slice(v, k, texel, position, normal, plane, to_eye, noise, false);
+            if (SLICES == 1u || ++k >= slice_count())
                 break;
         }
     }
