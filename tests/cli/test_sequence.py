@@ -203,6 +203,42 @@ def existing_output_stops_before_any_work(scratch):
                   hint='--overwrite always')
 
 
+@case
+def a_second_run_makes_what_is_missing(scratch):
+    sequence(scratch)
+    options = ('in.####.exr', '-o', 'ao.####.exr', '--preview', 'ao.####.png', '--fov', FOV)
+    scratch.render(*options)
+    made = {name: scratch.bytes(name) for name in outputs(scratch)}
+    os.remove(scratch.path('ao.0002.exr'))
+    os.remove(scratch.path('ao.0002.png'))
+    scratch.write('ao.0003.exr', 'mine')
+    run = scratch.render(*options, '--overwrite', 'skip')
+    matches(r'ao\.0001\.exr: exists, left as it is; computed', run.stderr, 'first frame')
+    matches(r'ao\.0003\.exr: exists, left as it is\n', run.stderr, 'last frame')
+    equal(scratch.bytes('ao.0003.exr'), b'mine', 'what was there')
+    for name in ('ao.0001.exr', 'ao.0002.exr'):
+        equal(scratch.bytes(name), made[name], name)  # the radius is that of all frames, too
+    again = scratch.render(*options, '--overwrite', 'skip')
+    equal(again.stderr.count('left as it is\n'), 3, 'frames left')
+    os.remove(scratch.path('ao.0001.exr'))
+    scratch.fails(OUTPUT, r'ao\.0001\.png: exists', *options, '--overwrite', 'skip',
+                  hint='--overwrite always')
+
+
+@case
+def one_file_that_exists_is_left(scratch):
+    sequence(scratch, (1,))
+    scratch.write('ao.exr', 'mine')
+    run = scratch.render('in.0001.exr', '-o', 'ao.exr', '--overwrite', 'skip', *VIEW)
+    matches(r'ao\.exr: exists, left as it is\n', run.stderr, 'stderr')
+    equal(scratch.bytes('ao.exr'), b'mine', 'what was there')
+    scratch.write('cam.json', 'mine')
+    run = scratch.run('inspect', 'in.0001.exr', '--write-camera', 'cam.json', '--overwrite', 'skip',
+                      '--fov', FOV)
+    matches(r'cam\.json: exists, left as it is\n', run.stderr, 'stderr')
+    equal(scratch.bytes('cam.json'), b'mine', 'what was there')
+
+
 @cases([
     ('colon', ('in.####.exr', '-o', 'ao.####.exr', '-f', '1-3:2'), "':' means step", 'openjd'),
     ('one name', ('in.####.exr', '-o', 'ao.exr'), "--output 'ao.exr' has no frame token", '####'),

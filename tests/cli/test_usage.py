@@ -36,7 +36,7 @@ WRONG_VALUES = [
     ('--mode', ('AO', 'both'), 'want ao, append or comp'),
     ('--pixel-type', ('uint', 'HALF'), 'want half or float'),
     ('--compression', ('lzma', 'ZIP', 'htj2k32'), 'none, rle, zips, zip, piz'),
-    ('--overwrite', ('yes', 'skip'), 'want never or always'),
+    ('--overwrite', ('yes', 'no'), 'want never, always or skip'),
     ('--frames-syntax', ('nuke',), 'want vfx or openjd'),
     ('--depth-type', ('linear', 'z'), 'want auto, planar, radial, radial-near, inverse, device or '
      'normalized'),

@@ -59,7 +59,7 @@ static void defaults_are_those_of_the_library(void **state)
     assert_int_equal(o.mode, OUTPUT_AO);
     assert_int_equal(o.pixel_type, EXR_HALF);
     assert_string_equal(o.compression, "zip");
-    assert_int_equal(o.overwrite, 0);
+    assert_int_equal(o.overwrite, OVERWRITE_NEVER);
 }
 
 static void every_option_reaches_its_member(void **state)

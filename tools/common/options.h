@@ -21,6 +21,8 @@
 enum command { COMMAND_RENDER = 1, COMMAND_INSPECT = 2, COMMAND_DEVICES = 4 };
 enum { MAX_OPTIONS = 96 };
 
+/* What becomes of outputs that exist: a mistake, replaced, left alone. */
+enum overwrite { OVERWRITE_NEVER, OVERWRITE_ALWAYS, OVERWRITE_SKIP };
 enum output_mode { OUTPUT_AO, OUTPUT_APPEND, OUTPUT_COMP };
 
 /* Strings point into argv. */
@@ -36,7 +38,7 @@ struct options {
     enum output_mode mode;
     enum exr_pixel_type pixel_type;
     const char *compression; /* as exr_part.compression */
-    int overwrite;
+    enum overwrite overwrite;
     bool continue_on_error;
 
     const char *camera_file; /* may hold a frame token; "none": not that beside INPUT either */

@@ -430,7 +430,8 @@ static const struct option_word modes[] = {
 static const struct option_word syntaxes[] = {
     {"vfx", FRAME_SYNTAX_VFX}, {"openjd", FRAME_SYNTAX_OPENJD}, {0}};
 static const struct option_word pixel_types[] = {{"half", EXR_HALF}, {"float", EXR_FLOAT}, {0}};
-static const struct option_word overwrites[] = {{"never", 0}, {"always", 1}, {0}};
+static const struct option_word overwrites[] = {
+    {"never", OVERWRITE_NEVER}, {"always", OVERWRITE_ALWAYS}, {"skip", OVERWRITE_SKIP}, {0}};
 static const struct option_word depth_types[] = {{"auto", DEPTH_AUTO},
                                                  {"planar", DEPTH_PLANAR},
                                                  {"radial", DEPTH_RADIAL},
@@ -497,9 +498,12 @@ const struct option_row option_table[] = {
      .more = "Its name ends in .png. The composite is clamped. Of several views each gets its name "
              "put before the extension."},
     {.name = "overwrite", .argument = "WHEN", .fallback = "never",
-     .help = "never or always: what to do if an output exists",
+     .help = "never, always or skip: what to do if an output exists",
      .commands = RENDER | INSPECT, .apply = apply_word, .offset = AT(overwrite),
-     .words = overwrites},
+     .words = overwrites,
+     .more = "skip leaves alone what exists and makes the other frames, as after a run that was "
+             "interrupted. They get what all frames share, as the radius, from the first frame, "
+             "which is computed again for that. A frame's preview goes with its output."},
     {.name = "frames", .letter = 'f', .argument = "SPEC",
      .help = "frames of a sequence: 1-100, 1-100x2 (every second), 1,5,20-30. Default: all files"
              " that match INPUT",

@@ -155,7 +155,9 @@ static bool check_channel(const struct options *o, struct tool_error *err)
 bool output_check_names(const struct options *options, const struct plan_frame *frame,
                         const struct frame_source *source, struct tool_error *err)
 {
-    if (frame->preview && !options->overwrite && !check_previews(frame, source, err))
+    const bool is_new =
+        options->overwrite != OVERWRITE_ALWAYS && !plan_leaves(options, frame->output);
+    if (frame->preview && is_new && !check_previews(frame, source, err))
         return false;
     if (!check_channel(options, err))
         return false;
@@ -312,7 +314,7 @@ static bool write_exr(const struct options *o, const struct plan_frame *frame,
     for (size_t i = 0; ok && i < source->view_count; i++)
         ok = fill_part(o, source, &views[i], device, &storage[i], &parts[i], err);
     ok = ok && exr_write_file(frame->output, o->mode == OUTPUT_APPEND ? &source->info : NULL, parts,
-                              source->view_count, o->overwrite != 0, err);
+                              source->view_count, o->overwrite == OVERWRITE_ALWAYS, err);
     for (size_t i = 0; storage && i < source->view_count; i++)
         free(storage[i].params);
     free(storage);
@@ -341,7 +343,7 @@ static bool prepare_preview(const struct options *o, const char *path,
             pixels[i * 3 + c] = byte_of(srgb_of((double)view->result.output[i * 4 + c]));
     }
     bool ok = png_file_prepare(file, path, window_width(window), window_height(window),
-                               grey ? 1 : 3, pixels, o->overwrite != 0, err);
+                               grey ? 1 : 3, pixels, o->overwrite == OVERWRITE_ALWAYS, err);
     free(pixels);
     return ok;
 }
@@ -371,9 +373,9 @@ static bool commit_previews(const struct options *o, const struct plan_frame *fr
     for (size_t i = 0; i < count; i++) {
         if (atomic_file_commit(&files[i], err))
             continue;
-        for (size_t done = 0; !o->overwrite && done < i; done++)
+        for (size_t done = 0; o->overwrite != OVERWRITE_ALWAYS && done < i; done++)
             unlink(files[done].target);
-        if (!o->overwrite)
+        if (o->overwrite != OVERWRITE_ALWAYS)
             unlink(frame->output);
         return false;
     }

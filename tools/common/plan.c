@@ -376,6 +376,11 @@ static bool check_directory(const char *path, struct tool_error *err)
     return ok;
 }
 
+bool plan_leaves(const struct options *options, const char *path)
+{
+    return options->overwrite == OVERWRITE_SKIP && exists(path);
+}
+
 bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,
                         struct tool_error *err)
 {
@@ -383,7 +388,8 @@ bool plan_check_outputs(const struct options *options, const struct plan_frame *
     for (size_t i = 0; i < 2; i++) {
         if (paths[i] && !check_directory(paths[i], err))
             return false;
-        if (options->overwrite || !paths[i] || !exists(paths[i]))
+        if (options->overwrite == OVERWRITE_ALWAYS || !paths[i] || !exists(paths[i]) ||
+            plan_leaves(options, frame->output))
             continue;
         fail_hint(err, "add --overwrite always");
         return fail(err, EXIT_OUTPUT, "%s: exists, not overwritten", paths[i]);

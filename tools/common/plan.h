@@ -41,6 +41,8 @@ bool plan_take_cameras(const struct options *options, struct plan *plan, struct 
 /* One line, if there are any. */
 void plan_say_cameras(const struct plan *plan, const struct report *report);
 
+/* Is an output there, and to be left alone? */
+bool plan_leaves(const struct options *options, const char *path);
 /* Whether an output of the frame is in the way. */
 bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,
                         struct tool_error *err);

@@ -255,7 +255,7 @@ static struct options output_options(const struct viewer *v, const struct save_n
     o.pixel_type = EXR_FLOAT;
     o.output = n->exr;
     o.part_name = NULL;
-    o.overwrite = 0;
+    o.overwrite = OVERWRITE_NEVER;
     o.setting = setting_as_said(&v->settings[v->active], v->view);
     const vkao_effect_info *made = &last_result(v, v->active)->shape.effect;
     o.setting.effect.bent_normals = made->bent_normals;

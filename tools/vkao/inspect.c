@@ -577,10 +577,14 @@ static char *camera_file_text(cJSON *cameras)
 }
 
 static bool write_camera(const struct options *options, const struct plan_frame *frame,
-                         cJSON *cameras, struct tool_error *err)
+                         cJSON *cameras, const struct report *report, struct tool_error *err)
 {
     struct atomic_file file = {0};
     const char *path = frame->write_camera;
+    if (plan_leaves(options, path)) {
+        report_note(report, "%s: exists, left as it is", path);
+        return true;
+    }
     if (!cameras->child) {
         fail_hint(err, "give it with --fov, --ortho or --camera");
         return fail(err, EXIT_CHANNELS, "%s: no camera was found: nothing to write to %s",
@@ -589,7 +593,7 @@ static bool write_camera(const struct options *options, const struct plan_frame 
     char *text = camera_file_text(cameras);
     if (!text)
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
-    bool ok = atomic_file_open(&file, path, options->overwrite, err) &&
+    bool ok = atomic_file_open(&file, path, options->overwrite == OVERWRITE_ALWAYS, err) &&
               atomic_file_write(&file, text, strlen(text), err) &&
               atomic_file_write(&file, "\n", 1, err) && atomic_file_commit(&file, err);
     atomic_file_abort(&file);
@@ -614,7 +618,7 @@ static bool write_only(const struct options *options, const struct plan_frame *f
         report_note(report, "%s: no camera is written for it", err->message);
         *err = (struct tool_error){0};
     }
-    const bool ok = is_empty || (root && write_camera(options, frame, cameras, err));
+    const bool ok = is_empty || (root && write_camera(options, frame, cameras, report, err));
     cJSON_Delete(root);
     cJSON_Delete(cameras);
     return ok;
@@ -627,7 +631,7 @@ static bool write_cameras(const struct options *options, const struct plan *plan
     const char *path = plan->frames[told].write_camera;
     if (!path)
         return true;
-    if (!write_camera(options, &plan->frames[told], cameras, err))
+    if (!write_camera(options, &plan->frames[told], cameras, report, err))
         return false;
     for (size_t i = told + 1; i < plan->count; i++)
         if (strcmp(plan->frames[i].write_camera, path) != 0 &&

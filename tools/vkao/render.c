@@ -329,9 +329,10 @@ static bool render_frame(struct session *s, const struct plan_frame *frame, stru
     start = now_ms();
     char device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
     device_name(s, device, sizeof device);
-    ok = ok && output_write(&options, frame, &source, views, device, err);
+    const bool is_left = plan_leaves(&options, frame->output);
+    ok = ok && (is_left || output_write(&options, frame, &source, views, device, err));
     times.write = now_ms() - start;
-    if (ok)
+    if (ok && !is_left)
         report_detail(s->report, "%s: read %.0f ms, compute %.0f ms, write %.0f ms", frame->output,
                       times.read, times.compute, times.write);
     for (size_t i = 0; i < MAX_VIEWS; i++) {
@@ -351,6 +352,14 @@ static void hint_at_frames(const struct plan *plan, const struct plan_frame *fra
                   options->input);
 }
 
+static bool makes_any(const struct session *s, const struct plan *plan)
+{
+    for (size_t i = 0; i < plan->count; i++)
+        if (!plan_leaves(s->options, plan->frames[i].output))
+            return true;
+    return false;
+}
+
 /* False if the run ends, with *code. */
 static bool try_frame(struct session *s, const struct plan *plan, struct plan_frame *frame,
                       size_t *failed, int *code)
@@ -361,6 +370,13 @@ static bool try_frame(struct session *s, const struct plan *plan, struct plan_fr
         report_note(s->report, "frame %zu/%zu (%" PRId64 "): %s",
                     (size_t)(frame - plan->frames) + 1, plan->count, frame->number, frame->output);
     frame->is_late = false;
+    if (plan_leaves(s->options, frame->output)) {
+        const bool is_needed = !s->has_picture && makes_any(s, plan);
+        report_note(s->report, "%s: exists, left as it is%s", frame->output,
+                    is_needed ? "; computed for what all frames share" : "");
+        if (!is_needed)
+            return true;
+    }
     if (render_frame(s, frame, &err))
         return true;
     if (err.shows_nothing) {
