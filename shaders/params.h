@@ -135,9 +135,7 @@
 /* Samples or steps in a row: loops longer than that take long to compile, and their overhead is
  * small. */
 #define VKAO_MOST_UNROLLED 64u
-/* Of vbao, whose steps are long: more than the first in all slices leave a CPU's instruction cache.
- * A loop over at most the second at once then is faster, and always where one slice is all. */
-#define VKAO_VBAO_MOST_UNROLLED 20u
+/* Of vbao on a CPU, whose steps are long. */
 #define VKAO_VBAO_MOST_AT_ONCE 4u
 
 /* View z outside this range is background: what squares of lengths, in radii and at any field of

@@ -40,8 +40,9 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
     Noise noise = texel_noise(texel, slice_count());
     real occluded = real(0.0);
     float share = 1.0 / float(slice_count());
+    /* All slices in a row would leave a CPU's instruction cache. */
     uint k = 0u;
-    [[unroll]] for (;;) {
+    [[dont_unroll]] for (;;) {
         occluded +=
             occlusion(make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye),
                       texel, noise.jitter);

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * ../ssao_vbao.comp for two texels side by side; steps, slices or both are unrolled while the code
- * fits an instruction cache. */
+ * ../ssao_vbao.comp for two texels side by side. Some steps at once are unrolled, so that the code
+ * fits an instruction cache: where it does not, a run takes up to half as long again, by where in
+ * memory the code happens to lie. */
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_16bit_storage : enable
@@ -12,12 +13,6 @@
 #include "ssao.glsl"
 #include "horizon.glsl"
 #include "sectors.glsl"
-
-/* Is all to be unrolled, steps and slices? Unknown counts, 0, are not. */
-bool unrolls()
-{
-    return SLICES * STEPS - 1u < (SLICES == 1u ? VKAO_VBAO_MOST_AT_ONCE : VKAO_VBAO_MOST_UNROLLED);
-}
 
 /* Steps in chunks of n. */
 uint padded(uint n)
@@ -121,7 +116,7 @@ void take_step(inout March march, Slice s, Masks m, reals fall, ivec2 texel, Ste
     hide(march, s, m, fall, offset, z);
 }
 
-Hidden hidden_mass(Slice s, ivec2 texel, real jitter, bool unrolled)
+Hidden hidden_mass(Slice s, ivec2 texel, real jitter)
 {
     float reach = params.radius;
     reach *= THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH;
@@ -131,29 +126,24 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter, bool unrolled)
     Steps steps = make_steps(s, jitter, reach, VKAO_VBAO_STEP_LINEAR);
     March march =
         March(ints(0), none, none, reals(-2.0), m.k0 - VKAO_VBAO_ROUND_LESS, none, none, none);
-    if (unrolled) {
-        [[unroll]] for (uint t = 0u; t < STEPS; ++t)
-            take_step(march, s, m, fall, texel, steps, t);
-    } else {
-        uint t = 0u;
-        [[dont_unroll]] for (;;) {
-            [[unroll]] for (uint i = 0u; i < chunk(); ++i)
-                take_step(march, s, m, fall, texel, steps, t + i);
-            t += chunk();
-            if (t >= step_count())
-                break;
-        }
+    uint t = 0u;
+    [[dont_unroll]] for (;;) {
+        [[unroll]] for (uint i = 0u; i < chunk(); ++i)
+            take_step(march, s, m, fall, texel, steps, t + i);
+        t += chunk();
+        if (STEPS == chunk() || t >= step_count())
+            break;
     }
     return Hidden(both_sides(march.hidden * m.mass), both_sides(march.out_moment),
                   both_sides(march.eye_moment));
 }
 
 void add_slice(inout Visibility v, uint k, ivec2 texel, Real3 position, Real3 normal, Planes plane,
-               Real3 to_eye, Noise noise, bool unrolled)
+               Real3 to_eye, Noise noise)
 {
     float share = 1.0 / float(slice_count());
     Slice s = make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye);
-    Hidden hidden = hidden_mass(s, texel, noise.jitter, unrolled);
+    Hidden hidden = hidden_mass(s, texel, noise.jitter);
     v.open -= s.normal_length * hidden.mass * share;
     Real3 moment = plus(times(s.outward, hidden.out_moment), times(to_eye, hidden.eye_moment));
     v.bent = plus(v.bent, times(moment, -share * s.normal_length));
@@ -165,16 +155,11 @@ Visibility visibility(ivec2 texel, Real3 position, Real3 normal, Planes plane)
     Noise noise = texel_noise(texel, slice_count());
     /* The mean direction of an open hemisphere is 2/3 of its normal. */
     Visibility v = Visibility(times(normal, real(2.0 / 3.0)), real(1.0));
-    if (unrolls()) {
-        [[unroll]] for (uint k = 0u; k < SLICES; ++k)
-            add_slice(v, k, texel, position, normal, plane, to_eye, noise, true);
-    } else {
-        uint k = 0u;
-        [[dont_unroll]] for (;;) {
-            add_slice(v, k, texel, position, normal, plane, to_eye, noise, false);
-            if (SLICES == 1u || ++k >= slice_count())
-                break;
-        }
+    uint k = 0u;
+    [[dont_unroll]] for (;;) {
+        add_slice(v, k, texel, position, normal, plane, to_eye, noise);
+        if (SLICES == 1u || ++k >= slice_count())
+            break;
     }
     return v;
 }
