@@ -65,7 +65,7 @@ class Constants(unittest.TestCase):
         values = fit_vbao.read_constants(PARAMS)
         for name in ('VBAO_REACH_SMOOTH', 'STEP_LINEAR', 'VBAO_THICKNESS_WIDTH', 'VBAO_GAP_FRONT'):
             self.assertIn(name, values)
-        self.assertNotIn('VBAO_MOST_UNROLLED', values)
+        self.assertNotIn('VBAO_MOST_AT_ONCE', values)
 
     def test_only_what_is_named_changes(self):
         values = fit_vbao.read_constants(PARAMS)
