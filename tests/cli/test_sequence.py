@@ -225,6 +225,21 @@ def a_second_run_makes_what_is_missing(scratch):
                   hint='--overwrite always')
 
 
+@cases(['an empty file', 'a directory', 'a link to nothing'])
+def what_no_run_leaves_is_not_left_alone(scratch, what):
+    sequence(scratch)
+    path = scratch.path('ao.0003.exr')
+    if what == 'a directory':
+        os.mkdir(path)
+    elif what == 'a link to nothing':
+        os.symlink('nothing.exr', path)
+    else:
+        scratch.write('ao.0003.exr', '')
+    scratch.fails(OUTPUT, r'ao\.0003\.exr: exists, not overwritten', 'in.####.exr', '-o',
+                  'ao.####.exr', '--overwrite', 'skip', *VIEW, hint='--overwrite always')
+    equal(outputs(scratch), ['ao.0003.exr'], 'outputs')
+
+
 @case
 def one_file_that_exists_is_left(scratch):
     sequence(scratch, (1,))

@@ -501,9 +501,10 @@ const struct option_row option_table[] = {
      .help = "never, always or skip: what to do if an output exists",
      .commands = RENDER | INSPECT, .apply = apply_word, .offset = AT(overwrite),
      .words = overwrites,
-     .more = "skip leaves alone what exists and makes the other frames, as after a run that was "
-             "interrupted. They get what all frames share, as the radius, from the first frame, "
-             "which is computed again for that. A frame's preview goes with its output."},
+     .more = "skip leaves alone what exists, unless it is empty, and makes the other frames, as "
+             "after a run that was interrupted. They get what all frames share, as the radius, "
+             "from the first frame, which is computed again for that. A frame's preview goes with "
+             "its output."},
     {.name = "frames", .letter = 'f', .argument = "SPEC",
      .help = "frames of a sequence: 1-100, 1-100x2 (every second), 1,5,20-30. Default: all files"
              " that match INPUT",

@@ -378,7 +378,9 @@ static bool check_directory(const char *path, struct tool_error *err)
 
 bool plan_leaves(const struct options *options, const char *path)
 {
-    return options->overwrite == OVERWRITE_SKIP && exists(path);
+    struct stat s;
+    return options->overwrite == OVERWRITE_SKIP && stat(path, &s) == 0 && S_ISREG(s.st_mode) &&
+           s.st_size > 0;
 }
 
 bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,

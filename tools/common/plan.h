@@ -41,7 +41,7 @@ bool plan_take_cameras(const struct options *options, struct plan *plan, struct 
 /* One line, if there are any. */
 void plan_say_cameras(const struct plan *plan, const struct report *report);
 
-/* Is an output there, and to be left alone? */
+/* Is an output there, and to be left alone? What is empty or no file is in the way. */
 bool plan_leaves(const struct options *options, const char *path);
 /* Whether an output of the frame is in the way. */
 bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,
