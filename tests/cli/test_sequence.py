@@ -203,26 +203,104 @@ def existing_output_stops_before_any_work(scratch):
                   hint='--overwrite always')
 
 
+# --- --overwrite skip ---
+
+SKIP = ('in.####.exr', '-o', 'ao.####.exr', '--fov', FOV, '--overwrite', 'skip')
+
+
+def growing(scratch, numbers=(1, 2, 3)):
+    """Each frame alone has another automatic radius."""
+    for n in numbers:
+        channels = frame(n)
+        channels['Z'] = np.where(channels['Z'] < 1e9, n * channels['Z'], 1e10).astype(np.float32)
+        write_exr(scratch.path(f'in.{n:04d}.exr'), channels)
+
+
+def radius_in(scratch, n):
+    text = read_raw(scratch.bytes(f'ao.{n:04d}.exr'))[0].text('vkao/params')
+    return float(re.search(r'"radius":([\d.]+),', text)[1])
+
+
 @case
 def a_second_run_makes_what_is_missing(scratch):
-    sequence(scratch)
-    options = ('in.####.exr', '-o', 'ao.####.exr', '--preview', 'ao.####.png', '--fov', FOV)
+    growing(scratch)
+    options = (*SKIP, '--preview', 'ao.####.png')
     scratch.render(*options)
     made = {name: scratch.bytes(name) for name in outputs(scratch)}
     os.remove(scratch.path('ao.0002.exr'))
     os.remove(scratch.path('ao.0002.png'))
     scratch.write('ao.0003.exr', 'mine')
-    run = scratch.render(*options, '--overwrite', 'skip')
-    matches(r'ao\.0001\.exr: exists, left as it is; computed', run.stderr, 'first frame')
-    matches(r'ao\.0003\.exr: exists, left as it is\n', run.stderr, 'last frame')
+    run = scratch.render(*options)
+    matches(r'ao\.0001\.exr: exists, computed again', run.stderr, 'first frame')
+    for n in (1, 3):
+        matches(rf'ao\.000{n}\.exr: exists, left as it is\n', run.stderr, 'what is left')
+    check('other settings' not in run.stderr, f'the same settings are others: {run}')
     equal(scratch.bytes('ao.0003.exr'), b'mine', 'what was there')
     for name in ('ao.0001.exr', 'ao.0002.exr'):
         equal(scratch.bytes(name), made[name], name)  # the radius is that of all frames, too
-    again = scratch.render(*options, '--overwrite', 'skip')
+    again = scratch.render(*options)
     equal(again.stderr.count('left as it is\n'), 3, 'frames left')
+    check('computed again' not in again.stderr, f'nothing is to be made: {again}')
     os.remove(scratch.path('ao.0001.exr'))
-    scratch.fails(OUTPUT, r'ao\.0001\.png: exists', *options, '--overwrite', 'skip',
-                  hint='--overwrite always')
+    scratch.fails(OUTPUT, r'ao\.0001\.png: exists', *options, hint='remove it')
+
+
+@case
+def frames_that_exist_tell_the_radius(scratch):
+    """Also one that the first frame asked for would not have."""
+    growing(scratch)
+    scratch.render(*SKIP, '--frames', '2-3')
+    scratch.render(*SKIP)
+    equal([radius_in(scratch, n) for n in (1, 2, 3)], [0.6] * 3, 'radii')
+    os.remove(scratch.path('ao.0001.exr'))
+    os.remove(scratch.path('in.0002.exr'))
+    run = scratch.render(*SKIP, '--frames', '1-2')
+    matches(r'in\.0002\.exr: cannot open.*: it is not known what all frames share', run.stderr,
+            'the input that is gone')
+    equal(radius_in(scratch, 1), 0.6, 'radius')
+
+
+@case
+def other_settings_than_those_of_frames_that_exist_are_said(scratch):
+    growing(scratch)
+    scratch.render(*SKIP, '--frames', '1-2')
+    run = scratch.render(*SKIP, '--method', 'gtao', '--radius', '9')
+    matches(r'other settings than the rest will be, in .*method.*radius.*--like', run.stderr,
+            'the warning')
+    run = scratch.render('in.####.exr', '-o', 'none.####.exr', '--frames', '1-2')
+    os.remove(scratch.path('none.0001.exr'))
+    scratch.write('none.0002.exr', 'mine')
+    run = scratch.render('in.####.exr', '-o', 'none.####.exr', '--fov', FOV, '--overwrite', 'skip')
+    matches(r'none\.0002\.exr: .*: left as it is, whatever made it', run.stderr, 'no record')
+
+
+@case
+def frames_that_exist_and_show_nothing_tell_nothing(scratch):
+    growing(scratch, (2, 3))
+    write_exr(scratch.path('in.0001.exr'), empty())
+    scratch.render(*SKIP)
+    made = scratch.bytes('ao.0003.exr')
+    os.remove(scratch.path('ao.0003.exr'))
+    scratch.render(*SKIP)
+    equal(scratch.bytes('ao.0003.exr'), made, 'frame 3')
+
+
+@case
+def previews_of_both_eyes_are_left_with_their_frame(scratch):
+    for n in (1, 2):
+        write_multi_part(scratch, f'in.{n:04d}.exr')
+    options = (*SKIP, '--view', 'all', '--preview', 'ao.####.png')
+    scratch.render(*options)
+    made = {name: scratch.bytes(name) for name in outputs(scratch)}
+    equal(len(made), 6, 'outputs')
+    for name in [name for name in made if '0002' in name]:
+        os.remove(scratch.path(name))
+    scratch.render(*options)
+    equal({name: scratch.bytes(name) for name in outputs(scratch)}, made, 'outputs')
+    os.remove(scratch.path('ao.0001.exr'))
+    run = scratch.run(*options)
+    equal(run.code, OUTPUT, 'exit code')
+    matches(r'ao\.0001\.left\.png: exists, not overwritten\n +remove it', run.stderr, 'stderr')
 
 
 @cases(['an empty file', 'a directory', 'a link to nothing'])
@@ -236,7 +314,7 @@ def what_no_run_leaves_is_not_left_alone(scratch, what):
     else:
         scratch.write('ao.0003.exr', '')
     scratch.fails(OUTPUT, r'ao\.0003\.exr: exists, not overwritten', 'in.####.exr', '-o',
-                  'ao.####.exr', '--overwrite', 'skip', *VIEW, hint='--overwrite always')
+                  'ao.####.exr', '--overwrite', 'skip', *VIEW, hint='remove it')
     equal(outputs(scratch), ['ao.0003.exr'], 'outputs')
 
 
@@ -431,11 +509,11 @@ def eye(view):
     return {'Z': scene.depth(), **scene.normals()}
 
 
-def write_multi_part(scratch):
+def write_multi_part(scratch, file='in.exr'):
     parts = [({k: v for k, v in eye(view).items() if k.startswith(letter)},
               {'name': f'{name}.{view}', 'view': view})
              for view in EYES for name, letter in (('depth', 'Z'), ('normal', 'N'))]
-    write_exr(scratch.path('in.exr'), *parts)
+    write_exr(scratch.path(file), *parts)
 
 
 def write_single_part(scratch):

@@ -501,10 +501,12 @@ const struct option_row option_table[] = {
      .help = "never, always or skip: what to do if an output exists",
      .commands = RENDER | INSPECT, .apply = apply_word, .offset = AT(overwrite),
      .words = overwrites,
-     .more = "skip leaves alone what exists, unless it is empty, and makes the other frames, as "
-             "after a run that was interrupted. They get what all frames share, as the radius, "
-             "from the first frame, which is computed again for that. A frame's preview goes with "
-             "its output."},
+     .more = "skip leaves frames alone whose output exists, and makes the others, as after a run "
+             "that was interrupted. They get what all frames share, as an automatic radius or a "
+             "camera that is estimated, from the first frame that exists and shows something: "
+             "the record in it has the radius, and it is computed again for the rest. Settings "
+             "that differ from its own are a warning. A preview goes with its output. An empty "
+             "file, a directory and a link to nothing are not left alone: they stop the run."},
     {.name = "frames", .letter = 'f', .argument = "SPEC",
      .help = "frames of a sequence: 1-100, 1-100x2 (every second), 1,5,20-30. Default: all files"
              " that match INPUT",

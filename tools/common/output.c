@@ -117,18 +117,16 @@ static void preview_path(const char *path, const char *view, size_t view_count, 
 }
 
 /* The plan checked the path as given; what it becomes for each view is known only now. */
-static bool check_previews(const struct plan_frame *frame, const struct frame_source *source,
-                           struct tool_error *err)
+static bool check_previews(const struct options *options, const struct plan_frame *frame,
+                           const struct frame_source *source, struct tool_error *err)
 {
     for (size_t v = 0; source->view_count > 1 && v < source->view_count; v++) {
         struct text path = {0};
         struct stat s;
         preview_path(frame->preview, source->views[v].name, source->view_count, &path);
         bool taken = path.data && lstat(path.data, &s) == 0;
-        if (taken) {
-            fail_hint(err, "add --overwrite always");
-            fail(err, EXIT_OUTPUT, "%s: exists, not overwritten", path.data);
-        }
+        if (taken)
+            plan_fail_exists(options, path.data, err);
         text_free(&path);
         if (taken)
             return false;
@@ -155,9 +153,8 @@ static bool check_channel(const struct options *o, struct tool_error *err)
 bool output_check_names(const struct options *options, const struct plan_frame *frame,
                         const struct frame_source *source, struct tool_error *err)
 {
-    const bool is_new =
-        options->overwrite != OVERWRITE_ALWAYS && !plan_leaves(options, frame->output);
-    if (frame->preview && is_new && !check_previews(frame, source, err))
+    const bool is_new = options->overwrite != OVERWRITE_ALWAYS && !frame->is_left;
+    if (frame->preview && is_new && !check_previews(options, frame, source, err))
         return false;
     if (!check_channel(options, err))
         return false;

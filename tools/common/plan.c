@@ -383,6 +383,14 @@ bool plan_leaves(const struct options *options, const char *path)
            s.st_size > 0;
 }
 
+bool plan_fail_exists(const struct options *options, const char *path, struct tool_error *err)
+{
+    fail(err, EXIT_OUTPUT, "%s: exists, not overwritten", path);
+    return fail_hint(err, options->overwrite == OVERWRITE_SKIP
+                              ? "remove it, or make all frames anew with --overwrite always"
+                              : "add --overwrite always");
+}
+
 bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,
                         struct tool_error *err)
 {
@@ -390,11 +398,9 @@ bool plan_check_outputs(const struct options *options, const struct plan_frame *
     for (size_t i = 0; i < 2; i++) {
         if (paths[i] && !check_directory(paths[i], err))
             return false;
-        if (options->overwrite == OVERWRITE_ALWAYS || !paths[i] || !exists(paths[i]) ||
-            plan_leaves(options, frame->output))
-            continue;
-        fail_hint(err, "add --overwrite always");
-        return fail(err, EXIT_OUTPUT, "%s: exists, not overwritten", paths[i]);
+        if (options->overwrite != OVERWRITE_ALWAYS && !frame->is_left && paths[i] &&
+            exists(paths[i]))
+            return plan_fail_exists(options, paths[i], err);
     }
     return true;
 }
@@ -455,6 +461,8 @@ bool plan_make(const struct options *options, struct plan *plan, struct tool_err
     for (size_t i = 0; ok && i < plan->count; i++)
         ok = check_distinct(&plan->frames[i], err);
     ok = ok && check_names(options, err);
+    for (size_t i = 0; ok && options->output && i < plan->count; i++)
+        plan->frames[i].is_left = plan_leaves(options, plan->frames[i].output);
     for (size_t i = 0; ok && options->output && !options->continue_on_error && i < plan->count; i++)
         ok = plan_check_outputs(options, &plan->frames[i], err);
     ok = ok && (options->continue_on_error || check_there(plan, err));

@@ -16,6 +16,7 @@ struct plan_frame {
     char *input, *output;
     char *camera, *like, *preview, *write_camera; /* NULL if not asked for */
     char *file[ROLE_FILES];                       /* likewise */
+    bool is_left; /* its output is there, see --overwrite skip */
     bool is_late; /* it shows nothing, and waits for a frame that shows something */
 };
 
@@ -41,8 +42,11 @@ bool plan_take_cameras(const struct options *options, struct plan *plan, struct 
 /* One line, if there are any. */
 void plan_say_cameras(const struct plan *plan, const struct report *report);
 
-/* Is an output there, and to be left alone? What is empty or no file is in the way. */
+/* Is an output there that --overwrite skip leaves alone? An empty file, a directory and a dead link
+ * are not: they are in the way. */
 bool plan_leaves(const struct options *options, const char *path);
+/* Of an output that is in the way, with the remedy. Returns false. */
+bool plan_fail_exists(const struct options *options, const char *path, struct tool_error *err);
 /* Whether an output of the frame is in the way. */
 bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,
                         struct tool_error *err);

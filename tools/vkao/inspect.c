@@ -576,15 +576,22 @@ static char *camera_file_text(cJSON *cameras)
     return text;
 }
 
+static bool leaves_camera(const struct options *options, const struct plan_frame *frame,
+                          const struct report *report)
+{
+    const bool is_left = plan_leaves(options, frame->write_camera);
+    if (is_left)
+        report_note(report, "%s: exists, left as it is", frame->write_camera);
+    return is_left;
+}
+
 static bool write_camera(const struct options *options, const struct plan_frame *frame,
                          cJSON *cameras, const struct report *report, struct tool_error *err)
 {
     struct atomic_file file = {0};
     const char *path = frame->write_camera;
-    if (plan_leaves(options, path)) {
-        report_note(report, "%s: exists, left as it is", path);
+    if (leaves_camera(options, frame, report))
         return true;
-    }
     if (!cameras->child) {
         fail_hint(err, "give it with --fov, --ortho or --camera");
         return fail(err, EXIT_CHANNELS, "%s: no camera was found: nothing to write to %s",
@@ -609,6 +616,8 @@ static bool write_only(const struct options *options, const struct plan_frame *f
     struct report silent = {.verbosity = REPORT_QUIET};
     int code = EXIT_OK;
     waiting.gbuffer.empty = EMPTY_IS_LATE;
+    if (leaves_camera(options, frame, report))
+        return true;
     cJSON *cameras = cJSON_CreateObject();
     if (!cameras)
         return fail(err, EXIT_MEMORY, "%s: out of memory", frame->input);

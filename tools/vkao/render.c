@@ -28,8 +28,9 @@ struct session {
     float auto_radius;     /* 0 = not known yet */
     struct frame_memory memory[MAX_VIEWS]; /* by view */
     bool summarised, is_sequence;
-    bool has_picture;    /* some frame has shown something */
-    bool awaits_picture; /* and one that shows nothing waits for it */
+    struct record_set made; /* what the output tells that is left and computed again */
+    bool has_picture;       /* some frame has shown something */
+    bool awaits_picture;    /* and one that shows nothing waits for it */
 };
 
 struct times {
@@ -257,6 +258,24 @@ static void compare_makers(struct session *s, const struct record *record)
             record->version, record->device, version, device);
 }
 
+static void compare_settings(const struct session *s, const struct record *made,
+                             const struct setting *setting)
+{
+    struct text others = {0};
+    uint32_t count;
+    const vkao_parameter *parameters = vkao_parameters(&count);
+    for (uint32_t i = 0; i < count; i++)
+        if (!parameter_is_of_images(&parameters[i]) &&
+            !parameter_equals(&parameters[i], &made->setting, setting))
+            text_add(&others, "%s%s", others.length ? ", " : "", parameters[i].name);
+    if (others.length && others.data)
+        report_warn(s->report, "settings",
+                    "frames that exist were made with other settings than the rest will be, in "
+                    "%s (--like FRAME takes those of a frame that exists)",
+                    others.data);
+    text_free(&others);
+}
+
 static bool render_view(struct session *s, const struct options *frame_options,
                         const struct frame_source *source, const struct view *view,
                         uint64_t held_bytes, struct rendered_view *out, struct times *times,
@@ -279,6 +298,9 @@ static bool render_view(struct session *s, const struct options *frame_options,
         out->setting.params.bias =
             settled_bias(g, out->setting.params.radius, out->setting.params.bias, s->report);
     ao_view_describe(&g->view, &out->setting.effect);
+    const struct record *made = record_set_find(&s->made, view->name);
+    if (made)
+        compare_settings(s, made, &out->setting);
     summarise(s, &options, out);
     tell_details(s, source, out);
     double start = now_ms();
@@ -329,10 +351,14 @@ static bool render_frame(struct session *s, const struct plan_frame *frame, stru
     start = now_ms();
     char device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
     device_name(s, device, sizeof device);
-    const bool is_left = plan_leaves(&options, frame->output);
-    ok = ok && (is_left || output_write(&options, frame, &source, views, device, err));
+    const bool is_made = !frame->is_left && plan_leaves(&options, frame->output);
+    const bool is_written = ok && !frame->is_left && !is_made;
+    ok = ok && (!is_written || output_write(&options, frame, &source, views, device, err));
     times.write = now_ms() - start;
-    if (ok && !is_left)
+    if (ok && is_made)
+        report_note(s->report, "%s: somebody else has made it meanwhile, left as it is",
+                    frame->output);
+    if (ok && is_written)
         report_detail(s->report, "%s: read %.0f ms, compute %.0f ms, write %.0f ms", frame->output,
                       times.read, times.compute, times.write);
     for (size_t i = 0; i < MAX_VIEWS; i++) {
@@ -352,12 +378,34 @@ static void hint_at_frames(const struct plan *plan, const struct plan_frame *fra
                   options->input);
 }
 
-static bool makes_any(const struct session *s, const struct plan *plan)
+/* Its record has the radius. What else is kept from frame to frame, as a camera that is estimated,
+ * is found by computing it again. */
+static void learn_from(struct session *s, const struct plan_frame *frame)
 {
+    struct tool_error err = {0};
+    if (!record_set_read(frame->output, &s->made, &err)) {
+        report_warn(s->report, "left", "%s: left as it is, whatever made it", err.message);
+        return;
+    }
+    if (s->options->radius_is_auto && s->auto_radius <= 0)
+        s->auto_radius = s->made.records[0].setting.params.radius;
+    report_note(s->report, "%s: exists, computed again for what all frames share", frame->output);
+    if (!render_frame(s, frame, &err) && !err.shows_nothing)
+        report_warn(s->report, "left", "%s: it is not known what all frames share but the radius",
+                    err.message);
+    record_set_free(&s->made);
+}
+
+/* Frames are made like those that are there: the first of these that shows something tells how. */
+static void learn_from_left(struct session *s, const struct plan *plan)
+{
+    size_t left = 0;
     for (size_t i = 0; i < plan->count; i++)
-        if (!plan_leaves(s->options, plan->frames[i].output))
-            return true;
-    return false;
+        left += plan->frames[i].is_left;
+    s->awaits_picture = true; /* one that shows nothing is no mistake */
+    for (size_t i = 0; left < plan->count && i < plan->count && !s->has_picture; i++)
+        if (plan->frames[i].is_left)
+            learn_from(s, &plan->frames[i]);
 }
 
 /* False if the run ends, with *code. */
@@ -370,12 +418,10 @@ static bool try_frame(struct session *s, const struct plan *plan, struct plan_fr
         report_note(s->report, "frame %zu/%zu (%" PRId64 "): %s",
                     (size_t)(frame - plan->frames) + 1, plan->count, frame->number, frame->output);
     frame->is_late = false;
-    if (plan_leaves(s->options, frame->output)) {
-        const bool is_needed = !s->has_picture && makes_any(s, plan);
-        report_note(s->report, "%s: exists, left as it is%s", frame->output,
-                    is_needed ? "; computed for what all frames share" : "");
-        if (!is_needed)
-            return true;
+    frame->is_left = frame->is_left || plan_leaves(s->options, frame->output);
+    if (frame->is_left) {
+        report_note(s->report, "%s: exists, left as it is", frame->output);
+        return true;
     }
     if (render_frame(s, frame, &err))
         return true;
@@ -398,6 +444,8 @@ static int render_plan(struct session *s, struct plan *plan)
 {
     size_t failed = 0, first_late = 0;
     int code = EXIT_OK;
+    if (plan->is_sequence)
+        learn_from_left(s, plan);
     s->awaits_picture = plan->is_sequence && plan->count > 1;
     for (size_t i = 0; i < plan->count; i++) {
         if (!try_frame(s, plan, &plan->frames[i], &failed, &code))
