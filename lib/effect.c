@@ -7,12 +7,12 @@
 
 #include <string.h>
 
-/* May the counts of slices and steps be constants? vbao loops over slices if both are too many
- * together. */
-static bool unrolls(const vkao_effect_info *e)
+/* May the counts of slices and steps be constants? vbao loops over slices, on CPUs all do. */
+static bool unrolls(const struct vkao_program *program)
 {
-    const uint32_t slices = e->method == VKAO_SSAO_VBAO ? 1 : e->slice_count;
-    return slices * e->step_count <= VKAO_MOST_UNROLLED;
+    const vkao_effect_info *e = &program->settings;
+    const bool loops = program->is_cpu || e->method == VKAO_SSAO_VBAO;
+    return (loops ? 1 : e->slice_count) * e->step_count <= VKAO_MOST_UNROLLED;
 }
 
 /* Is final AO rounded to half floats? If its image has them; and with COMPOSITE if the caller names
@@ -46,8 +46,8 @@ static void set_constants(struct vkao_program *program)
     c[VKAO_SETTING_THICKNESS_INPUT] = (uint32_t)e->thickness_input;
     c[VKAO_SETTING_SECOND_LAYER] = e->second_layer;
     c[VKAO_SETTING_SPHERE_LITERAL] = e->sphere_form == VKAO_SPHERE_LITERAL;
-    c[VKAO_SETTING_SLICES] = has_slices && unrolls(e) ? e->slice_count : 0;
-    c[VKAO_SETTING_STEPS] = has_slices && unrolls(e) ? e->step_count : 0;
+    c[VKAO_SETTING_SLICES] = has_slices && unrolls(program) ? e->slice_count : 0;
+    c[VKAO_SETTING_STEPS] = has_slices && unrolls(program) ? e->step_count : 0;
     c[VKAO_SETTING_SAMPLES] =
         has_samples && e->sample_count <= VKAO_MOST_UNROLLED ? e->sample_count : 0;
     c[VKAO_SETTING_BLUR_RADIUS] = e->blur_radius;

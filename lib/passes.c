@@ -172,7 +172,8 @@ static vkao_result create_layouts(const struct vkao_program *program, struct vka
             .setLayoutCount = 1,
             .pSetLayouts = &step->set_layout,
             .pushConstantRangeCount = 1,
-            .pPushConstantRanges = &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, 32},
+            .pPushConstantRanges =
+                &(VkPushConstantRange){VK_SHADER_STAGE_COMPUTE_BIT, 0, VKAO_PUSH_BYTES},
         },
         ctx->allocator, &step->layout);
     if (result != VK_SUCCESS) {

@@ -135,7 +135,7 @@
 /* Samples or steps in a row: loops longer than that take long to compile, and their overhead is
  * small. */
 #define VKAO_MOST_UNROLLED 64u
-/* Of vbao on a CPU, whose steps are long. */
+/* Of vbao on a CPU, whose steps are long: at least 3. More leave an instruction cache. */
 #define VKAO_VBAO_MOST_AT_ONCE 4u
 
 /* View z outside this range is background: what squares of lengths, in radii and at any field of
@@ -343,5 +343,7 @@ struct vkao_constants {
 struct vkao_dispatch {
     VKAO_UVEC2(rect); /* to write, on the pass's grid */
 };
+/* At most, of any pass. */
+#define VKAO_PUSH_BYTES 32
 
 #endif

@@ -46,11 +46,4 @@ Masks make_masks(reals sin_n, reals cos_n)
     return m;
 }
 
-/* At least 0, but for rounding not always at most 31. c is not below the tangent plane. k0: that of
- * m, or less by at most VKAO_VBAO_ROUND. */
-ints sector(Masks m, reals c, reals k0)
-{
-    return ints(k0 + c * (m.k1 + c * (m.k2 + c * m.k3)));
-}
-
 #endif

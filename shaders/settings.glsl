@@ -36,7 +36,7 @@ const int THICKNESS_MASK =
     IS_GIVEN ? (VKAO_THICKNESS_MASK + 1 << VKAO_THICKNESS_FINER) - 1 : VKAO_THICKNESS_MASK;
 
 /* All that is read is read first: behind a branch and in a loop a driver in software reads a
- * constant lane by lane. */
+ * constant lane by lane. Compilers for GPUs drop what is not used. */
 layout(binding = VKAO_BINDING_CONSTANTS) uniform Constants { vkao_constants constants; };
 vkao_constants params = constants;
 

@@ -79,6 +79,9 @@ static void record_tiles(const struct vkao_recording *r, uint32_t pass)
 {
     static_assert(VKAO_STRIP_TEXELS % (VKAO_ROW_GROUP_WIDTH * VKAO_SSAO_TEXELS) == 0,
                   "strips are of whole tiles");
+    static_assert(sizeof(struct vkao_tiling) <= VKAO_PUSH_BYTES &&
+                      sizeof(struct vkao_strip) <= VKAO_PUSH_BYTES,
+                  "push constants of every pass have the same range");
     const struct vkao_pass *ssao = r->frame->program->steps[pass + 1].row;
     const struct vkao_rect rect = vkao_area(r, ssao->area);
     const uint32_t width = ssao->texels.width * ssao->group.width;

@@ -388,7 +388,7 @@ VKAO_DEFAULT(vkao_effect_info)
  * effects and use one at once; destroying it is the exception. */
 typedef struct vkao_effect vkao_effect;
 
-/* Compiles the passes of exactly these settings, loops unrolled and choices made. Takes
+/* Compiles the passes of exactly these settings, counts known and choices made. Takes
  * milliseconds to seconds, so call it while loading or in a thread. Errors: INVALID_ARGUMENT,
  * UNSUPPORTED, OUT_OF_*_MEMORY, VULKAN. */
 VKAO_API VKAO_MUST_CHECK vkao_result vkao_effect_create(const vkao_context *ctx,

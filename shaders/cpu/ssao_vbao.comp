@@ -20,8 +20,8 @@ uint padded(uint n)
     return (STEPS + n - 1u) / n * n;
 }
 
-/* Steps that are unrolled in a loop over the rest: those that leave the fewest to take for nothing
- * at the end. */
+/* Steps that are unrolled in a loop over the rest: as many as are allowed, or up to two fewer if
+ * that leaves fewer to take for nothing at the end. */
 uint chunk()
 {
     const uint most = VKAO_VBAO_MOST_AT_ONCE;
@@ -45,6 +45,13 @@ reals width_of(reals z)
 {
     ints code = floatBitsToInt(z) & VKAO_THICKNESS_MASK;
     return intBitsToFloat((code << VKAO_THICKNESS_SHIFT) + VKAO_THICKNESS_LEAST_BITS);
+}
+
+/* The bound of a cosine that is not below the tangent plane: at least 0, but for rounding not
+ * always at most SECTORS. upper: k0, or less by at most VKAO_VBAO_ROUND. */
+ints sector(Masks m, reals c, reals upper)
+{
+    return ints(upper + c * (m.k1 + c * (m.k2 + c * m.k3)));
 }
 
 /* Takes what a sample of both sides hides first. */
@@ -127,6 +134,7 @@ Hidden hidden_mass(Slice s, ivec2 texel, real jitter)
     March march =
         March(ints(0), none, none, reals(-2.0), m.k0 - VKAO_VBAO_ROUND_LESS, none, none, none);
     uint t = 0u;
+    /* A loop that is gone through once is none: a driver in software would count lanes for it. */
     [[dont_unroll]] for (;;) {
         [[unroll]] for (uint i = 0u; i < chunk(); ++i)
             take_step(march, s, m, fall, texel, steps, t + i);

@@ -50,6 +50,8 @@ static void agrees_with_reference_for_every_count_falloff_and_noise(void **state
         {2, 16, 33, 0xffffffffu, VKAO_FALLOFF_THRESHOLD, 1.5f, 0.1f, 8.0f},
         {4, 24, 64, 7, VKAO_FALLOFF_SMOOTH, 0.35f, 0.02f, 2.0f},
         {1, 9, 9, 1, VKAO_FALLOFF_THRESHOLD, 0.6f, 0.01f, 1.0f},
+        {1, 10, 10, 2, VKAO_FALLOFF_SMOOTH, 0.7f, 0.01f, 1.0f},
+        {2, 13, 13, 6, VKAO_FALLOFF_SMOOTH, 0.5f, 0.02f, 2.0f},
         {2, 70, 70, 5, VKAO_FALLOFF_SMOOTH, 0.8f, 0.01f, 1.0f}, /* not known when compiled */
     };
     const struct scene scene = scene_corner();

@@ -643,19 +643,20 @@ failed:
     return false;
 }
 
+void gbuffer_free_inputs(struct gbuffer *gbuffer)
+{
+    float **planes[] = {&gbuffer->depth,        &gbuffer->normals, &gbuffer->thickness,
+                        &gbuffer->second_depth, &gbuffer->kept,    &gbuffer->albedo,
+                        &gbuffer->specular,     &gbuffer->holdout, &gbuffer->alpha};
+    for (size_t i = 0; i < sizeof planes / sizeof *planes; i++) {
+        free(*planes[i]);
+        *planes[i] = NULL;
+    }
+}
+
 void gbuffer_free(struct gbuffer *gbuffer)
 {
-    free(gbuffer->depth);
-    free(gbuffer->normals);
+    gbuffer_free_inputs(gbuffer);
     free(gbuffer->color);
-    free(gbuffer->thickness);
-    free(gbuffer->alpha);
-    free(gbuffer->second_depth);
-    free(gbuffer->kept);
-    free(gbuffer->albedo);
-    free(gbuffer->specular);
-    free(gbuffer->holdout);
-    gbuffer->kept = gbuffer->albedo = gbuffer->specular = gbuffer->holdout = NULL;
-    gbuffer->depth = gbuffer->normals = gbuffer->color = NULL;
-    gbuffer->thickness = gbuffer->second_depth = gbuffer->alpha = NULL;
+    gbuffer->color = NULL;
 }

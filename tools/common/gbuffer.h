@@ -176,6 +176,8 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
 float *gbuffer_read_color(const struct gbuffer *gbuffer, struct exr_box *window,
                           struct tool_error *err);
 void gbuffer_free(struct gbuffer *gbuffer);
+/* All but the colour, which what is written may need. */
+void gbuffer_free_inputs(struct gbuffer *gbuffer);
 /* Of a depth that is no background, at a texel of the data window, row * width + column. */
 double gbuffer_view_z(const struct gbuffer *gbuffer, float depth, size_t texel);
 

@@ -16,7 +16,7 @@ struct plan_frame {
     char *input, *output;
     char *camera, *like, *preview, *write_camera; /* NULL if not asked for */
     char *file[ROLE_FILES];                       /* likewise */
-    bool is_left; /* its output is there, see --overwrite skip */
+    bool is_left;                                 /* its output is there, see --overwrite skip */
     bool is_late; /* it shows nothing, and waits for a frame that shows something */
 };
 

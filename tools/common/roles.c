@@ -52,10 +52,6 @@ const char *roles_view_name(const struct exr_info *info, size_t index)
 }
 /* --- Results --- */
 
-static const char *const option_names[ROLE_KINDS] = {
-    "depth",      "normal",  "color",     "position", "AO",      "thickness-channel",
-    "back-depth", "layer2",  "roughness", "holdout",  "no-cast", "indirect",
-    "albedo",     "specular"};
 static size_t common_prefix(const char *a, const char *b)
 {
     size_t n = 0;
@@ -124,11 +120,11 @@ static bool fail_ambiguous(const struct role_search *s, enum role_kind kind, str
         char label[ROLE_LABEL_MAX];
         role_hit_label(s, &s->hits[i], label);
         text_add(&list, "%s'%s'", i ? ", " : "", label);
-        text_add(&arguments, "%s--%s '%s'", i ? " or " : "", option_names[kind], label);
+        text_add(&arguments, "%s--%s '%s'", i ? " or " : "", role_names[kind].option, label);
     }
     fail_hint(err, "add %s", arguments.data ? arguments.data : "");
     fail(err, EXIT_CHANNELS, "%s: %zu %s candidates: %s", s->info->path, s->count,
-         option_names[kind], list.data ? list.data : "");
+         role_names[kind].option, list.data ? list.data : "");
     text_free(&list);
     text_free(&arguments);
     return false;
@@ -206,14 +202,14 @@ static bool fail_missing(const struct exr_info *info, const char *view, enum rol
                   role_is_scalar(kind) ? "--%s takes a channel, a layer or part/channel"
                                        : "--%s takes a layer with three components, X Y Z or R G "
                                          "B, or a part with them",
-                  option_names[kind]);
+                  role_names[kind].option);
     } else {
         fail(err, EXIT_CHANNELS, "%s: no %s channel found%s%s; channels: %s", info->path,
-             option_names[kind], *view ? " in view " : "", view, channels);
+             role_names[kind].option, *view ? " in view " : "", view, channels);
         if (kind == ROLE_DEPTH)
             hint_at_depth(info, err);
         else
-            fail_hint(err, "say which it is: --%s NAME", option_names[kind]);
+            fail_hint(err, "say which it is: --%s NAME", role_names[kind].option);
     }
     text_free(&list);
     return false;

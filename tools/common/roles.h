@@ -30,6 +30,11 @@ enum role_kind {
     ROLE_SPECULAR,
     ROLE_KINDS
 };
+/* What people are told, what JSON has, and the option without its dashes. */
+struct role_name {
+    const char *said, *key, *option;
+};
+extern const struct role_name role_names[ROLE_KINDS];
 /* Depth, normals and colour may each lie in a file of its own. */
 enum { ROLE_FILES = ROLE_COLOR + 1 };
 /* One number per texel. */

@@ -4,6 +4,23 @@
 #include "roles.h"
 
 /* clang-format off */
+const struct role_name role_names[ROLE_KINDS] = {
+    [ROLE_DEPTH] = {"depth", "depth", "depth"},
+    [ROLE_NORMAL] = {"normal", "normal", "normal"},
+    [ROLE_COLOR] = {"color", "color", "color"},
+    [ROLE_POSITION] = {"position", "position", "position"},
+    [ROLE_AO] = {"AO", "ao", "AO"},
+    [ROLE_THICKNESS] = {"thickness", "thickness", "thickness-channel"},
+    [ROLE_BACK_DEPTH] = {"back depth", "back_depth", "back-depth"},
+    [ROLE_LAYER2] = {"second layer", "layer2", "layer2"},
+    [ROLE_ROUGHNESS] = {"roughness", "roughness", "roughness"},
+    [ROLE_HOLDOUT] = {"holdout", "holdout", "holdout"},
+    [ROLE_NO_CAST] = {"no cast", "no_cast", "no-cast"},
+    [ROLE_INDIRECT] = {"indirect", "indirect", "indirect"},
+    [ROLE_ALBEDO] = {"albedo", "albedo", "albedo"},
+    [ROLE_SPECULAR] = {"specular", "specular", "specular"},
+};
+
 #define DEPTH_COMPONENTS {{"Z"}, {"R|red"}, {"depth"}, {"Y"}, {"V"}, {"T"}, {"D"}}
 #define VECTOR_COMPONENTS \
     {{"X", "Y", "Z"}, {"R", "G", "B"}, {"red", "green", "blue"}, {"NX", "NY", "NZ"}}

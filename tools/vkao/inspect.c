@@ -14,10 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const kind_names[ROLE_KINDS] = {
-    "depth",  "normal",    "color",   "position", "ao",       "thickness", "back_depth",
-    "layer2", "roughness", "holdout", "no_cast",  "indirect", "albedo",    "specular"};
-
 /* --- Collecting --- */
 
 static void add_box(cJSON *object, const char *name, const struct exr_box *box)
@@ -59,10 +55,10 @@ static void add_roles(cJSON *object, const struct roles *roles)
         if (!role->found) {
             /* Those that nothing but an option finds are not missed. */
             if (k < ROLE_THICKNESS)
-                cJSON_AddNullToObject(list, kind_names[k]);
+                cJSON_AddNullToObject(list, role_names[k].key);
             continue;
         }
-        cJSON *entry = cJSON_AddObjectToObject(list, kind_names[k]);
+        cJSON *entry = cJSON_AddObjectToObject(list, role_names[k].key);
         cJSON_AddStringToObject(entry, "name", role->label);
         cJSON_AddStringToObject(entry, "file", role->info->path);
         cJSON_AddNumberToObject(entry, "part", (double)role->part);
@@ -184,7 +180,7 @@ static struct camera used_camera(const struct gbuffer *g)
 static void add_passed_over(void *data, enum role_kind kind, const char *label, const char *reason)
 {
     cJSON *entry = cJSON_CreateObject();
-    cJSON_AddStringToObject(entry, "role", kind_names[kind]);
+    cJSON_AddStringToObject(entry, "role", role_names[kind].key);
     cJSON_AddStringToObject(entry, "name", label);
     cJSON_AddStringToObject(entry, "why", reason);
     cJSON_AddItemToArray(data, entry);
@@ -201,7 +197,7 @@ static void add_missing(cJSON *object, const struct gbuffer_options *options,
     cJSON *missing = cJSON_AddObjectToObject(object, "missing");
     for (int k = 0; k < ROLE_POSITION; k++)
         if (!roles->kind[k].found)
-            cJSON_AddStringToObject(missing, kind_names[k],
+            cJSON_AddStringToObject(missing, role_names[k].key,
                                     k == ROLE_NORMAL && options->roles.no_normals ? "not wanted"
                                                                                   : gains[k]);
 }
@@ -498,15 +494,15 @@ static void print_view(const cJSON *view, bool is_unchosen)
     const cJSON *roles = cJSON_GetObjectItemCaseSensitive(view, "roles");
     const cJSON *missing = cJSON_GetObjectItemCaseSensitive(view, "missing");
     for (int k = 0; k < ROLE_KINDS; k++) {
-        const cJSON *role = cJSON_GetObjectItemCaseSensitive(roles, kind_names[k]);
+        const cJSON *role = cJSON_GetObjectItemCaseSensitive(roles, role_names[k].key);
         if (!role)
             continue;
         if (cJSON_IsObject(role))
-            printf("  %-9s %s (%s, part %d)\n", kind_names[k], text_of(role, "name"),
+            printf("  %-9s %s (%s, part %d)\n", role_names[k].key, text_of(role, "name"),
                    text_of(role, "type"), (int)number_of(role, "part"));
         else
-            printf("  %-9s -%s%s\n", kind_names[k], has(missing, kind_names[k]) ? "  " : "",
-                   text_of(missing, kind_names[k]));
+            printf("  %-9s -%s%s\n", role_names[k].key, has(missing, role_names[k].key) ? "  " : "",
+                   text_of(missing, role_names[k].key));
     }
     print_passed_over(view);
     if (has(view, "camera"))

@@ -122,15 +122,12 @@ static void summarise(struct session *s, const struct options *o, const struct r
 static void tell_details(const struct session *s, const struct frame_source *source,
                          const struct rendered_view *view)
 {
-    static const char *const names[ROLE_KINDS] = {
-        "depth",        "normal",    "color",   "position", "AO",       "thickness", "back depth",
-        "second layer", "roughness", "holdout", "no cast",  "indirect", "albedo",    "specular"};
     const struct gbuffer *g = &view->gbuffer;
     for (int k = 0; k < ROLE_KINDS; k++)
         if (g->roles.kind[k].found)
             report_detail(s->report, "%s: %s%s%s: %s (part %zu)", g->roles.kind[k].info->path,
-                          view->name, *view->name ? ": " : "", names[k], g->roles.kind[k].label,
-                          g->roles.kind[k].part);
+                          view->name, *view->name ? ": " : "", role_names[k].said,
+                          g->roles.kind[k].label, g->roles.kind[k].part);
     report_detail(s->report, "%s: view z %.5g to %.5g, median %.5g; background %.3g %%",
                   source->info.path, g->min_z, g->max_z, g->median_z, g->background_share * 100.0);
 }
@@ -306,16 +303,7 @@ static bool render_view(struct session *s, const struct options *frame_options,
     double start = now_ms();
     bool ok = compute(s, out, err);
     times->compute += now_ms() - start;
-    free(g->depth);
-    free(g->normals);
-    free(g->thickness);
-    free(g->second_depth);
-    free(g->kept);
-    free(g->albedo);
-    free(g->specular);
-    free(g->holdout);
-    g->depth = g->normals = g->thickness = g->second_depth = NULL;
-    g->kept = g->albedo = g->specular = g->holdout = NULL;
+    gbuffer_free_inputs(g);
     return ok;
 }
 
