@@ -3,6 +3,17 @@
 
 #include <stdbool.h>
 #include <stdlib.h>
+#include <vulkan/vulkan.h>
+
+/* Mesa never runs at that width by itself, so it is done where all that vkao has was tried: with
+ * Mesa 22.3 and LLVM 15 of Debian 12. Drivers say what they are only when it is too late; this is
+ * the loader that goes with them. */
+static bool is_tried(void)
+{
+    uint32_t loader = 0;
+    return vkEnumerateInstanceVersion(&loader) == VK_SUCCESS &&
+           loader == VK_MAKE_API_VERSION(0, 1, 3, 239);
+}
 
 #ifdef __x86_64__
 #include <cpuid.h>
@@ -30,7 +41,8 @@ static bool is_wide_processor(void)
 
 void choose_vector_width(void)
 {
-    if (getenv("LP_NATIVE_VECTOR_WIDTH") || getenv("GALLIVM_PERF") || !is_wide_processor())
+    if (getenv("LP_NATIVE_VECTOR_WIDTH") || getenv("GALLIVM_PERF") || !is_wide_processor() ||
+        !is_tried())
         return;
     /* Mesa's cache on disk does not tell widths apart: other programs would run code for this one.
      * It does tell this flag, which means trilinear filtering alone. There is none here. */
