@@ -6,7 +6,7 @@ import numpy as np
 
 from cli import CHANNELS, case, cases, check, equal, main, matches, read_ao, write_exr
 from evidence import OPTIONS, check_same, clean, inspect, run
-from scene import FOV, Scene
+from scene import FOV, MOVE, TURN, Scene
 
 NORMAL_NAMES = [
     ('N.red', ('N.red', 'N.green', 'N.blue')), ('NX', ('NX', 'NY', 'NZ')),
@@ -17,6 +17,10 @@ NORMAL_NAMES = [
     ('CameraNormal', ('FinalImageCameraNormal.R', 'FinalImageCameraNormal.G',
                       'FinalImageCameraNormal.B')),
     ('normal_x', ('normal_x', 'normal_y', 'normal_z')),
+    ('N.world', ('N.world.X', 'N.world.Y', 'N.world.Z')),
+    ('Normal.camera', ('Layer.Normal.camera.r', 'Layer.Normal.camera.g', 'Layer.Normal.camera.b')),
+    ('N.filtered', ('N.filtered.X', 'N.filtered.Y', 'N.filtered.Z')),
+    ('nrm', ('nrm.X', 'nrm.Y', 'nrm.Z')),
     ('shadingNormals', ('shadingNormals.x', 'shadingNormals.y', 'shadingNormals.z'))]
 
 
@@ -59,6 +63,54 @@ def normals_of_two_components_are_told(scratch, layer, letters):
     view = inspect(scratch, '--fov', FOV)
     equal(view['roles']['normal'], None, 'normals')
     check(told in view['passed_over'], str(view['passed_over']))
+
+
+@cases([('two components', {'N.X', 'N.Y'}, "'N.X' (two components: a third is missing)"),
+        ('a word of it', {f'rgba_N.{c}' for c in 'RGB'}, "'rgba_N'"),
+        ('another', {f'beauty.N_left.{c}' for c in 'XYZ'}, "'beauty.N_left'"),
+        ('a longer word', {f'rgba_Nose.{c}' for c in 'RGB'}, None),
+        ('tangent space', {f'normal_tangent.{c}' for c in 'RGB'}, None)])
+def what_may_be_normals_is_named(scratch, _, names, wanted):
+    scene = Scene(48, 27)
+    planes = [*scene.normals().values()]
+    channels = dict(zip(sorted(names), planes))
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **channels})
+    view = inspect(scratch, '--fov', FOV)
+    equal(view['roles']['normal'], None, 'normals')
+    said = str(view['warnings'])
+    check(('by their names these may be some: ' in said) == (wanted is not None), said)
+    check(not wanted or f'{wanted} (--normal NAME)' in said.replace("\\'", "'"), said)
+    said = str(inspect(scratch, '--fov', FOV, '--normal', 'none')['warnings'])
+    check('by their names' not in said, f'none are wanted: {said}')
+
+
+@cases([('world', 'P.world', 'N.world'), ('camera', 'P.camera', 'N.camera'),
+        ('any layer', 'where', 'N'), ('in a layer', 'a.where', 'N')])
+def layers_of_positions_are_positions(scratch, _, layer, normal):
+    scene = Scene()
+    space = 'world' if 'world' in layer else 'camera'
+    wanted, _ = clean(scratch, scene)
+    finite = np.where(scene.sky, 0, scene.z)
+    points = np.stack([scene.x * finite, scene.y * finite, -finite], axis=-1)
+    if space == 'world':
+        points = np.where(scene.sky[..., None], 0, (points - MOVE) @ TURN)
+    channels = {**{f'{layer}.{c}': points[..., i].astype(np.float32)
+                   for i, c in enumerate('XYZ')}, **scene.normals(normal, space)}
+    if normal != 'N':  # named so that no option is needed
+        ao, said = run(scratch, channels)
+        check_same(ao, wanted, f'no option: {said}')
+    ao, said = run(scratch, channels, '--depth', layer)
+    check_same(ao, wanted, f'--depth {layer}: {said}')
+    view = inspect(scratch, '--depth', f'{layer}.Z', '--depth-type', 'planar')
+    equal(view['roles']['depth']['channels'], [f'{layer}.Z'], 'a component that is named')
+
+
+@case
+def normals_of_the_camera_come_before_those_of_the_world(scratch):
+    scene = Scene()
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **scene.normals('N.world', 'world'),
+                                       **scene.normals('N.camera')})
+    equal(inspect(scratch, '--fov', FOV)['roles']['normal']['name'], 'N.camera', 'normals')
 
 
 @cases([('hitPz',), ('ImageDepth.R',), ('Z-depth.R',), ('dd.y',), ('Depth.V',), ('Depth',),

@@ -4,6 +4,7 @@
  * the pixels do: what the camera sees faces it. */
 #include "gbuffer_internal.h"
 #include "median.h"
+#include "text.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -618,11 +619,18 @@ bool gbuffer_prepare_normals(struct gbuffer *g, const struct gbuffer_options *op
         /* Planar depth is that of things through any lens. */
         const bool is_unchecked =
             c->source[0] && !gbuffer_camera_is_explicit(c) && strcmp(c->source, "positions") != 0;
+        struct text others = {0};
+        if (!options->roles.no_normals && !g->roles.kind[ROLE_NORMAL].found)
+            roles_list_normals(g->roles.kind[ROLE_DEPTH].info, &options->roles, &others);
         if (!options->roles.no_normals)
-            report_warn(report, "no normals",
-                        "%s: no normals; deriving them from depth (edges less accurate)%s%s%s",
-                        path, is_unchecked ? "; nothing checks the field of view of " : "",
-                        is_unchecked ? c->source : "", is_unchecked ? " either" : "");
+            report_warn(
+                report, "no normals",
+                "%s: no normals; deriving them from depth (edges less accurate)%s%s%s%s%s%s", path,
+                is_unchecked ? "; nothing checks the field of view of " : "",
+                is_unchecked ? c->source : "", is_unchecked ? " either" : "",
+                others.data ? "; by their names these may be some: " : "",
+                others.data ? others.data : "", others.data ? " (--normal NAME)" : "");
+        text_free(&others);
         drop_normals(g);
         return true;
     }

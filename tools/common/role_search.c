@@ -121,14 +121,28 @@ static bool layer_fits(const char *layers, const char *leaf)
     return role_name_fits(layers, leaf);
 }
 
+/* The component of the layer before its last. */
+static bool outer_fits(const char *outer, const char *layer, const char *leaf)
+{
+    char before[ROLE_NAME_BYTES];
+    if (!outer)
+        return true;
+    if (leaf == layer)
+        return false;
+    snprintf(before, sizeof before, "%.*s", (int)(leaf - layer - 1), layer);
+    const char *dot = strrchr(before, '.');
+    return role_name_fits(outer, dot ? dot + 1 : before);
+}
+
 /* Bare R, G, B of a part called 'N' are normals, not colour; a part called 'beauty' may hold
  * anything. */
-static bool part_name_forbids(const char *leaf, enum role_kind kind)
+static bool part_name_forbids(const struct role_channel *name, enum role_kind kind)
 {
+    const char *leaf = name->leaf;
     for (size_t i = 0; *leaf && i < role_table_count; i++) {
         const struct role_row *row = &role_table[i];
         if (row->layers && row->layers[0] != '*' && row->kind != kind && row->kind != ROLE_COLOR &&
-            layer_fits(row->layers, leaf))
+            layer_fits(row->layers, leaf) && outer_fits(row->outer, name->layer, leaf))
             return true;
     }
     return false;
@@ -215,8 +229,9 @@ static bool row_applies(const struct role_search *s, const struct role_row *row,
 static bool row_fits(const struct role_search *s, const struct role_row *row, size_t part,
                      const struct role_channel *name)
 {
-    bool layer = row->layers ? layer_fits(row->layers, name->leaf)
-                             : name->bare && !part_name_forbids(name->leaf, row->kind);
+    bool layer = row->layers ? layer_fits(row->layers, name->leaf) &&
+                                   outer_fits(row->outer, name->layer, name->leaf)
+                             : name->bare && !part_name_forbids(name, row->kind);
     if (!layer || row->kind != ROLE_DEPTH)
         return layer;
     return !role_channel_is_never_depth(name) && !role_channel_is_of_vector(s, part, name);

@@ -5,6 +5,7 @@
 #include "role_search.h"
 #include "text.h"
 
+#include <ctype.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -224,24 +225,33 @@ static bool fail_deep(const struct exr_info *info, size_t part, struct tool_erro
 
 /* --- One role --- */
 
-/* --depth P: positions, not one of their components. */
+static bool take_labelled(struct role_search *s, const char *name, struct role *role)
+{
+    for (size_t h = 0; h < s->count; h++) {
+        char label[ROLE_LABEL_MAX];
+        role_hit_label(s, &s->hits[h], label);
+        if (strcmp(label, name) != 0)
+            continue;
+        take_hit(s, &s->hits[h], NULL, role);
+        role->depth_type = DEPTH_POSITION;
+        return true;
+    }
+    return false;
+}
+
+/* --depth P: positions, not one of their components, and so is any layer with X, Y and Z. */
 static bool names_positions(struct role_search *s, const char *name, struct role *role)
 {
     for (size_t i = 0; i < role_table_count; i++) {
         if (role_table[i].kind != ROLE_POSITION)
             continue;
         role_search_row(s, &role_table[i]);
-        for (size_t h = 0; h < s->count; h++) {
-            char label[ROLE_LABEL_MAX];
-            role_hit_label(s, &s->hits[h], label);
-            if (strcmp(label, name) != 0)
-                continue;
-            take_hit(s, &s->hits[h], NULL, role);
-            role->depth_type = DEPTH_POSITION;
+        if (take_labelled(s, name, role))
             return true;
-        }
     }
-    return false;
+    role_search_named(s, ROLE_POSITION, name);
+    enum { XYZ = 0 }; /* the first of role_vector_sets */
+    return s->count == 1 && s->hits[0].set == XYZ && take_labelled(s, name, role);
 }
 
 static bool resolve_named(struct role_search *s, enum role_kind kind, const char *name,
@@ -395,6 +405,8 @@ bool roles_resolve(const struct exr_info *info, const struct role_request *reque
                          : resolve_found(&s, (enum role_kind)kind, depth, role, err);
     }
     s.info = info;
+    if (depth->found && depth->depth_type == DEPTH_POSITION)
+        roles->kind[ROLE_POSITION] = *depth; /* those that are named */
     if (ok && !depth->found && !take_positions(roles) && !take_grey_file(&s, roles))
         return fail_without_depth(info, s.view, err);
     return ok;
@@ -543,6 +555,55 @@ void roles_passed_over(const struct exr_info *info, const struct role_request *r
     tell_later_hits(&p, ROLE_COLOR);
     tell_by_name(&p, ROLE_DEPTH, reason_against_depth);
     tell_by_name(&p, ROLE_NORMAL, reason_against_normal);
+}
+
+/* Words of a layer, which anything but letters and digits ends: rgba_N, N_Beauty. */
+static bool is_called_normals(const char *layer)
+{
+    char word[ROLE_NAME_BYTES];
+    size_t length = 0;
+    for (const char *c = layer;; c++) {
+        if (isalnum((unsigned char)*c)) {
+            word[length++] = *c;
+            continue;
+        }
+        word[length] = '\0';
+        if (role_name_fits("N|Ns|Nn|Ng|nrm|nrml|nml|norm|norms|normal|normals", word))
+            return !role_name_fits("~tangent", layer);
+        length = 0;
+        if (!*c)
+            return false;
+    }
+}
+
+void roles_list_normals(const struct exr_info *info, const struct role_request *request,
+                        struct text *list)
+{
+    enum { ENOUGH = 4 };
+    struct role_search s = {.info = info, .view = request->view ? request->view : ""};
+    size_t count = 0;
+    for (size_t p = 0; p < info->part_count; p++) {
+        const struct exr_part *part = &info->parts[p];
+        for (size_t c = 0; count < ENOUGH && c < part->channel_count; c++) {
+            struct role_channel name;
+            char label[ROLE_LABEL_MAX];
+            if (!role_part_has_view(part, s.view) ||
+                !role_channel_read(part, part->channels[c].name, s.view, info->part_count > 1,
+                                   &name) ||
+                !is_called_normals(name.layer))
+                continue;
+            s.count = 0;
+            role_search_sets(&s, role_vector_sets, p, &part->channels[c], &name);
+            const bool is_pair = s.count == 0 && reason_against_normal(&s, p, &name);
+            if (s.count > 0)
+                role_hit_label(&s, &s.hits[0], label);
+            else
+                snprintf(label, sizeof label, "%s", part->channels[c].name);
+            if (s.count > 0 || is_pair)
+                text_add(list, "%s'%s'%s", count++ ? ", " : "", label,
+                         is_pair ? " (two components: a third is missing)" : "");
+        }
+    }
 }
 
 void roles_list_colors(const struct exr_info *info, const struct role_request *request,

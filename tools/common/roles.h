@@ -74,6 +74,8 @@ struct role_row {
      * '~' in front: the layer contains all of the words, which '&' joins, or not those with '!'.
      * '=' in front: one name, and its case counts. */
     const char *layers;
+    /* That before it, likewise: 'N' of N.world. NULL: any. */
+    const char *outer;
     /* Spellings of the components, case ignored; all of one set must be there. '|' separates
      * alternatives; '~' in front: the component contains the word. */
     const char *sets[ROLE_MAX_SETS][ROLE_MAX_COMPONENTS];
@@ -152,6 +154,10 @@ typedef void (*role_listener)(void *data, enum role_kind kind, const char *label
                               const char *reason);
 void roles_passed_over(const struct exr_info *info, const struct role_request *request,
                        const struct roles *roles, role_listener listener, void *data);
+/* "'rgba_N', 'N.X'": what might be normals by its name, with the components of some, or with two. At
+ * most a few. */
+void roles_list_normals(const struct exr_info *info, const struct role_request *request,
+                        struct text *list);
 /* "'diffuse', 'specular'": whatever has three components of a colour. */
 void roles_list_colors(const struct exr_info *info, const struct role_request *request,
                        struct text *list);

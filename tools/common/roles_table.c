@@ -24,6 +24,7 @@ const struct role_name role_names[ROLE_KINDS] = {
 #define DEPTH_COMPONENTS {{"Z"}, {"R|red"}, {"depth"}, {"Y"}, {"V"}, {"T"}, {"D"}}
 #define VECTOR_COMPONENTS \
     {{"X", "Y", "Z"}, {"R", "G", "B"}, {"red", "green", "blue"}, {"NX", "NY", "NZ"}}
+#define NORMAL_LAYERS "N|Ns|Nn|normal|normals"
 /* OpenImageIO's own test image has Red, G and B. */
 #define COLOR_COMPONENTS \
     {{"R", "G", "B"}, {"red", "green", "blue"}, {"R|red", "G|green", "B|blue"}}
@@ -101,10 +102,21 @@ const struct role_row role_table[] = {
      .normal_space = NORMAL_SPACE_CAMERA},
     {.kind = ROLE_NORMAL, .layers = "NormalVS|NormalCS|ViewNormal|N_camera|Ncam|normal_camera",
      .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_CAMERA},
+    /* 3Delight says the space last; those of the camera need no rotation */
+    {.kind = ROLE_NORMAL, .outer = NORMAL_LAYERS, .layers = "camera|cam|view|cameraspace",
+     .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_CAMERA},
+    {.kind = ROLE_NORMAL, .outer = NORMAL_LAYERS, .layers = "world|ws|worldspace",
+     .sets = VECTOR_COMPONENTS, .normal_space = NORMAL_SPACE_WORLD},
+    {.kind = ROLE_NORMAL, .outer = NORMAL_LAYERS, .layers = "shading|smooth|raw|unfiltered",
+     .sets = VECTOR_COMPONENTS},
+    {.kind = ROLE_NORMAL, .layers = "nrm|nrml|nml|norm|norms", .sets = VECTOR_COMPONENTS},
     /* Geometric ones show facets, and filtered ones are blurred: better than none */
     {.kind = ROLE_NORMAL, .layers = "gn|Ng|geo_normal|GEOMETRIC_NORMAL|CGeometry_NormalsGeometry",
      .sets = VECTOR_COMPONENTS},
-    {.kind = ROLE_NORMAL, .layers = "N_denoise|Denoising Normal|OptiXNormals|denoise_normal",
+    {.kind = ROLE_NORMAL,
+     .layers = "N_denoise|N_denoised|N_filtered|Denoising Normal|OptiXNormals|denoise_normal",
+     .sets = VECTOR_COMPONENTS},
+    {.kind = ROLE_NORMAL, .outer = NORMAL_LAYERS, .layers = "filtered|denoise|denoised",
      .sets = VECTOR_COMPONENTS},
     /* Octane, Corona and others: Normal (shading), Normal (smooth), Normal (geometric). Nothing is
      * seen in tangent space */
@@ -123,6 +135,11 @@ const struct role_row role_table[] = {
     {.kind = ROLE_POSITION,
      .layers = "P|Pworld|__Pworld|position|pos|worldPosition|posW|VRayWorldPosition|"
                "CGeometry_WorldPosition|PositionWS|hitP",
+     .sets = VECTOR_COMPONENTS},
+    /* 3Delight; that of the world tells the rotation of the camera */
+    {.kind = ROLE_POSITION, .outer = "P|position|pos", .layers = "world|ws|worldspace",
+     .sets = VECTOR_COMPONENTS},
+    {.kind = ROLE_POSITION, .outer = "P|position|pos", .layers = "camera|cam|view|cameraspace",
      .sets = VECTOR_COMPONENTS},
     /* Unreal, by a material; worldPositions of V-Ray */
     {.kind = ROLE_POSITION, .layers = "~worldpos", .sets = VECTOR_COMPONENTS},
