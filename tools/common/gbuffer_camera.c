@@ -143,6 +143,15 @@ static void describe(enum camera_type type, double half_width, char view[VIEW_BY
                  camera_fov_x_deg(&camera));
 }
 
+static void describe_option(enum camera_type type, double half_width, char option[VIEW_BYTES])
+{
+    const struct camera camera = {.type = type, .half_width = half_width};
+    if (type == CAMERA_ORTHOGRAPHIC)
+        snprintf(option, VIEW_BYTES, "--ortho %.5g", half_width * 2.0);
+    else
+        snprintf(option, VIEW_BYTES, "--fov %.4g", camera_fov_x_deg(&camera));
+}
+
 /* More than rounding. */
 static bool is_shift(double x, double y)
 {
@@ -281,11 +290,31 @@ static void keep_remembered(struct gbuffer *g, const struct gbuffer_options *opt
                 path);
 }
 
+/* 1/z without perspective looks like planar depth with it, of a field of view that fits badly. */
+static bool find_parallel(const struct gbuffer *g, const struct gbuffer_options *options,
+                          bool is_known, struct fit *fit, bool *is_inverse, struct tool_error *err)
+{
+    static const double least_gain = 0.02;
+    struct fit inverse = {0};
+    *is_inverse = false;
+    if (!g->normals || g->camera.is_assumed || (fit->is_sure && !is_known))
+        return true;
+    if (!gbuffer_estimate_parallel(g, options, is_known, &inverse, err))
+        return false;
+    *is_inverse = inverse.is_sure && inverse.agreement > fit->agreement + least_gain;
+    if (*is_inverse)
+        *fit = inverse;
+    return true;
+}
+
 static bool find_unknown(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
                          struct report *report, struct tool_error *err)
 {
     struct fit fit = {0};
+    bool is_inverse;
     if (g->normals && !g->camera.is_assumed && !estimate(g, options, &fit, err))
+        return false;
+    if (!find_parallel(g, options, false, &fit, &is_inverse, err))
         return false;
     tell_pixels(g, &fit, path, report);
     tell_tone(g, &fit, path, report);
@@ -304,6 +333,8 @@ static bool find_unknown(struct gbuffer *g, const struct gbuffer_options *option
     take_rotation(g, &fit);
     see_rotation(g, &fit);
     take_depth_type(g, &fit);
+    if (is_inverse)
+        g->depth_type = DEPTH_INVERSE;
     take_projection(g, &fit);
     if (options->memory)
         remember(g, &fit, path, options->memory, report);
@@ -353,12 +384,32 @@ static bool is_doubtful(const struct camera *c, const struct fit *told, const st
     return seen->is_usable && gain >= needed_gain(seen) && is_other_view(c, seen);
 }
 
+/* The option that gives what is seen; there is none of a shift. */
+static void describe_way_out(const struct camera *c, const struct fit *seen,
+                             char way_out[2 * VIEW_BYTES])
+{
+    char option[VIEW_BYTES];
+    describe_option(seen->model == FIT_ORTHO ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE,
+                    seen->half_width, option);
+    const bool is_shifted = is_shift(seen->shift_x - c->shift_x, seen->shift_y - c->shift_y);
+    if (!is_other_width(c, seen, same_width))
+        snprintf(way_out, 2 * VIEW_BYTES,
+                 "\"shift_x\" and \"shift_y\" in a camera file override its shift");
+    else if (is_shifted)
+        snprintf(way_out, 2 * VIEW_BYTES,
+                 "a camera file with \"shift_x\" and \"shift_y\", "
+                 "--camera, overrides");
+    else
+        snprintf(way_out, 2 * VIEW_BYTES, "%s or --camera overrides", option);
+}
+
 /* Where the image says another thing than header or options, which are believed all the same. */
 static void tell_doubt(const struct gbuffer *g, const struct fit *told, const struct fit *seen,
                        const char *path, struct report *report)
 {
     const struct camera *c = &g->camera;
-    char by_told[VIEW_BYTES], by_seen[VIEW_BYTES], told_shift[VIEW_BYTES], shift[VIEW_BYTES];
+    char by_told[VIEW_BYTES], by_seen[VIEW_BYTES], told_shift[VIEW_BYTES], shift[VIEW_BYTES],
+        way_out[2 * VIEW_BYTES];
     describe(c->type, c->half_width, by_told);
     describe(seen->model == FIT_ORTHO ? CAMERA_ORTHOGRAPHIC : CAMERA_PERSPECTIVE, seen->half_width,
              by_seen);
@@ -366,15 +417,13 @@ static void tell_doubt(const struct gbuffer *g, const struct fit *told, const st
         is_shift(c->shift_x, c->shift_y) || is_shift(seen->shift_x, seen->shift_y);
     describe_shift(is_shifted, c->shift_x, c->shift_y, told_shift);
     describe_shift(is_shifted, seen->shift_x, seen->shift_y, shift);
+    describe_way_out(c, seen, way_out);
     report_warn_of_frame(
         report, "doubted camera",
         "%s: %s says %s%s, but depth and normals %s%s%s (%.0f %% of normals agree then, and "
         "%.0f %% as it says): that of %s is taken (%s)",
         path, c->source, by_told, told_shift, seen->is_sure ? "" : "perhaps ", by_seen, shift,
-        seen->agreement * 100.0, told->agreement * 100.0, c->source,
-        is_other_width(c, seen, same_width)
-            ? "--fov or --camera overrides"
-            : "\"shift_x\" and \"shift_y\" in a camera file override its shift");
+        seen->agreement * 100.0, told->agreement * 100.0, c->source, way_out);
 }
 
 /* The camera was held against a frame before, and of this one as many normals agree with it. To ask
@@ -465,6 +514,11 @@ static bool doubt(struct gbuffer *g, const struct gbuffer_options *options, bool
         tell_tone(g, told, path, report);
     if (now == DOUBT_CAMERA && now != before)
         tell_doubt(g, &alike, &seen, path, report);
+    /* Distances would be taken for 1/z by their planes: without perspective those with it are. */
+    if (now == DOUBT_CAMERA && seen.is_sure &&
+        (seen.model == FIT_ORTHO) != (g->camera.type == CAMERA_ORTHOGRAPHIC) &&
+        gbuffer_type_is_auto(g, options))
+        take_depth_type(g, &seen);
     if (now == DOUBT_TYPE && now != before)
         gbuffer_tell_type(g, options, told, &other, path, report);
     *doubted = now;
@@ -482,8 +536,16 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
 {
     const struct role *depth = &g->roles.kind[ROLE_DEPTH];
     struct fit told;
+    bool is_inverse = false;
     if (!gbuffer_estimate_known(g, options, FIT_PATCH_ANY, &told, err))
         return false;
+    if (told.agreement < doubtful_agreement &&
+        !find_parallel(g, options, true, &told, &is_inverse, err))
+        return false;
+    if (is_inverse) {
+        g->depth_type = DEPTH_INVERSE;
+        g->depth_source = DEPTH_BY_NORMALS;
+    }
     const bool is_exact = strcmp(g->camera.source, "positions") == 0;
     const bool is_new = told.half_width > 0 && !is_exact &&
                         !(options->memory && is_same_view(&options->memory->told, &g->camera));
@@ -542,7 +604,7 @@ bool gbuffer_warn_of_view(const struct gbuffer *g, const char *path, struct repo
     enum { WAYS = 12 };
     static const double step = 0.05, least_gain = 0.03;
     const struct camera *c = &g->camera;
-    char by_told[VIEW_BYTES], by_seen[VIEW_BYTES];
+    char by_told[VIEW_BYTES], by_seen[VIEW_BYTES], option[VIEW_BYTES];
     if (!g->normals || !g->is_undoubted || g->normal_agreement >= doubtful_agreement)
         return true;
     const double told = agreement_through(g, 1.0);
@@ -560,11 +622,12 @@ bool gbuffer_warn_of_view(const struct gbuffer *g, const char *path, struct repo
         return told >= 0;
     describe(c->type, c->half_width, by_told);
     describe(c->type, c->half_width * factor, by_seen);
+    describe_option(c->type, c->half_width * factor, option);
     report_warn_of_frame(
         report, "doubted camera",
         "%s: %s says %s, but turned as they are normals fit perhaps %s (%.0f %% of them agree "
-        "then, and %.0f %% as it says): that of %s is taken (--fov or --camera overrides)",
-        path, c->source, by_told, by_seen, best * 100.0, told * 100.0, c->source);
+        "then, and %.0f %% as it says): that of %s is taken (%s or --camera overrides)",
+        path, c->source, by_told, by_seen, best * 100.0, told * 100.0, c->source, option);
     return true;
 }
 

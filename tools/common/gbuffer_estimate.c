@@ -5,6 +5,7 @@
 #include "gbuffer_internal.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 
 bool gbuffer_type_is_auto(const struct gbuffer *g, const struct gbuffer_options *options)
 {
@@ -106,4 +107,23 @@ bool gbuffer_estimate_known(const struct gbuffer *g, const struct gbuffer_option
     const struct camera_search search = {
         .models = possible_models(g, options, true), .is_known = true, .patch = patch};
     return gbuffer_estimate(g, &search, fit, err);
+}
+
+bool gbuffer_estimate_parallel(const struct gbuffer *g, const struct gbuffer_options *options,
+                               bool is_known, struct fit *fit, struct tool_error *err)
+{
+    const struct camera_search search = {.models = 1u << FIT_ORTHO, .is_known = is_known};
+    struct gbuffer other = *g;
+    *fit = (struct fit){0};
+    if (!gbuffer_type_is_auto(g, options) || g->depth_type != DEPTH_PLANAR ||
+        (is_known && g->camera.type != CAMERA_ORTHOGRAPHIC))
+        return true;
+    other.depth = malloc(gbuffer_texels(g) * sizeof *other.depth);
+    if (!other.depth)
+        return fail(err, EXIT_MEMORY, "out of memory for the camera");
+    for (size_t i = 0; i < gbuffer_texels(g); i++)
+        other.depth[i] = 1.0f / g->depth[i];
+    const bool ok = gbuffer_estimate(&other, &search, fit, err);
+    free(other.depth);
+    return ok;
 }

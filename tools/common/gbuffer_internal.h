@@ -106,6 +106,9 @@ bool gbuffer_estimate_anywhere(const struct gbuffer *g, const struct gbuffer_opt
                                struct fit *fit, struct tool_error *err);
 bool gbuffer_estimate_known(const struct gbuffer *g, const struct gbuffer_options *options,
                             enum fit_patch patch, struct fit *fit, struct tool_error *err);
+/* Of depth that is 1/z, without perspective; nothing if somebody says otherwise. */
+bool gbuffer_estimate_parallel(const struct gbuffer *g, const struct gbuffer_options *options,
+                               bool is_known, struct fit *fit, struct tool_error *err);
 /* What else than somebody tells depth may be through the camera that is known; other->is_sure if
  * normals say so. False only if memory runs out. */
 bool gbuffer_find_type(const struct gbuffer *g, const struct gbuffer_options *options,

@@ -49,7 +49,14 @@ static bool is_constant(const struct value_facts *f)
 
 /* --- What the planes say --- */
 
-enum planes_say { SAY_NOTHING, SAY_PLANAR, SAY_RADIAL, SAY_LINEAR, SAY_OFFSET };
+enum planes_say { SAY_NOTHING, SAY_PLANAR, SAY_RADIAL, SAY_LINEAR, SAY_OFFSET, SAY_INVERSE };
+
+/* Without perspective distances are linear themselves, and 1/z is what they are with it: flat
+ * things cannot tell the two apart, but a camera that is known does. */
+static bool is_parallel(const struct gbuffer *g)
+{
+    return g->camera.source[0] && g->camera.type == CAMERA_ORTHOGRAPHIC;
+}
 
 static enum planes_say listen(const struct gbuffer *g, const struct depth_planes *p)
 {
@@ -65,7 +72,9 @@ static enum planes_say listen(const struct gbuffer *g, const struct depth_planes
     for (int i = 0; i < MODELS; i++)
         if (i != best && shares[best] < more * shares[i])
             return SAY_NOTHING;
-    return shares[best] >= least ? SAY_PLANAR + best : SAY_NOTHING;
+    if (shares[best] < least)
+        return SAY_NOTHING;
+    return best == 0 && is_parallel(g) ? SAY_INVERSE : SAY_PLANAR + best;
 }
 
 /* --- Programs --- */
@@ -94,8 +103,9 @@ static void take_from_nuke(struct gbuffer *g, const struct value_facts *f, enum 
 {
     const char *label = g->roles.kind[ROLE_DEPTH].label;
     /* As an image behind 1: what is nearer than a unit is rare. */
-    const bool is_inverse = say == SAY_LINEAR || (say != SAY_PLANAR && f->high <= 1.0);
-    const bool is_seen = say == SAY_LINEAR || say == SAY_PLANAR;
+    const bool is_seen = say == SAY_LINEAR || say == SAY_PLANAR || say == SAY_INVERSE;
+    const bool is_inverse = say == SAY_INVERSE || (say == SAY_LINEAR && !is_parallel(g)) ||
+                            (!is_seen && f->high <= 1.0);
     take(g, is_inverse ? DEPTH_INVERSE : DEPTH_PLANAR,
          is_seen ? DEPTH_BY_PLANES : DEPTH_BY_CONVENTION);
     report_warn(report, "nuke depth",
@@ -210,7 +220,7 @@ static bool check_scale(const struct gbuffer *g, const struct exr_info *info,
     const bool is_inverse = g->depth_type == DEPTH_INVERSE;
     if (is_inverse ? is_of_nuke(info, role) : !is_within_one(f))
         return true;
-    if (is_inverse && !is_within_one(f))
+    if (is_inverse && (is_parallel(g) || !is_within_one(f)))
         report_warn(report, "inverse depth",
                     "%s: depth '%s' is up to %.4g, taken as 1/z; k/z looks the same and is in "
                     "another unit: divide --radius by k then, or write 1/z",
@@ -270,13 +280,15 @@ static void take_seen(struct gbuffer *g, const struct value_facts *f, enum plane
                 path, label, f->low, f->high, g->planes.offset);
         break;
     case SAY_PLANAR:
-        if (!is_perspective)
-            report_warn(report, "perspective depth",
-                        "%s: the camera (%s) is orthographic, but flat things of depth '%s' are "
-                        "flat only in perspective: is it that of another image? AO is wrong; --fov "
-                        "DEGREES or another --camera",
-                        path, g->camera.source, label);
         take(g, DEPTH_PLANAR, DEPTH_BY_PLANES);
+        return;
+    case SAY_INVERSE:
+        take(g, DEPTH_INVERSE, DEPTH_BY_PLANES);
+        report_warn(report, "inverse depth",
+                    "%s: the camera (%s) is orthographic, and flat things of depth '%s' are flat "
+                    "only as 1/z: taken so; if the image is in perspective after all, --fov "
+                    "DEGREES (--depth-type overrides)",
+                    path, g->camera.source, label);
         return;
     case SAY_NOTHING:
         if (f->high <= 1.5 && !f->is_endless && !is_constant(f))
@@ -367,7 +379,7 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
         return true;
     }
     const bool is_seen = (say == SAY_PLANAR || say == SAY_RADIAL) && !is_clamped(&seen);
-    if (is_within_one(&seen) && !is_seen && !is_constant(&seen))
+    if (is_within_one(&seen) && !is_seen && say != SAY_INVERSE && !is_constant(&seen))
         return fail_unknown(g, &seen, say, info->path, err);
     if (is_within_one(&seen) && is_seen)
         warn_small(g, &seen, info->path, report);
