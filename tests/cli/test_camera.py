@@ -466,6 +466,50 @@ def written_camera_is_read_again(scratch):
     check_close(results[0], results[1], 0.07, 1e-4, 'AO')
 
 
+def bumped(scene, size):
+    """Normals with bumps, which depth has not: they tell a camera, but not surely."""
+    turned = scene.normal + np.random.default_rng(3).normal(0, size, scene.normal.shape)
+    turned /= np.linalg.norm(turned, axis=-1, keepdims=True)
+    turned[scene.sky] = 0
+    return {f'N.{c}': turned[..., i].astype(np.float32) for i, c in enumerate('XYZ')}
+
+
+@cases([('radial', 'Z', 'radial', 0), ('inverse', 'Z', 'inverse', 0), ('planar', 'Z', 'planar', 0),
+        ('bumps', 'Z', 'radial', 0.2), ('Mitsuba', 'dd.T', 'radial-near', 0),
+        ('no near plane', 'dd.T', 'radial', 0), ('no near plane, bumps', 'dd.T', 'radial', 0.2)])
+def written_camera_keeps_the_type_of_depth(scratch, _, channel, kind, bumps):
+    scene = Scene(320, 180)
+    normals = bumped(scene, bumps) if bumps else scene.normals()
+    write_exr(scratch.path('in.exr'), {channel: scene.depth(kind), **normals})
+    view, _ = inspect(scratch, '--write-camera', 'found.json')
+    again, said = inspect(scratch, '--camera', 'found.json')
+    with open(scratch.path('found.json'), encoding='utf-8') as file:
+        written = json.load(file)
+    named = 'radial-near' if channel == 'dd.T' else 'planar'
+    equal(written.get('depth_type'), None if kind == named else kind, 'type in the file')
+    equal((view['conventions']['depth_type'], again['conventions']['depth_type']), (kind, kind),
+          f'types: {said}')
+    if kind != named:
+        equal(again['conventions']['depth_source'], 'camera file', 'source')
+        forced = inspect(scratch, '--camera', 'found.json', '--depth-type', 'planar')[0]
+        equal(forced['conventions']['depth_type'], 'planar', 'an option')
+    if bumps:
+        return  # which leave open how they are turned
+    results = []
+    for options in ((), ('--camera', 'found.json')):
+        scratch.render('in.exr', '-o', 'ao.exr', *BASE, *options)
+        results.append(read_ao(scratch.path('ao.exr')))
+    check_close(results[0], results[1], 0.07, 1e-4, 'AO')
+
+
+@cases(['"Radial"', '"device"', '3', 'null'])
+def a_type_of_depth_in_a_camera_file_is_a_known_one(scratch, value):
+    write_exr(scratch.path('in.exr'), {'Z': Scene().depth()})
+    scratch.write('c.json', f'{{"fov_x_deg": 50, "depth_type": {value}}}')
+    scratch.fails(INPUT, "c.json: 'depth_type' must be \"planar\", \"radial\", ", 'in.exr', '-o',
+                  'x.exr', '--camera', 'c.json')
+
+
 @case
 def left_handed_camera_is_written_as_one(scratch):
     scene = Scene()

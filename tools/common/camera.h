@@ -7,6 +7,7 @@
 
 #include "error.h"
 #include "exr_file.h"
+#include "roles.h"
 #include "setting.h"
 
 #include <stdbool.h>
@@ -28,7 +29,8 @@ struct camera {
     double world_to_view[9]; /* rotation, m[row * 3 + column], for column vectors */
     bool has_translation;    /* AO does not depend on it, depth from positions may */
     double translation[3];   /* view space, scene units: where the origin of the world is */
-    double bound;    /* of an estimated one: relative error of half_width, not exceeded; else 0 */
+    double bound; /* of an estimated one: relative error of half_width, not exceeded; else 0 */
+    enum depth_type depth_type; /* of camera files: what depth was found to be; AUTO: not told */
     char source[64]; /* of the projection: "camera file", "cameraFov" ...; "" if there is none */
     char rotation_source[64];
     /* Of headers: what contradicts itself or is not believed; and what makes of it an image that no

@@ -182,6 +182,27 @@ static bool read_type(const struct reader *r, const cJSON *object, struct camera
     return wrong(r, "type", "\"perspective\" or \"orthographic\"");
 }
 
+/* What --depth-type takes and needs no further numbers. */
+static const struct {
+    const char *name;
+    enum depth_type type;
+} depth_types[] = {{"planar", DEPTH_PLANAR},
+                   {"radial", DEPTH_RADIAL},
+                   {"radial-near", DEPTH_RADIAL_NEAR},
+                   {"inverse", DEPTH_INVERSE}};
+enum { DEPTH_TYPES = sizeof depth_types / sizeof *depth_types };
+
+static bool read_depth_type(const struct reader *r, const cJSON *object, struct camera *camera)
+{
+    const cJSON *item = cJSON_GetObjectItemCaseSensitive(object, "depth_type");
+    const char *name = cJSON_GetStringValue(item);
+    for (size_t i = 0; name && i < DEPTH_TYPES; i++)
+        if (strcmp(name, depth_types[i].name) == 0)
+            camera->depth_type = depth_types[i].type;
+    return !item || camera->depth_type != DEPTH_AUTO ||
+           wrong(r, "depth_type", "\"planar\", \"radial\", \"radial-near\" or \"inverse\"");
+}
+
 static bool read_camera(const struct reader *r, const cJSON *object, struct camera *camera)
 {
     *camera = (struct camera){0};
@@ -191,7 +212,7 @@ static bool read_camera(const struct reader *r, const cJSON *object, struct came
                                             {"ortho_width", "ortho"}, {"near", "near"},
                                             {"far", "far"},           {"shift_x", "shift"},
                                             {"shift_y", "shift_y"},   {"world_to_view", "world"},
-                                            {"left_handed", "hand"}};
+                                            {"left_handed", "hand"},  {"depth_type", "depth"}};
     if (!check_keys(r, object, keys, sizeof keys / sizeof *keys) || !read_type(r, object, camera))
         return false;
     static const char positive[] = "a number > 0", shift[] = "a number between -10 and 10";
@@ -200,7 +221,7 @@ static bool read_camera(const struct reader *r, const cJSON *object, struct came
            read_number(r, object, "far", 0, HUGE_VAL, positive, &camera->far_plane) &&
            read_number(r, object, "shift_x", -10, 10, shift, &camera->shift_x) &&
            read_number(r, object, "shift_y", -10, 10, shift, &camera->shift_y) &&
-           read_placement(r, object, camera);
+           read_depth_type(r, object, camera) && read_placement(r, object, camera);
 }
 
 static bool add_view(struct camera_set *set, const struct reader *r, const cJSON *object)
@@ -296,6 +317,9 @@ cJSON *camera_json(const struct camera *camera)
         cJSON_AddNumberToObject(object, "shift_x", camera->shift_x);
         cJSON_AddNumberToObject(object, "shift_y", camera->shift_y);
     }
+    for (size_t i = 0; i < DEPTH_TYPES; i++)
+        if (camera->depth_type == depth_types[i].type)
+            cJSON_AddStringToObject(object, "depth_type", depth_types[i].name);
     if (camera->has_rotation && add_rows(object, camera) && camera_is_mirrored(camera))
         cJSON_AddBoolToObject(object, "left_handed", true);
     return object;

@@ -569,9 +569,18 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
 {
     *gbuffer = (struct gbuffer){.view = ao_view_default()};
     struct gbuffer *g = gbuffer;
+    struct gbuffer_options with_type;
     warn_about_file(info, report);
+    const bool tells_type =
+        options->depth_type == DEPTH_AUTO && camera_file && camera_file->depth_type != DEPTH_AUTO;
+    if (tells_type) {
+        with_type = *options;
+        with_type.depth_type = camera_file->depth_type;
+        options = &with_type;
+    }
     if (!resolve(info, options, camera_file, g, err))
         return false;
+    g->camera.depth_type = tells_type ? options->depth_type : DEPTH_AUTO;
     const struct role *depth = &g->roles.kind[ROLE_DEPTH], *normal = &g->roles.kind[ROLE_NORMAL];
     const struct exr_info *normals = normal->found ? normal->info : info;
     struct gbuffer_options as_read;

@@ -45,10 +45,11 @@ enum depth_source {
     DEPTH_ASSUMED,
     DEPTH_BY_OPTION,
     DEPTH_BY_NAME,
-    DEPTH_BY_PLANES,    /* flat things are flat */
-    DEPTH_BY_NORMALS,   /* those of depth are the stored ones */
-    DEPTH_BY_POSITIONS, /* it was none */
-    DEPTH_BY_CONVENTION /* of the program that wrote the file */
+    DEPTH_BY_PLANES,     /* flat things are flat */
+    DEPTH_BY_NORMALS,    /* those of depth are the stored ones */
+    DEPTH_BY_POSITIONS,  /* it was none */
+    DEPTH_BY_CONVENTION, /* of the program that wrote the file */
+    DEPTH_BY_CAMERA      /* the camera file says so */
 };
 
 /* What flat things say: shares, in [0,1], of triples of texels that say so; all 0 if there are too

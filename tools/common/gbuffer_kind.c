@@ -356,7 +356,8 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
     if (is_found)
         return true;
     if (options->depth_type != DEPTH_AUTO) {
-        take(g, options->depth_type, DEPTH_BY_OPTION);
+        take(g, options->depth_type,
+             g->camera.depth_type != DEPTH_AUTO ? DEPTH_BY_CAMERA : DEPTH_BY_OPTION);
         return g->depth_type != DEPTH_NORMALIZED || !g->depth_range.is_given ||
                settle_range(g, info->path, report, err);
     }

@@ -93,7 +93,10 @@ void gbuffer_tell_type(const struct gbuffer *g, const struct gbuffer_options *op
         report, "doubted depth",
         "%s: %s says that depth '%s' is %s, but by normals '%s' it is %.*s (%.0f %% of them agree "
         "then, and %.0f %% as it says): %s is taken (--depth-type %s overrides)",
-        path, options->depth_type != DEPTH_AUTO ? "--depth-type" : "its name",
+        path,
+        g->camera.depth_type != DEPTH_AUTO  ? "the camera file"
+        : options->depth_type != DEPTH_AUTO ? "--depth-type"
+                                            : "its name",
         g->roles.kind[ROLE_DEPTH].label, type, g->roles.kind[ROLE_NORMAL].label,
         (int)strcspn(remedy, " "), remedy, other->agreement * 100.0, told->agreement * 100.0, type,
         remedy);

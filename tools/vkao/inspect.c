@@ -106,7 +106,8 @@ static const char *const source_names[] = {"assumed",
                                            "flat things are flat so",
                                            "agreement of the normals",
                                            "from positions",
-                                           "convention of the program"};
+                                           "convention of the program",
+                                           "camera file"};
 
 static void add_depth_facts(cJSON *entry, const struct gbuffer *g)
 {
@@ -142,7 +143,8 @@ static void add_unconfirmed(cJSON *entry, const struct gbuffer *g)
         return;
     cJSON *list = cJSON_AddArrayToObject(entry, "unconfirmed");
     cJSON_AddItemToArray(list, cJSON_CreateString("camera"));
-    if (source == DEPTH_ASSUMED || source == DEPTH_BY_OPTION || source == DEPTH_BY_NAME)
+    if (source == DEPTH_ASSUMED || source == DEPTH_BY_OPTION || source == DEPTH_BY_NAME ||
+        source == DEPTH_BY_CAMERA)
         cJSON_AddItemToArray(list, cJSON_CreateString("depth type"));
 }
 
@@ -165,10 +167,15 @@ static void add_conventions(cJSON *object, const struct gbuffer *g)
     cJSON_AddNumberToObject(entry, "normal_agreement", g->normal_agreement);
 }
 
-/* The camera as it is used: the normals may have told which way it looks. */
+/* The camera as it is used: the normals may have told which way it looks, and what depth is, which
+ * they might not through a camera that is told. */
 static struct camera used_camera(const struct gbuffer *g)
 {
     struct camera camera = g->camera;
+    const enum depth_type named = g->roles.kind[ROLE_DEPTH].depth_type;
+    if (g->depth_source == DEPTH_BY_NORMALS &&
+        g->depth_type != (named != DEPTH_AUTO ? named : DEPTH_PLANAR))
+        camera.depth_type = g->depth_type;
     for (int i = 0; g->normal_space == NORMAL_SPACE_WORLD && i < 9; i++)
         camera.world_to_view[i] = (double)g->view.normal_to_view[i % 3 * 3 + i / 3];
     if (g->normal_space == NORMAL_SPACE_WORLD && !g->camera.axis_certain &&
