@@ -130,7 +130,8 @@ def positions_of_a_parallel_camera_lie_ahead(scratch, _, z):
     scratch.render('in.exr', '-o', 'ao.exr', '-r', '.5', '--pixel-type', 'float')
     ao = read_ao(scratch.path('ao.exr'))
     write_exr(scratch.path('in.exr'), {'Z': scene.depth()})
-    scratch.render('in.exr', '-o', 'z.exr', '-r', '.5', '--pixel-type', 'float', '--ortho', '6')
+    scratch.render('in.exr', '-o', 'z.exr', '-r', '.5', '--pixel-type', 'float', '--ortho', '6',
+                   '--depth-type', 'planar')
     error = np.sqrt(np.mean((ao - read_ao(scratch.path('z.exr'))) ** 2))
     check(error < 0.012, f'RMSE {error:.4f} to the AO of depth')
 
@@ -158,6 +159,44 @@ def depth_beside_positions_may_begin_at_a_near_plane(scratch, _, told, is_known)
     equal('is not that of the positions' in said, not is_known, f'what is in {said}')
     if is_known:
         equal(view['conventions']['depth_type'], 'radial-near', 'type of depth')
+
+
+def bent(scene, by):
+    """Positions and normals of a scene seen through a lens: what stood elsewhere."""
+    height, width = scene.z.shape
+    j, i = np.mgrid[0:height, 0:width]
+    x, y = (i + 0.5) / width * 2 - 1, (0.5 - (j + 0.5) / height) * 2 * height / width
+    less = 1 + by * (x * x + y * y)
+    at = (np.clip(np.round((0.5 - y * less * width / height / 2) * height - 0.5), 0,
+                  height - 1).astype(int),
+          np.clip(np.round((x * less + 1) / 2 * width - 0.5), 0, width - 1).astype(int))
+    planes = {**positions(scene), **scene_normals(scene, 'world', -1)}
+    return {n: p[at] for n, p in planes.items()}, scene.depth()[at]
+
+
+@cases([('a barrel', -0.08), ('a cushion', 0.08)])
+def positions_through_a_lens_need_the_camera(scratch, _, by):
+    planes, depth = bent(Scene(320, 180), by)
+    write_exr(scratch.path('in.exr'), planes)
+    scratch.fails(CHANNELS, "positions 'P' do not give it: they fit no camera", 'in.exr', '-o',
+                  'ao.exr', hint='--camera FILE.json with .world_to_view')
+    write_camera(scratch.path('c.json'))
+    said = scratch.render('in.exr', '-o', 'ao.exr', *BASE, '--camera', 'c.json').stderr
+    matches("positions 'P' are seen by no camera without a lens that distorts.*(camera file)", said,
+            'stderr')
+    del planes['P.X'], planes['P.Y'], planes['P.Z']
+    write_exr(scratch.path('in.exr'), {'Z': depth, **planes})
+    scratch.render('in.exr', '-o', 'wanted.exr', *BASE, '--camera', 'c.json', '--depth-type',
+                   'planar', '--normal-space', 'world')
+    check_close(read_ao(scratch.path('ao.exr')), read_ao(scratch.path('wanted.exr')), 0.25, 2e-3,
+                'AO')
+    turned = camera()
+    turned['world_to_view'][0], turned['world_to_view'][2] = (
+        turned['world_to_view'][2], [-v for v in turned['world_to_view'][0]])
+    write_camera(scratch.path('c.json'), turned)
+    write_exr(scratch.path('in.exr'), bent(Scene(320, 180), by)[0])
+    scratch.fails(CHANNELS, r'the camera that is known \(camera file\) sees them .* pixels from',
+                  'in.exr', '-o', 'x.exr', '--camera', 'c.json', hint='--depth NAME')
 
 
 @case

@@ -34,12 +34,13 @@ static bool known_camera(const struct camera *camera, int guess, struct position
 }
 
 /* Where positions fix no camera, as those of a plane, the one that is known may see them where they
- * are. */
-static bool find_known_camera(const struct gbuffer *g, const struct positions *p,
-                              struct position_camera *camera, bool *found, struct tool_error *err)
+ * are. *least: by how many texels it misses them, INFINITY without one; by no more than most, if it
+ * does. */
+static bool find_known_camera(const struct gbuffer *g, const struct positions *p, double most,
+                              struct position_camera *camera, bool *found, double *least,
+                              struct tool_error *err)
 {
-    double least = 2.0; /* texels */
-    *found = false;
+    *least = INFINITY;
     for (int guess = 0; guess < 4; guess++) {
         struct position_camera known;
         double miss;
@@ -47,12 +48,12 @@ static bool find_known_camera(const struct gbuffer *g, const struct positions *p
             continue;
         if (!positions_miss(p, &known, &miss))
             return fail(err, EXIT_MEMORY, "out of memory for the camera of the positions");
-        if (miss < least) {
-            least = miss;
+        if (miss < *least) {
+            *least = miss;
             *camera = known;
-            *found = true;
         }
     }
+    *found = *least < most;
     return true;
 }
 
@@ -316,14 +317,49 @@ static bool clear_background(const struct gbuffer *g, float *positions)
     return true;
 }
 
-static bool fail_positions(const struct gbuffer *g, const char *why, const char *path,
+static bool knows_placement(const struct gbuffer *g)
+{
+    return g->camera.source[0] && g->camera.has_rotation && g->camera.has_translation;
+}
+
+/* miss: of the camera that is known, texels. */
+static bool fail_positions(const struct gbuffer *g, const char *why, double miss, const char *path,
                            struct tool_error *err)
 {
-    fail_hint(err, "add --camera FILE.json with \"world_to_view\", or --depth NAME");
+    const char *label = g->roles.kind[ROLE_DEPTH].label;
+    if (!knows_placement(g)) {
+        fail_hint(err, "add --camera FILE.json with \"world_to_view\", or --depth NAME");
+        return fail(err, EXIT_CHANNELS,
+                    "%s: no depth, and positions '%s' do not give it: %s, and no camera that is "
+                    "known sees them where they are",
+                    path, label, why);
+    }
+    fail_hint(err, "render depth too and name it, --depth NAME; or give the camera of this image, "
+                   "if that was no fisheye or panorama");
     return fail(err, EXIT_CHANNELS,
-                "%s: no depth, and positions '%s' do not give it: %s, and no camera that is known "
-                "sees them where they are",
-                path, g->roles.kind[ROLE_DEPTH].label, why);
+                "%s: no depth, and positions '%s' do not give it: %s, and the camera that is known "
+                "(%s) sees them %.3g pixels from where they are",
+                path, label, why, g->camera.source, miss);
+}
+
+/* A lens moves what is seen by some hundredths of the image, and not how far it is. */
+static const double most_of_lens = 0.03;
+
+static double most_missed(const struct gbuffer *g, const char *why)
+{
+    const double width = (double)g->display_window.x_max - g->display_window.x_min + 1.0;
+    const bool is_bent = strcmp(why, "they fit no camera") == 0 && knows_placement(g);
+    return fmax(2.0, is_bent ? most_of_lens * width : 0);
+}
+
+static void warn_of_lens(const struct gbuffer *g, double miss, const char *path,
+                         struct report *report)
+{
+    report_warn(report, "bent positions",
+                "%s: positions '%s' are seen by no camera without a lens that distorts: depth is "
+                "along the axis of the one that is known (%s), %.3g pixels from where it sees "
+                "them; write the image undistorted for exact AO",
+                path, g->roles.kind[ROLE_DEPTH].label, g->camera.source, miss);
 }
 
 bool gbuffer_use_positions(struct gbuffer *g, const struct gbuffer_options *options,
@@ -360,10 +396,13 @@ bool gbuffer_use_positions(struct gbuffer *g, const struct gbuffer_options *opti
     }
     char why[sizeof camera.why];
     memcpy(why, camera.why, sizeof why);
-    if (!found && !find_known_camera(g, &p, &camera, &found, err))
+    double miss = 0;
+    if (!found && !find_known_camera(g, &p, most_missed(g, why), &camera, &found, &miss, err))
         return false;
     if (!found)
-        return fail_positions(g, why, path, err);
+        return fail_positions(g, why, miss, path, err);
+    if (miss >= 2.0)
+        warn_of_lens(g, miss, path, report);
     fill_depth(g, &camera, positions);
     return true;
 }
