@@ -703,6 +703,28 @@ def cannot_tell_is_said(scratch, _, make):
             r'--fov or --camera', said, 'the warning')
 
 
+@cases([('field of view', 35.0), ('wide', 88.0)])
+def nothing_else_follows_from_a_wrong_field_of_view(scratch, _, fov):
+    write_exr(scratch.path('in.exr'), {'Z': Scene().depth(), **Scene().normals(space='world')},
+              attributes=[('cameraFov', fov)])
+    said = inspect(scratch)[1]
+    matches(r'cameraFov says .* but depth and normals 60\.?\d* degrees.*\(--fov 60\.?\d* or --cam',
+            said, 'what is said')
+    for word in 'need the rotation of the camera', 'nothing checks', 'is added':
+        check(word not in said, f"'{word}' in {said}")
+
+
+@cases([('less', -0.6, 'only if 0.6.* is added, which no option does'),
+        ('more', 0.6, 'are not quite those that are stored.*does a lens distort')])
+def offset_of_distances_is_said(scratch, _, by, wanted):
+    channels = boxes_along_axes(CORNER, 320, 180)
+    channels['Z'] = (channels['Z'] + by).astype(np.float32)
+    write_exr(scratch.path('in.exr'), channels)
+    said = inspect(scratch, '--fov', FOV)[1]
+    matches(wanted, said, 'what is said')
+    check('if -' not in said, said)
+
+
 @case
 def what_normals_do_not_check_is_said(scratch):
     for fov, make, wants in ((90, corridor, True), (FOV, lambda: {

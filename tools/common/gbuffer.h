@@ -158,6 +158,7 @@ struct gbuffer {
     bool has_seen_rotation;
     double seen_rotation[9]; /* m[row * 3 + column] */
     bool is_undoubted; /* the camera was held against the image now, which had nothing to say */
+    bool is_camera_doubted;  /* the image says another */
     double normal_agreement; /* [0,1] of the normals with those of depth; 0 if that has too few */
     double min_z, median_z, max_z; /* view z of the foreground, scene units; 0 if there is none */
     double background_share;       /* [0,1], with the invalid ones */

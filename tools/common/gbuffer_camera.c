@@ -199,11 +199,21 @@ static void tell_estimate(struct gbuffer *g, const struct fit *fit, const char *
 static void tell_offset(const struct gbuffer *g, const struct fit *fit, const char *path,
                         struct report *report)
 {
-    if (fit->model == FIT_PLANAR && fabs(fit->near_plane) > 0 && !(fit->tone > 0))
+    const char *label = g->roles.kind[ROLE_DEPTH].label;
+    if (fit->model != FIT_PLANAR || fit->tone > 0)
+        return;
+    if (fit->near_plane > 0)
         report_warn(report, "offset depth",
-                    "%s: depth '%s' looks measured from a near plane: its normals are those that "
-                    "are stored only if %.3g is added, and that is not done",
-                    path, g->roles.kind[ROLE_DEPTH].label, fit->near_plane);
+                    "%s: depth '%s' looks measured from a near plane, or a lens distorts the "
+                    "image: its normals are those that are stored only if %.3g is added, which no "
+                    "option does: write distances from the eye",
+                    path, label, fit->near_plane);
+    else if (fit->near_plane < 0)
+        report_warn(report, "offset depth",
+                    "%s: normals of depth '%s' are not quite those that are stored, through any "
+                    "field of view: does a lens distort the image? AO is a little off; render it "
+                    "undistorted",
+                    path, label);
 }
 
 /* What is told is believed, as a field of view is. AO shows a hundredth of the distances. */
@@ -555,7 +565,9 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
         return false;
     const bool lacks_near = options->depth_type == DEPTH_AUTO &&
                             depth->depth_type == DEPTH_RADIAL_NEAR && !(g->camera.near_plane > 0);
-    if (is_new && !told.tells_view && !gbuffer_camera_is_explicit(&g->camera))
+    g->is_camera_doubted = doubted == DOUBT_CAMERA;
+    if (is_new && doubted == DOUBT_NOTHING && !told.tells_view &&
+        !gbuffer_camera_is_explicit(&g->camera))
         report_warn(report, "unchecked camera",
                     "%s: the normals are nearly the same in any field of view: nothing checks that "
                     "of %s",

@@ -534,11 +534,17 @@ static bool check_normals(struct gbuffer *g, enum normal_space wanted, size_t pa
     const char *label = g->roles.kind[ROLE_NORMAL].label;
     struct facing facing;
     if (g->normal_space == NORMAL_SPACE_AUTO) {
-        report_warn(
-            report, "world normals",
-            "%s: normals '%s' need the rotation of the camera, which is unknown: deriving them "
-            "from depth (--camera FILE.json gives it)",
-            path, label);
+        if (g->is_camera_doubted)
+            report_warn(report, "world normals",
+                        "%s: normals '%s' cannot be turned as the camera (%s) that they contradict "
+                        "wants them: deriving them from depth",
+                        path, label, g->camera.source);
+        else
+            report_warn(
+                report, "world normals",
+                "%s: normals '%s' need the rotation of the camera, which is unknown: deriving them "
+                "from depth (--camera FILE.json gives it)",
+                path, label);
         drop_normals(g);
         return true;
     }
