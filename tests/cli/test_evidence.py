@@ -496,6 +496,52 @@ def surface_without_normals_is_said(scratch, _, share, is_said):
         equal([w.split(':')[0] for w in said], [path] * is_said, 'the file that is named')
 
 
+@cases([('beyond it', 5.0, True), ('before it', 60.0, True), ('opaque', 5.0, False)])
+def sky_of_one_value_without_normals(scratch, name, value, is_sky):
+    # Things lie beyond what stands for the sky.
+    scene = hidden(0.3)
+    wanted, _ = clean(scratch, scene)
+    channels = {'Z': depth_of(scene, value), **scene.normals()}
+    if not is_sky:
+        channels.update({c: np.ones_like(channels['Z']) for c in 'RGBA'})
+    ao, said = run(scratch, channels, '--fov', FOV)
+    equal('has no normals' in said, not is_sky, f'{name}: {said}')
+    if is_sky:
+        check_same(ao, wanted, f'{name}: {said}')
+
+
+@cases([('-1', -1, 'areas', False), ('nan', np.nan, 'areas', False), ('-inf', -np.inf, 'areas',
+                                                                       False),
+        ('nan, alone', np.nan, 'depth alone', False), ('specks', np.nan, 'specks', True),
+        ('-1 in surfaces', -1, 'surfaces', True), ('several', None, 'areas', True)])
+def what_stands_for_nothing_is_no_fault(scratch, _, value, where, is_said):
+    scene = hidden(0.3)
+    depth = depth_of(scene, value if value is not None else -1)
+    normals = scene.normals() if where != 'depth alone' else {}
+    if value is None:
+        depth[:20][scene.sky[:20]] = np.nan
+    if where == 'specks':
+        depth = depth_of(scene, 1e10)
+        depth[::7, ::5] = value
+    if where == 'surfaces':
+        depth = depth_of(scene, 1e10)
+        depth[60:70, 20:40] = value
+    write_exr(scratch.path('in.exr'), {'Z': depth, **normals})
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    equal('are NaN, negative' in said, is_said, said)
+
+
+@cases([('millimetres', 0.001), ('16 bits', 12 / 65535), ('none', 0)])
+def steps_of_depth_are_no_blur(scratch, _, step):
+    scene = Scene(320, 180)
+    depth = depth_of(scene, 1e10)
+    if step:
+        depth = np.where(scene.sky, 1e10, np.round(scene.z / step) * step).astype(np.float32)
+    write_exr(scratch.path('in.exr'), {'Z': depth, **scene.normals()})
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    check('blurred' not in said and 'noisy' not in said, said)
+
+
 @cases([('0', 0), ('inf', np.inf), ('nan', np.nan)])
 def holes_in_surfaces_are_said(scratch, _, value):
     scene, random = Scene(), np.random.default_rng(3)

@@ -38,6 +38,8 @@ struct background {
     double share;        /* [0,1] of the texels with that value */
     bool is_doubtful;    /* say so */
     bool is_transparent; /* so is where alpha is 0 */
+    bool has_point;      /* and so is this value alone, as stored, though things lie beyond */
+    float point;
 };
 
 /* What depth is, and who says so. */
@@ -163,6 +165,7 @@ struct gbuffer {
     double min_z, median_z, max_z; /* view z of the foreground, scene units; 0 if there is none */
     double background_share;       /* [0,1], with the invalid ones */
     double invalid_share;          /* [0,1] of NaN, -Inf and negative values */
+    bool invalid_is_meant;         /* they are what the program writes where there is nothing */
     double depth_step; /* between neighbouring values at the median, scene units; 0 if it is fine */
     struct ao_view view;
 };

@@ -255,6 +255,45 @@ static bool transparent_is_background(const struct gbuffer *g)
     return !mostly(transparent, gbuffer_texels(g)) && 2 * surface < transparent;
 }
 
+static bool is_bare(const struct gbuffer *g, size_t texel)
+{
+    const float *n = g->normals + texel * 4;
+    const bool is_there = n[0] * n[0] + n[1] * n[1] + n[2] * n[2] > 0;
+    return !is_there && gbuffer_is_measurable(gbuffer_distance(g, g->depth[texel]));
+}
+
+/* One value where normals are 0, and hardly anywhere else: a sky, though things lie beyond it. The
+ * value of most of them is what is left of a vote. */
+static void find_point(const struct gbuffer *g, struct background *b)
+{
+    static const double nearly_all = 0.95, hardly_any = 0.01;
+    enum { FEW = 16 };
+    const size_t texels = gbuffer_texels(g);
+    size_t bare = 0, votes = 0, equal = 0, opaque = 0, others = 0;
+    float value = 0;
+    for (size_t i = 0; i < texels; i++) {
+        if (!is_bare(g, i))
+            continue;
+        const bool is_same = g->depth[i] <= value && g->depth[i] >= value;
+        value = votes == 0 ? g->depth[i] : value;
+        votes = votes == 0 || is_same ? votes + 1 : votes - 1;
+        bare++;
+    }
+    for (size_t i = 0; bare > 0 && i < texels; i++) {
+        if (!(g->depth[i] <= value && g->depth[i] >= value))
+            continue;
+        equal += is_bare(g, i);
+        others += !is_bare(g, i);
+        opaque += g->alpha && g->alpha[i] > 0;
+    }
+    if (equal < FEW || (double)equal < least_share * (double)texels ||
+        (double)equal < nearly_all * (double)bare || (double)others > hardly_any * (double)equal ||
+        (double)opaque > 0.5 * (double)equal)
+        return;
+    b->has_point = true;
+    b->point = value;
+}
+
 bool gbuffer_find_background(struct gbuffer *g, const struct gbuffer_options *options)
 {
     struct background *b = &g->background;
@@ -292,6 +331,12 @@ bool gbuffer_find_background(struct gbuffer *g, const struct gbuffer_options *op
         b->limit = fmin(b->limit, values[count / 2] * 1e7);
     free(values);
     b->is_transparent = g->alpha && transparent_is_background(g);
+    if (g->normals && (b->reason == BACKGROUND_NONE || b->reason == BACKGROUND_DOUBT))
+        find_point(g, b);
+    if (b->has_point) {
+        b->reason = BACKGROUND_NO_NORMALS;
+        b->value = gbuffer_distance(g, b->point);
+    }
     return true;
 }
 

@@ -244,6 +244,13 @@ static bool is_slow(const struct turns *t)
     return t->count >= FEW_STEPS && (double)t->slow > slow * (double)t->count;
 }
 
+/* Whole millimetres, or parts of 16 bits: between two steps flat things bend. */
+static bool has_steps(const struct gbuffer *g)
+{
+    double step = 0;
+    return g->depth_step > 0 || (gbuffer_find_step(g, &step) && step > 0);
+}
+
 void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct report *report)
 {
     const char *normals = g->roles.kind[ROLE_NORMAL].label;
@@ -271,8 +278,8 @@ void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct r
                     "in the centre of the pixel",
                     path, nearest > 0 ? "nearest" : "farthest", nearest > 0 ? "outside" : "inside",
                     normals);
-    else if ((is_bent(&b.bends[0]) || is_bent(&b.bends[1])) && !(g->depth_step > 0) &&
-             !(g->filtered_share > GBUFFER_MOST_FILTERED))
+    else if ((is_bent(&b.bends[0]) || is_bent(&b.bends[1])) &&
+             !(g->filtered_share > GBUFFER_MOST_FILTERED) && !has_steps(g))
         report_warn(report, "bent depth",
                     "%s: depth is blurred, or filtered: flat things bend where normals '%s' have "
                     "borders; AO is wrong there; render it unfiltered",

@@ -16,6 +16,42 @@ static bool is_invalid(const struct gbuffer *g, float depth)
     return isnan(depth) || depth < 0 || (has_end && depth > 1);
 }
 
+static bool is_zero_normal(const float *n)
+{
+    return !(n[0] * n[0] + n[1] * n[1] + n[2] * n[2] > 0);
+}
+
+/* Whether one invalid value is what some program writes where there is nothing: nothing else says
+ * so, normals and alpha have nothing there, and it comes in areas. */
+static bool is_convention(const struct gbuffer *g)
+{
+    static const double nearly_all = 0.9, few = 0.02, least_share = 0.002;
+    const size_t width = g->width, texels = gbuffer_texels(g);
+    size_t count = 0, numbers = 0, equal = 0, bare = 0, transparent = 0, lonely = 0;
+    float first = 0;
+    for (size_t i = 0; i < texels; i++) {
+        if (!is_invalid(g, g->depth[i])) {
+            if (!gbuffer_is_measurable(gbuffer_distance(g, g->depth[i])))
+                return false;
+            continue;
+        }
+        first = numbers || isnan(g->depth[i]) ? first : g->depth[i];
+        numbers += isnan(g->depth[i]) ? 0 : 1;
+        equal += g->depth[i] <= first && g->depth[i] >= first;
+        bare += g->normals && is_zero_normal(g->normals + i * 4);
+        transparent += g->alpha && !(g->alpha[i] > 0);
+        lonely += !(i % width > 0 && is_invalid(g, g->depth[i - 1])) &&
+                  !(i % width + 1 < width && is_invalid(g, g->depth[i + 1])) &&
+                  !(i >= width && is_invalid(g, g->depth[i - width])) &&
+                  !(i + width < texels && is_invalid(g, g->depth[i + width]));
+        count++;
+    }
+    const double all = (double)count;
+    return all >= least_share * (double)texels && (numbers == 0 || equal == count) &&
+           (!g->normals || (double)bare >= nearly_all * all) &&
+           (!g->alpha || (double)transparent >= nearly_all * all) && (double)lonely <= few * all;
+}
+
 /* Depth of any layer as stored becomes one of the library's encodings; what is no distance becomes
  * what the library takes for background. Returns how many values are invalid. */
 static size_t clean(const struct gbuffer *g, float *values, bool is_half)
@@ -29,7 +65,8 @@ static size_t clean(const struct gbuffer *g, float *values, bool is_half)
             is_half && g->depth_type != DEPTH_INVERSE && values[i] >= 65504.0f;
         invalid += is_invalid(g, values[i]);
         if (!gbuffer_is_measurable(distance) || distance >= b->limit || is_saturated ||
-            (b->is_transparent && !(g->alpha[i] > 0)))
+            (b->is_transparent && !(g->alpha[i] > 0)) ||
+            (b->has_point && values[i] <= b->point && values[i] >= b->point))
             values[i] = g->background_depth;
         else if (g->depth_type == DEPTH_NORMALIZED)
             values[i] =
@@ -273,7 +310,7 @@ static void warn_about_depth(const struct gbuffer *g, const char *path, struct r
     char share[PERCENT_BYTES];
     warn_about_background(g, path, report);
     text_percent(share, g->invalid_share);
-    if (g->invalid_share > 0)
+    if (g->invalid_share > 0 && !g->invalid_is_meant)
         report_warn(
             report, "invalid depth",
             "%s: %s of depth values are NaN, negative or out of range: treated as background", path,
@@ -403,6 +440,7 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
     }
     if (!gbuffer_find_background(g, options))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    g->invalid_is_meant = is_convention(g);
     g->invalid_share = (double)clean(g, g->depth, g->depth_is_half) / (double)gbuffer_texels(g);
     if (!measure(g))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);

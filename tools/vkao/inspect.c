@@ -124,7 +124,9 @@ static void add_depth_facts(cJSON *entry, const struct gbuffer *g)
     cJSON_AddStringToObject(background, "why", reason_names[b->reason]);
     if (b->reason != BACKGROUND_NONE)
         cJSON_AddNumberToObject(background, "value", b->value);
-    if (b->reason != BACKGROUND_NONE && b->reason != BACKGROUND_DOUBT)
+    if (b->has_point)
+        cJSON_AddBoolToObject(background, "alone", true);
+    else if (b->reason != BACKGROUND_NONE && b->reason != BACKGROUND_DOUBT)
         cJSON_AddNumberToObject(background, "from", b->limit);
     if (g->planes.count == 0)
         return;
@@ -426,6 +428,8 @@ static void print_background(const cJSON *c)
     print_share(c, "background_share", "; background ");
     if (has(b, "from"))
         printf(" (%.6g and more: %s)", number_of(b, "from"), text_of(b, "why"));
+    else if (has(b, "alone"))
+        printf(" (%.6g alone: %s)", number_of(b, "value"), text_of(b, "why"));
     else if (has(b, "value"))
         printf(" (%.6g is %s)", number_of(b, "value"), text_of(b, "why"));
 }
