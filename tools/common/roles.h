@@ -154,8 +154,8 @@ typedef void (*role_listener)(void *data, enum role_kind kind, const char *label
                               const char *reason);
 void roles_passed_over(const struct exr_info *info, const struct role_request *request,
                        const struct roles *roles, role_listener listener, void *data);
-/* "'rgba_N', 'N.X'": what might be normals by its name, with the components of some, or with two. At
- * most a few. */
+/* "'rgba_N', 'N.X'": what might be normals by its name, with the components of some, or with two.
+ * At most a few. */
 void roles_list_normals(const struct exr_info *info, const struct role_request *request,
                         struct text *list);
 /* "'diffuse', 'specular'": whatever has three components of a colour. */
