@@ -176,6 +176,54 @@ def normals_inside_out_are_turned(scratch):
             'are turned round', said, 'stderr')
 
 
+@cases([('upside down', np.s_[::-1]), ('mirrored, left to right,', np.s_[:, ::-1]),
+        ('turned by 180 degrees', np.s_[::-1, ::-1])])
+def depth_that_is_turned_against_normals_is_said(scratch, how, turned):
+    scene = Scene()
+    channels = {'Z': np.ascontiguousarray(scene.depth()[turned]), **scene.normals(space='world')}
+    message = rf"in\.exr: depth 'Z' is {how} against normals 'N' \(100 % of them agree .* derived"
+    wanted, _ = clean(scratch, scene, normals=False)
+    for options, attributes in (((), []), (('--fov', FOV), []), (('--fov', FOV), rotation_header()),
+                                (('--fov', FOV, '--normal-space', 'world'), rotation_header())):
+        ao, said = run(scratch, channels, *options, attributes=attributes)
+        matches(message, said, f'{options}, header with {len(attributes)} matrices')
+        check('no normals;' not in said, said)
+        check_same(ao, wanted[turned], f'{options}, header with {len(attributes)} matrices')
+    write_exr(scratch.path('depth.exr'), {'Z': channels.pop('Z')})
+    write_exr(scratch.path('normals.exr'), channels)
+    said = scratch.render('depth.exr', '--normal-file', 'normals.exr', '-o',
+                          'both.exr').stderr
+    matches(rf"depth 'Z' is {how} against normals 'N' of normals\.exr", said, 'two files')
+
+
+@case
+def depth_and_normals_turned_together_are_no_mistake(scratch):
+    scene = Scene()
+    for name, turned in (('upright', np.s_[:]), ('both', np.s_[::-1])):
+        for noise in (0, 0.3):
+            normal = scene.normal + noise * np.random.default_rng(5).normal(size=scene.normal.shape)
+            normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-9)
+            normal[scene.sky] = 0
+            channels = {f'N.{c}': normal[turned][..., i] for i, c in enumerate('XYZ')}
+            write_exr(scratch.path('in.exr'),
+                      {n: np.ascontiguousarray(v, np.float32)
+                       for n, v in {'Z': scene.depth()[turned], **channels}.items()})
+            for options in ((), ('--fov', FOV)):
+                said = str(inspect(scratch, *options)['warnings'])
+                check(' against normals ' not in said, f'{name}, noise of {noise}: {said}')
+
+
+@case
+def frames_whose_depth_is_turned_say_it_once(scratch):
+    scene = Scene()
+    for frame in range(1, 4):
+        write_exr(scratch.path(f'in.{frame:04}.exr'),
+                  {'Z': np.ascontiguousarray(scene.depth()[::-1]), **scene.normals(space='world')})
+    said = scratch.render('in.####.exr', '-o', 'ao.####.exr').stderr
+    equal(said.count('upside down against normals'), 1, said)
+    equal(said.count('normal=from depth'), said.count('using:'), said)
+
+
 @cases([('40', 40), ('8', 8)])
 def background_with_normals_is_doubted(scratch, _, value):
     # Colours of normals are (.5, .5, 1) where there is nothing, which faces the camera.

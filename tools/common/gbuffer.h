@@ -75,6 +75,9 @@ enum normal_encoding { NORMAL_ENCODING_AUTO, NORMAL_ENCODING_SIGNED, NORMAL_ENCO
 /* What the image says is wrong of what header and options tell. */
 enum told_doubt { DOUBT_NOTHING, DOUBT_CAMERA, DOUBT_TYPE, DOUBT_PIXELS };
 
+/* How depth lies against the normals: rows or columns the other way round. */
+enum depth_flip { FLIP_NONE, FLIP_ROWS, FLIP_COLUMNS, FLIP_BOTH };
+
 /* What depth that is background all over is taken for. */
 enum empty_depth {
     EMPTY_IS_MISTAKE, /* no picture of anything, unless somebody says what it measures */
@@ -93,6 +96,10 @@ struct frame_memory {
     struct camera told;
     double told_agreement; /* [0,1] */
     enum told_doubt doubt;
+    /* Whether depth is turned against the normals, and how many agreed when that was asked. */
+    bool is_flip_asked;
+    enum depth_flip flip;
+    double flip_agreement; /* [0,1] */
     /* Of the last frame whose depth was not odd. */
     bool has_depth, is_odd_type, is_odd_unit;
     enum depth_type usual_type;
@@ -156,6 +163,7 @@ struct gbuffer {
     enum normal_space normal_space; /* AUTO if there are no normals */
     enum normal_encoding normal_encoding;
     bool normals_lack_negative; /* though they are signed */
+    enum depth_flip flip;       /* of the depth against the normals, which are left out then */
     /* Of the normals to view space, by the image, whatever header or file say. */
     bool has_seen_rotation;
     double seen_rotation[9]; /* m[row * 3 + column] */

@@ -324,7 +324,8 @@ static bool find_unknown(struct gbuffer *g, const struct gbuffer_options *option
     bool is_inverse;
     if (g->normals && !g->camera.is_assumed && !estimate(g, options, &fit, err))
         return false;
-    if (!find_parallel(g, options, false, &fit, &is_inverse, err))
+    if (!find_parallel(g, options, false, &fit, &is_inverse, err) ||
+        (g->normals && !gbuffer_find_flip(g, options, false, &fit, path, report, err)))
         return false;
     tell_pixels(g, &fit, path, report);
     tell_tone(g, &fit, path, report);
@@ -556,11 +557,13 @@ static bool hold_against_image(struct gbuffer *g, const struct gbuffer_options *
         g->depth_type = DEPTH_INVERSE;
         g->depth_source = DEPTH_BY_NORMALS;
     }
+    if (!gbuffer_find_flip(g, options, true, &told, path, report, err))
+        return false;
     const bool is_exact = strcmp(g->camera.source, "positions") == 0;
     const bool is_new = told.half_width > 0 && !is_exact &&
                         !(options->memory && is_same_view(&options->memory->told, &g->camera));
     enum told_doubt doubted = options->memory ? options->memory->doubt : DOUBT_NOTHING;
-    if (!was_asked(options->memory, &g->camera, &told) &&
+    if (g->flip == FLIP_NONE && !was_asked(options->memory, &g->camera, &told) &&
         !doubt(g, options, is_exact, &told, &doubted, path, report, err))
         return false;
     const bool lacks_near = options->depth_type == DEPTH_AUTO &&
@@ -669,7 +672,10 @@ bool gbuffer_find_camera(struct gbuffer *g, const struct gbuffer_options *option
 {
     if (!g->normals)
         warn_of_proxy(g, path, report);
-    if (!g->camera.source[0])
-        return find_unknown(g, options, path, report, err);
-    return !g->normals || hold_against_image(g, options, path, report, err);
+    const bool ok = !g->camera.source[0]
+                        ? find_unknown(g, options, path, report, err)
+                        : !g->normals || hold_against_image(g, options, path, report, err);
+    if (ok && g->flip != FLIP_NONE)
+        gbuffer_drop_normals(g);
+    return ok;
 }

@@ -101,6 +101,14 @@ bool gbuffer_estimate_anywhere(const struct gbuffer *g, const struct gbuffer_opt
     return gbuffer_estimate(g, &search, fit, err);
 }
 
+bool gbuffer_estimate_single(const struct gbuffer *g, const struct gbuffer_options *options,
+                             struct fit *fit, struct tool_error *err)
+{
+    const struct camera_search search = {.models = possible_models(g, options, false),
+                                         .patch = FIT_PATCH_NONE};
+    return gbuffer_estimate(g, &search, fit, err);
+}
+
 bool gbuffer_estimate_known(const struct gbuffer *g, const struct gbuffer_options *options,
                             enum fit_patch patch, struct fit *fit, struct tool_error *err)
 {

@@ -109,6 +109,15 @@ bool gbuffer_estimate_known(const struct gbuffer *g, const struct gbuffer_option
 /* Of depth that is 1/z, without perspective; nothing if somebody says otherwise. */
 bool gbuffer_estimate_parallel(const struct gbuffer *g, const struct gbuffer_options *options,
                                bool is_known, struct fit *fit, struct tool_error *err);
+/* Anywhere, of single normals. */
+bool gbuffer_estimate_single(const struct gbuffer *g, const struct gbuffer_options *options,
+                             struct fit *fit, struct tool_error *err);
+/* Whether depth as stored is turned round against the normals, which says so and fills g->flip;
+ * fit: of the two as they are, through the camera that is known or any; becomes that of depth once
+ * it is turned. Errors: EXIT_MEMORY. */
+bool gbuffer_find_flip(struct gbuffer *g, const struct gbuffer_options *options, bool is_known,
+                       struct fit *fit, const char *path, struct report *report,
+                       struct tool_error *err);
 /* What else than somebody tells depth may be through the camera that is known; other->is_sure if
  * normals say so. False only if memory runs out. */
 bool gbuffer_find_type(const struct gbuffer *g, const struct gbuffer_options *options,
@@ -251,6 +260,8 @@ struct agreement gbuffer_agreement(const struct normal_pairs *pairs, const float
  * depth as prepared. False if memory ran out. */
 bool gbuffer_warn_of_view(const struct gbuffer *g, const char *path, struct report *report);
 
+/* Normals are those of depth from now on. */
+void gbuffer_drop_normals(struct gbuffer *g);
 /* Decides and undoes the encoding of g->normals as read. */
 bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, const char *path,
                             struct report *report, struct tool_error *err);

@@ -120,7 +120,7 @@ static bool has_two_components(const struct encoding_facts *f)
     return constant == 1 && varying == 2 && fmax(f->signed_share, f->unsigned_share) < 0.9;
 }
 
-static void drop_normals(struct gbuffer *g)
+void gbuffer_drop_normals(struct gbuffer *g)
 {
     free(g->normals);
     g->normals = NULL;
@@ -148,7 +148,7 @@ static void drop_what_is_none(struct gbuffer *g, const struct encoding_facts *f,
                                                      : (double)f->low[2]);
     else
         return;
-    drop_normals(g);
+    gbuffer_drop_normals(g);
 }
 
 static bool fail_linear(const struct gbuffer *g, const char *path, struct tool_error *err)
@@ -518,7 +518,7 @@ static void check_values(struct gbuffer *g, bool alike, const char *path, struct
                     "%s: normals '%s' are the same everywhere, and the depth is of no plane: "
                     "tangent space? deriving them from depth",
                     path, label);
-        drop_normals(g);
+        gbuffer_drop_normals(g);
     } else if (g->normals_lack_negative && g->normal_agreement < least_of_positive) {
         report_warn(report, "positive normals",
                     "%s: normals '%s' have no negative component anywhere, and %.0f %% agree with "
@@ -545,7 +545,7 @@ static bool check_normals(struct gbuffer *g, enum normal_space wanted, size_t pa
                 "%s: normals '%s' need the rotation of the camera, which is unknown: deriving them "
                 "from depth (--camera FILE.json gives it)",
                 path, label);
-        drop_normals(g);
+        gbuffer_drop_normals(g);
         return true;
     }
     if (pairs >= FEW_PAIRS && g->normal_agreement < no_agreement) {
@@ -555,7 +555,7 @@ static bool check_normals(struct gbuffer *g, enum normal_space wanted, size_t pa
             "--normal-space wrong?)",
             path, label, wanted == NORMAL_SPACE_AUTO ? " in any space: deriving them from it" : "");
         if (wanted == NORMAL_SPACE_AUTO) {
-            drop_normals(g);
+            gbuffer_drop_normals(g);
             return true;
         }
     } else if (pairs >= FEW_PAIRS && g->normal_agreement < poor_agreement) {
@@ -628,7 +628,7 @@ bool gbuffer_prepare_normals(struct gbuffer *g, const struct gbuffer_options *op
         struct text others = {0};
         if (!options->roles.no_normals && !g->roles.kind[ROLE_NORMAL].found)
             roles_list_normals(g->roles.kind[ROLE_DEPTH].info, &options->roles, &others);
-        if (!options->roles.no_normals)
+        if (!options->roles.no_normals && g->flip == FLIP_NONE)
             report_warn(
                 report, "no normals",
                 "%s: no normals; deriving them from depth (edges less accurate)%s%s%s%s%s%s", path,
@@ -637,7 +637,7 @@ bool gbuffer_prepare_normals(struct gbuffer *g, const struct gbuffer_options *op
                 others.data ? "; by their names these may be some: " : "",
                 others.data ? others.data : "", others.data ? " (--normal NAME)" : "");
         text_free(&others);
-        drop_normals(g);
+        gbuffer_drop_normals(g);
         return true;
     }
     return resolve_space(g, options->normal_space, path, report, err);
