@@ -224,6 +224,19 @@ def frames_whose_depth_is_turned_say_it_once(scratch):
     equal(said.count('normal=from depth'), said.count('using:'), said)
 
 
+@cases([('twice',), ('half',), ('a hundred times',), ('any length above 1',)])
+def lengths_of_normals_do_not_matter(scratch, name):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene)
+    any_length = 1 + 4 * np.random.default_rng(6).random(scene.z.shape)
+    times = {'twice': 2, 'half': 0.5, 'a hundred times': 100, 'any length above 1': any_length}[name]
+    normals = {n: (v * times).astype(np.float32) for n, v in scene.normals(space='world').items()}
+    for attributes in ([], rotation_header()):
+        ao, said = run(scratch, {'Z': scene.depth(), **normals}, attributes=attributes)
+        check('the image does not tell it' not in said, said)
+        check_same(ao, wanted, f'{name}, header with {len(attributes)} matrices')
+
+
 @cases([('40', 40), ('8', 8)])
 def background_with_normals_is_doubted(scratch, _, value):
     # Colours of normals are (.5, .5, 1) where there is nothing, which faces the camera.

@@ -192,9 +192,38 @@ static bool resolve_encoding(struct gbuffer *g, enum normal_encoding wanted, con
     return true;
 }
 
+/* Most are as long, and not 1: of a program that scales. Longer ones than 1 of all lengths are of
+ * one that does not normalise; shorter ones are those of filters, and say where these mixed. */
+static bool make_unit(struct gbuffer *g)
+{
+    static const double alike = 0.03, most = 0.5;
+    const size_t step = gbuffer_sample_step(g), room = gbuffer_texels(g) / step + 1;
+    double *lengths = malloc(room * sizeof *lengths);
+    size_t count = 0, usual = 0;
+    if (!lengths)
+        return false;
+    for (size_t i = 0; i < gbuffer_texels(g); i += step)
+        if (length3(g->normals + i * 4) > 0)
+            lengths[count++] = length3(g->normals + i * 4);
+    const double length = median_of(lengths, count);
+    for (size_t i = 0; i < count; i++)
+        usual += fabs(lengths[i] / length - 1.0) < alike;
+    free(lengths);
+    const bool is_scaled = (double)usual > most * (double)count;
+    if (count == 0 || unit_length(length) || !(is_scaled || length > 1))
+        return true;
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        float *n = g->normals + i * 4;
+        const double by = is_scaled ? length : length3(n);
+        for (int c = 0; c < 3 && by > 0; c++)
+            n[c] = (float)((double)n[c] / by);
+    }
+    return true;
+}
+
 /* The library replaces zero normals by those of the depth. What lies outside the part's data window
  * is zero too, and must not be decoded. */
-static void decode(struct gbuffer *g)
+static bool decode(struct gbuffer *g)
 {
     for (size_t i = 0; i < gbuffer_texels(g); i++) {
         float *n = g->normals + i * 4;
@@ -205,6 +234,7 @@ static void decode(struct gbuffer *g)
         if (!finite3(n))
             n[0] = n[1] = n[2] = 0;
     }
+    return g->normal_encoding != NORMAL_ENCODING_SIGNED || make_unit(g);
 }
 
 /* --- Space --- */
@@ -612,7 +642,8 @@ bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, cons
         return false;
     if (!g->normals)
         return true;
-    decode(g);
+    if (!decode(g))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     g->view.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
     return true;
 }
