@@ -228,13 +228,59 @@ def frames_whose_depth_is_turned_say_it_once(scratch):
 def lengths_of_normals_do_not_matter(scratch, name):
     scene = Scene()
     wanted, _ = clean(scratch, scene)
-    any_length = 1 + 4 * np.random.default_rng(6).random(scene.z.shape)
-    times = {'twice': 2, 'half': 0.5, 'a hundred times': 100, 'any length above 1': any_length}[name]
+    times = {'twice': 2, 'half': 0.5, 'a hundred times': 100, 'any length above 1':
+             1 + 4 * np.random.default_rng(6).random(scene.z.shape)}[name]
     normals = {n: (v * times).astype(np.float32) for n, v in scene.normals(space='world').items()}
     for attributes in ([], rotation_header()):
         ao, said = run(scratch, {'Z': scene.depth(), **normals}, attributes=attributes)
         check('the image does not tell it' not in said, said)
         check_same(ao, wanted, f'{name}, header with {len(attributes)} matrices')
+
+
+@cases([('96 x 64', (96, 64)), ('128 x 72', (128, 72))])
+def few_texels_tell_a_mirror(scratch, _, size):
+    # Ceiling and wall fit either hand; of small things alone some sides would face away.
+    boxes = CORNER[:2] + [((-2, 2.3, -8), (-1.6, 3.6, -7.5)), ((1, 2.3, -7), (1.2, 3.6, -6)),
+                          ((3, 3, -8.2), (3.3, 3.6, -8))]
+    channels = boxes_along_axes(boxes, *size)
+    wanted, said = run(scratch, channels)
+    check('mirrored' not in said, said)
+    for name, signs in (('inwards', (-1, -1, -1)), ('left-handed', (1, 1, -1))):
+        mirrored = {f'N.{c}': channels[f'N.{c}'] * np.float32(s) for c, s in zip('XYZ', signs)}
+        ao, said = run(scratch, {**channels, **mirrored})
+        matches(r"in\.exr: 0\.\d+ % of the normals 'N' face away from the camera, and all face it "
+                'once their x is turned round: mirrored', said, name)
+        check_same(ao, wanted, name)
+
+
+@case
+def clamped_normals_are_said_of_small_images(scratch):
+    scene = Scene(96, 54)
+    turned = scene.normals(space='world')
+    for name, change in (('lost', np.abs), ('clamped', lambda n: np.maximum(n, 0))):
+        for attributes in ([], rotation_header()):
+            write_exr(scratch.path('in.exr'), {'Z': scene.depth(),
+                                               **{n: change(v) for n, v in turned.items()}},
+                      attributes=attributes)
+            matches("normals 'N' have no negative component anywhere",
+                    str(inspect(scratch, '--fov', FOV)['warnings']), name)
+
+
+@case
+def bumps_that_happen_to_be_positive_are_no_mistake(scratch):
+    scene = Scene(320, 180)
+    is_round = (scene.normal > 0.01).sum(axis=-1) > 1
+    scene.z[is_round], scene.normal[is_round] = np.inf, 0
+    scene.z[(scene.normal < 0).any(axis=-1)] = np.inf
+    scene.sky = np.isinf(scene.z)
+    bumps = 0.05 * np.random.default_rng(8).normal(size=scene.normal.shape)
+    normal = np.abs(scene.normal + bumps)
+    normal[scene.sky] = 0
+    normal /= np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-9)
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **{
+        f'N.{c}': normal[..., i].astype(np.float32) for i, c in enumerate('XYZ')}})
+    said = inspect(scratch, '--fov', FOV)
+    check('no negative component' not in str(said['warnings']), str(said['warnings']))
 
 
 @cases([('40', 40), ('8', 8)])

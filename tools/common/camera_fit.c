@@ -574,6 +574,9 @@ static bool judge(const struct fit_samples *s, const struct found *f, double sig
     if (!fit->why[0] && !find_rival(s, f, sigma, best, fit))
         return false;
     fit_directions(s, best, values, &weakest);
+    fit->weakest[0] = weakest.x;
+    fit->weakest[1] = weakest.y;
+    fit->weakest[2] = weakest.z;
     const bool has_directions = values[1] > 0.035;
     const bool is_vague = shares.near < 0.4 || fit->bound > sure_bound;
     fit->rotation_known = has_directions && best->rotation_deviation < 1.0;

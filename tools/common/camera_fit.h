@@ -69,6 +69,7 @@ struct fit {
     double seen_near;        /* of FIT_RADIAL too, whether near_known or not; units of depth */
     double near_bound;       /* error of seen_near that is not exceeded; 0: none was seen */
     double rotation[9];      /* of the stored normals to view space, m[row * 3 + column] */
+    double weakest[3];       /* in view space: along which normals are fewest */
     double median;           /* of depth as stored */
     double bound;            /* relative error of half_width that is not exceeded, surely not */
     double agreement;        /* [0,1] of the stored normals with those of depth */

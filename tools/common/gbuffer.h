@@ -167,6 +167,7 @@ struct gbuffer {
     /* Of the normals to view space, by the image, whatever header or file say. */
     bool has_seen_rotation;
     double seen_rotation[9]; /* m[row * 3 + column] */
+    double seen_weakest[3];  /* in view space: along which normals are fewest */
     bool is_undoubted; /* the camera was held against the image now, which had nothing to say */
     bool is_camera_doubted;  /* the image says another */
     double normal_agreement; /* [0,1] of the normals with those of depth; 0 if that has too few */

@@ -69,6 +69,7 @@ static void see_rotation(struct gbuffer *g, const struct fit *fit)
     if (!fit->is_sure || !fit->rotation_known)
         return;
     memcpy(g->seen_rotation, fit->rotation, sizeof g->seen_rotation);
+    memcpy(g->seen_weakest, fit->weakest, sizeof g->seen_weakest);
     g->has_seen_rotation = true;
 }
 

@@ -248,6 +248,7 @@ static void rotate(const float m[9], const float n[3], double out[3])
 
 struct facing {
     double share;    /* of normals that face the eye */
+    size_t away;     /* that do not */
     double median_z; /* positive: towards the eye */
 };
 
@@ -268,6 +269,7 @@ static bool measure_facing(const struct gbuffer *g, const float matrix[9], struc
         towards += n[0] * x + n[1] * y - n[2] < 0;
         z[count++] = n[2];
     }
+    facing->away = count - towards;
     facing->share = count ? (double)towards / (double)count : 1.0;
     facing->median_z = median_of(z, count);
     free(z);
@@ -437,6 +439,38 @@ static void ask_depth(struct gbuffer *g, const struct way ways[WAYS],
 
 /* --- Mirrors --- */
 
+/* Along an axis of the stored normals, or along the direction that the fewest of them have: what
+ * those of two directions leave open. */
+enum { MIRROR_SEEN = 3, MIRRORS };
+
+static void mirror(const struct gbuffer *g, int which, float m[9])
+{
+    memcpy(m, g->view.normal_to_view, sizeof g->view.normal_to_view);
+    for (int c = 0; c < 3; c++) {
+        const double *w = g->seen_weakest;
+        float *column = m + c * 3;
+        const double along =
+            (double)column[0] * w[0] + (double)column[1] * w[1] + (double)column[2] * w[2];
+        for (int row = 0; row < 3; row++) {
+            if (which == MIRROR_SEEN)
+                column[row] = (float)((double)column[row] - 2.0 * along * w[row]);
+            else if (which == c)
+                column[row] = -column[row];
+        }
+    }
+}
+
+/* Of a small image few texels tell, and they do if none is left. */
+static bool all_face(const struct facing *as_told, const struct facing *mirrored)
+{
+    static const double most_facing = 0.98, least_facing = 0.99;
+    enum { FEW = 8, TIMES = 8 };
+    if (mirrored->share < least_facing)
+        return false;
+    return as_told->share < most_facing ||
+           (as_told->away >= FEW && mirrored->away * TIMES <= as_told->away);
+}
+
 /* Agreement does not ask which way round a normal points, as leaves do not either. Of what a
  * renderer turned towards the eye more than 99 of 100 face it; of a world with one axis the other
  * way round, as a left-handed one has, 29 to 99. What faces the eye in a mirror alone was mirrored,
@@ -444,24 +478,28 @@ static void ask_depth(struct gbuffer *g, const struct way ways[WAYS],
 static bool ask_mirrors(struct gbuffer *g, const struct normal_pairs *pairs, const char *path,
                         struct report *report)
 {
-    static const double most_facing = 0.98, least_facing = 0.99, half = 0.5, less = 0.02;
+    static const double half = 0.5, less = 0.02;
+    static const char *const axes[MIRRORS] = {"their x is turned round", "their y is turned round",
+                                              "their z is turned round",
+                                              "one direction of them is"};
     struct facing as_told, mirrored;
     float best[9];
     int axis = -1;
     if (!measure_facing(g, g->view.normal_to_view, &as_told))
         return false;
-    double most = least_facing;
-    const bool is_asked = as_told.share < most_facing &&
-                          gbuffer_agreement(pairs, g->view.normal_to_view).share > half;
-    for (int c = 0; is_asked && c < 3; c++) {
+    double most = 0;
+    const bool is_asked =
+        as_told.away > 0 && gbuffer_agreement(pairs, g->view.normal_to_view).share > half;
+    for (int c = 0; is_asked && c < MIRRORS; c++) {
         float m[9];
-        memcpy(m, g->view.normal_to_view, sizeof m);
-        for (int row = 0; row < 3; row++)
-            m[c * 3 + row] = -m[c * 3 + row];
+        if (c == MIRROR_SEEN && !g->has_seen_rotation)
+            continue;
+        mirror(g, c, m);
         if (!measure_facing(g, m, &mirrored))
             return false;
         const double agreement = gbuffer_agreement(pairs, m).share;
-        if (mirrored.share < most || agreement < g->normal_agreement - less)
+        if (!all_face(&as_told, &mirrored) || mirrored.share <= most ||
+            agreement < g->normal_agreement - less)
             continue;
         most = mirrored.share;
         axis = c;
@@ -471,10 +509,9 @@ static bool ask_mirrors(struct gbuffer *g, const struct normal_pairs *pairs, con
         return true;
     memcpy(g->view.normal_to_view, best, sizeof best);
     report_warn(report, "mirrored normals",
-                "%s: %.0f %% of the normals '%s' face away from the camera, and all face it once "
-                "their %c is turned round: mirrored, as those of a left-handed world are; they are "
-                "taken so",
-                path, (1.0 - as_told.share) * 100.0, g->roles.kind[ROLE_NORMAL].label, "xyz"[axis]);
+                "%s: %.2g %% of the normals '%s' face away from the camera, and all face it once "
+                "%s: mirrored, as those of a left-handed world are; they are taken so",
+                path, (1.0 - as_told.share) * 100.0, g->roles.kind[ROLE_NORMAL].label, axes[axis]);
     return true;
 }
 
@@ -537,10 +574,39 @@ static bool are_alike(const struct normal_pairs *pairs)
     return pairs->count >= FEW_PAIRS;
 }
 
-/* Planes agree nearly all over, and so do normals that are as they should be. */
-static const double least_of_planes = 0.8, least_of_positive = 0.98;
+/* Normals of depth that have a negative component, where what is stored is those without it, or
+ * without its sign, and no such normal. */
+static size_t count_lost_signs(const struct gbuffer *g, const struct normal_pairs *pairs)
+{
+    static const double clearly = -0.2, same = 0.985, other = 0.94;
+    const float *m = g->view.normal_to_view;
+    size_t count = 0;
+    for (size_t i = 0; i < pairs->count; i++) {
+        const double *depth = pairs->pair[i].depth, *stored = pairs->pair[i].stored;
+        double least = 0, dot = 0, by_clamped = 0, by_lost = 0, length = 0;
+        for (int c = 0; c < 3; c++) {
+            double n = 0;
+            for (int row = 0; row < 3; row++)
+                n += (double)m[c * 3 + row] * depth[row];
+            least = fmin(least, n);
+            dot += n * stored[c];
+            by_lost += fabs(n) * stored[c];
+            by_clamped += fmax(n, 0) * stored[c];
+            length += fmax(n, 0) * fmax(n, 0);
+        }
+        count += least < clearly && fabs(dot) < other &&
+                 (by_lost > same || by_clamped > same * sqrt(length));
+    }
+    return count;
+}
 
-static void check_values(struct gbuffer *g, bool alike, const char *path, struct report *report)
+/* Planes agree nearly all over. Of normals that happen to be positive, bumps and round things
+ * leave 75 of 100 agreeing, and none lost a sign but by chance. */
+static const double least_of_planes = 0.8, least_of_positive = 0.7;
+enum { FEW_LOST = 4 };
+
+static void check_values(struct gbuffer *g, bool alike, size_t lost_signs, const char *path,
+                         struct report *report)
 {
     const char *label = g->roles.kind[ROLE_NORMAL].label;
     if (alike && g->normal_agreement < least_of_planes) {
@@ -549,7 +615,8 @@ static void check_values(struct gbuffer *g, bool alike, const char *path, struct
                     "tangent space? deriving them from depth",
                     path, label);
         gbuffer_drop_normals(g);
-    } else if (g->normals_lack_negative && g->normal_agreement < least_of_positive) {
+    } else if (g->normals_lack_negative &&
+               (g->normal_agreement < least_of_positive || lost_signs >= FEW_LOST)) {
         report_warn(report, "positive normals",
                     "%s: normals '%s' have no negative component anywhere, and %.0f %% agree with "
                     "the depth: was it clamped, or its sign lost? (--normal none)",
@@ -622,6 +689,7 @@ static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const cha
     ask_depth(g, ways, &pairs, wanted, path, report);
     const size_t count = pairs.count;
     const bool alike = are_alike(&pairs);
+    const size_t lost_signs = g->normals_lack_negative ? count_lost_signs(g, &pairs) : 0;
     const bool ok =
         count < FEW_PAIRS || g->normal_space == NORMAL_SPACE_AUTO ||
         (ask_whether_inside_out(g, &pairs, path, report) && ask_mirrors(g, &pairs, path, report));
@@ -629,7 +697,7 @@ static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const cha
     if (!ok)
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     if (count >= FEW_PAIRS && wanted == NORMAL_SPACE_AUTO && g->normal_space != NORMAL_SPACE_AUTO)
-        check_values(g, alike, path, report);
+        check_values(g, alike, lost_signs, path, report);
     return !g->normals || check_normals(g, wanted, count, path, report, err);
 }
 
