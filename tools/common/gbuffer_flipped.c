@@ -61,10 +61,13 @@ static bool try_flips(const struct gbuffer *g, const struct gbuffer_options *opt
 
 /* Of 110 right files, through their cameras and through none, none gains by being turned; of those
  * that are turned the least gains 0.10, an image of 64 x 48, and the next 0.25. */
-static bool is_clear(const struct fit *as_is, const struct fit *turned)
+static bool is_clear(const struct fit *as_is, const struct fit *turned, bool is_known)
 {
     static const double sure_gain = 0.05, clear_gain = 0.2, least = 0.3, nearly_all = 0.9;
     const double gain = turned->agreement - as_is->agreement;
+    /* Squeezed pixels, or depth, are another cause; and a camera that is free explains much. */
+    if (fmax(as_is->squeezed, as_is->toned) >= turned->agreement || (!is_known && !turned->is_sure))
+        return false;
     /* As it is, where there is depth there are no normals. */
     if (!(as_is->agreement > 0))
         return turned->is_sure && turned->agreement > nearly_all;
@@ -124,7 +127,7 @@ bool gbuffer_find_flip(struct gbuffer *g, const struct gbuffer_options *options,
         return false;
     if (!try_flips(g, options, is_known, &turned, &g->flip, err))
         return false;
-    if (!is_clear(&as_is, &turned))
+    if (!is_clear(&as_is, &turned, is_known))
         g->flip = FLIP_NONE;
     if (memory) {
         memory->is_flip_asked = true;
