@@ -157,7 +157,7 @@ static void tiles_are_those_of_the_rect(void **state)
         const struct fake_call *indirect = fake_nth(&w.fake, "vkCmdDispatchIndirect", 0);
         memcpy(&head, update->update, sizeof head);
         assert_int_equal(push.tile_width, VKAO_ROW_GROUP_WIDTH * VKAO_SSAO_TEXELS);
-        assert_int_equal(push.tiles[0], (extents[i].width + 127) / 128);
+        assert_int_equal(push.tiles[0], (extents[i].width + 159) / 160);
         assert_int_equal(push.tiles[1], (extents[i].height + 7) / 8);
         assert_int_equal(head.group_rows, push.tile_height);
         assert_int_equal(head.count, 0);
