@@ -60,8 +60,9 @@ static bool try_flips(const struct gbuffer *g, const struct gbuffer_options *opt
 }
 
 /* Normals that are wrong in themselves, as by an encoding that somebody tells, fit a little better
- * one way round than another, but never well. Of 110 right files, through their cameras and through none, none gains by being turned; of those
- * that are turned the least gains 0.10, an image of 64 x 48, and the next 0.25. */
+ * one way round than another, but never well. Of 110 right files, through their cameras and through
+ * none, none gains by being turned; of those that are turned the least gains 0.10, an image of
+ * 64 x 48, and the next 0.25. */
 static bool is_clear(const struct fit *as_is, const struct fit *turned, bool is_known)
 {
     static const double sure_gain = 0.05, clear_gain = 0.2, half = 0.5, most = 0.8,
