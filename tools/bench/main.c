@@ -6,6 +6,7 @@
 #include "atomic_file.h"
 #include "error.h"
 #include "report.h"
+#include "vector_width.h"
 #include "vkao.h"
 
 #include <stdio.h>
@@ -58,6 +59,7 @@ static int run(int argc, char **argv)
                VK_API_VERSION_PATCH(v));
         return EXIT_OK;
     }
+    choose_vector_width();
     for (size_t i = 0; i < COMMAND_COUNT; i++)
         if (strcmp(argv[1], commands[i].name) == 0)
             return commands[i].run(argc - 1, argv + 1);

@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "gpu.h"
 
-#include "vector_width.h"
-
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -98,8 +96,6 @@ static bool create_instance(struct gpu *gpu, const struct gpu_options *options,
         fail(err, EXIT_DEVICE, "Vulkan validation layer %s is not installed", validation_layer);
         return fail_hint(err, "install the package vulkan-validationlayers");
     }
-    if (!options->presentation)
-        choose_vector_width();
     if (validation)
         setenv("VK_LAYER_ENABLES",
                "VALIDATION_CHECK_ENABLE_SYNCHRONIZATION_VALIDATION_QUEUE_SUBMIT", 0);

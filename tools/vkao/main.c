@@ -2,6 +2,7 @@
 #include "atomic_file.h"
 #include "commands.h"
 #include "options.h"
+#include "vector_width.h"
 
 #include <stdio.h>
 #include <unistd.h>
@@ -44,6 +45,7 @@ static int run(const struct options *options)
         print_version();
         return EXIT_OK;
     }
+    choose_vector_width();
     if (options->command == COMMAND_DEVICES)
         return command_devices(options);
     int threads = options->threads > 0 ? (int)options->threads : processors();
