@@ -267,6 +267,25 @@ def clamped_normals_are_said_of_small_images(scratch):
 
 
 @case
+def few_signs_that_are_lost_are_said(scratch):
+    """Three in four normals agree all the same."""
+    scene = Scene(320, 180)
+    negative = (scene.normal < -0.01).any(axis=-1)
+    kept = np.cumsum(negative.sum(axis=0)) < 0.05 * (~negative & ~scene.sky).sum()
+    scene.z[negative & ~kept] = np.inf
+    scene.sky = np.isinf(scene.z)
+    scene.normal[scene.sky] = 0
+    channels = {'Z': scene.depth(), **scene.normals()}
+    lost = {n: np.abs(v) if n != 'Z' else v for n, v in channels.items()}
+    for name, planes, is_said in (('lost', lost, True), ('whole', channels, False)):
+        write_exr(scratch.path('in.exr'), planes)
+        view = inspect(scratch, '--fov', FOV)
+        check(view['conventions']['normal_agreement'] > 0.75, f'{name}: {view["conventions"]}')
+        equal('no negative component anywhere' in str(view['warnings']), is_said,
+              f'{name}: {view["warnings"]}')
+
+
+@case
 def bumps_that_happen_to_be_positive_are_no_mistake(scratch):
     scene = Scene(320, 180)
     is_round = (scene.normal > 0.01).sum(axis=-1) > 1

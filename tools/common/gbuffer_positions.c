@@ -342,14 +342,15 @@ static bool fail_positions(const struct gbuffer *g, const char *why, double miss
                 path, label, why, g->camera.source, miss);
 }
 
-/* A lens moves what is seen by some hundredths of the image, and not how far it is. */
-static const double most_of_lens = 0.03;
+/* Texels, of rounding; and a lens moves what is seen by some hundredths of the image's width, and
+ * not how far it is. */
+static const double most_of_rounding = 2.0, most_of_lens = 0.03;
 
 static double most_missed(const struct gbuffer *g, const char *why)
 {
     const double width = (double)g->display_window.x_max - g->display_window.x_min + 1.0;
     const bool is_bent = strcmp(why, "they fit no camera") == 0 && knows_placement(g);
-    return fmax(2.0, is_bent ? most_of_lens * width : 0);
+    return fmax(most_of_rounding, is_bent ? most_of_lens * width : 0);
 }
 
 static void warn_of_lens(const struct gbuffer *g, double miss, const char *path,
@@ -401,7 +402,7 @@ bool gbuffer_use_positions(struct gbuffer *g, const struct gbuffer_options *opti
         return false;
     if (!found)
         return fail_positions(g, why, miss, path, err);
-    if (miss >= 2.0)
+    if (miss >= most_of_rounding)
         warn_of_lens(g, miss, path, report);
     fill_depth(g, &camera, positions);
     return true;
