@@ -39,13 +39,25 @@ static inline double gbuffer_aspect(const struct gbuffer *g)
     return width * (double)g->pixel_aspect / height;
 }
 
+/* Times a matrix of columns. */
+static inline void gbuffer_turn_normal(const float m[9], const float *n, double out[3])
+{
+    for (int row = 0; row < 3; row++)
+        out[row] = (double)m[row] * (double)n[0] + (double)m[3 + row] * (double)n[1] +
+                   (double)m[6 + row] * (double)n[2];
+}
+
 /* A normal as it is used, in view space. */
 static inline void gbuffer_view_normal(const struct gbuffer *g, size_t texel, double v[3])
 {
-    const float *n = g->normals + texel * 4, *m = g->view.normal_to_view;
-    for (int c = 0; c < 3; c++)
-        v[c] = (double)m[c] * (double)n[0] + (double)m[3 + c] * (double)n[1] +
-               (double)m[6 + c] * (double)n[2];
+    gbuffer_turn_normal(g->view.normal_to_view, g->normals + texel * 4, v);
+}
+
+/* Of a normal. */
+static inline double gbuffer_length(const float *n)
+{
+    const double x = (double)n[0], y = (double)n[1], z = (double)n[2];
+    return sqrt(x * x + y * y + z * z);
 }
 
 /* The square of how far two normals are from each other. */
@@ -260,11 +272,34 @@ struct agreement gbuffer_agreement(const struct normal_pairs *pairs, const float
  * depth as prepared. False if memory ran out. */
 bool gbuffer_warn_of_view(const struct gbuffer *g, const char *path, struct report *report);
 
+/* Of decoded normals, times a matrix of columns that turns them into view space. */
+struct normal_facing {
+    double share;    /* of normals that face the eye */
+    size_t away;     /* that do not */
+    double median_z; /* positive: towards the eye */
+};
+/* False if memory ran out, as of the two below. */
+bool gbuffer_measure_facing(const struct gbuffer *g, const float matrix[9],
+                            struct normal_facing *facing);
+/* All three axes the other way round. */
+void gbuffer_turn_round(float m[9]);
+/* Turn round what is mirrored, or inside out, as it is turned into view space by now; and say
+ * so. */
+bool gbuffer_ask_mirrors(struct gbuffer *g, const struct normal_pairs *pairs, const char *path,
+                         struct report *report);
+bool gbuffer_ask_whether_inside_out(struct gbuffer *g, const struct normal_pairs *pairs,
+                                    const char *path, struct report *report);
+
 /* Normals are those of depth from now on. */
 void gbuffer_drop_normals(struct gbuffer *g);
 /* Decides and undoes the encoding of g->normals as read. */
 bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, const char *path,
                             struct report *report, struct tool_error *err);
+/* Of decoded normals without a negative component: how many must have had one. 0 of others. */
+size_t gbuffer_count_lost_signs(const struct gbuffer *g, const struct normal_pairs *pairs);
+/* Of so many; needs the agreement of the normals. */
+void gbuffer_warn_of_lost_signs(const struct gbuffer *g, size_t lost, const char *path,
+                                struct report *report);
 /* Needs the depth and decoded normals: finds their space, or frees them. */
 bool gbuffer_prepare_normals(struct gbuffer *g, const struct gbuffer_options *options,
                              const char *path, struct report *report, struct tool_error *err);

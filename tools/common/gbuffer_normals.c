@@ -1,286 +1,23 @@
 /* SPDX-License-Identifier: MIT
  *
- * Normals come in world or camera space, signed or as colours, and no header says which. Names and
- * the pixels do: what the camera sees faces it. */
+ * Normals come in world or camera space, and no header says which. Names and the pixels do: what
+ * the camera sees faces it, and they agree with the depth. */
 #include "gbuffer_internal.h"
-#include "median.h"
 #include "text.h"
 
-#include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const float identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 static const float flipped_z[9] = {1, 0, 0, 0, 1, 0, 0, 0, -1};
 
-static double length3(const float *n)
-{
-    double x = (double)n[0], y = (double)n[1], z = (double)n[2];
-    return sqrt(x * x + y * y + z * z);
-}
-
-static bool finite3(const float *n)
-{
-    return isfinite(n[0]) && isfinite(n[1]) && isfinite(n[2]);
-}
-
-/* --- Encoding --- */
-
-/* Of normals that are there: neither zero nor, in colours, grey. */
-struct encoding_facts {
-    size_t count;
-    double negative;                       /* share with a component clearly below zero */
-    double signed_share, unsigned_share;   /* of |n| and of |2n - 1| that are 1 */
-    double signed_length, unsigned_length; /* medians of the same */
-    double linear_share;                   /* of those that are 1 once colours are no more linear */
-    float low[3], high[3];
-};
-
-/* A picture of normals that was read as colours, whose curve was taken off. */
-static double length_of_linear(const float *n)
-{
-    static const float curve = 1.0f / 2.2f;
-    float decoded[3];
-    for (int c = 0; c < 3; c++)
-        decoded[c] = 2.0f * powf(fmaxf(n[c], 0.0f), curve) - 1.0f;
-    return length3(decoded);
-}
-
-static bool is_one(double length)
-{
-    return length > 0.97 && length < 1.03;
-}
-
-static bool measure_encoding(const struct gbuffer *g, struct encoding_facts *facts)
-{
-    const size_t step = gbuffer_sample_step(g), room = gbuffer_texels(g) / step + 1;
-    double *as_signed = malloc(room * sizeof *as_signed),
-           *as_unsigned = malloc(room * sizeof *as_unsigned);
-    const bool ok = as_signed && as_unsigned;
-    size_t negative = 0, signed_ones = 0, unsigned_ones = 0, linear_ones = 0;
-    *facts = (struct encoding_facts){.low = {INFINITY, INFINITY, INFINITY},
-                                     .high = {-INFINITY, -INFINITY, -INFINITY}};
-    for (size_t i = 0; ok && i < gbuffer_texels(g); i += step) {
-        const float *n = g->normals + i * 4;
-        const float decoded[3] = {2.0f * n[0] - 1.0f, 2.0f * n[1] - 1.0f, 2.0f * n[2] - 1.0f};
-        if (!finite3(n) || !(length3(n) > 0) || length3(decoded) < 0.02 ||
-            length_of_linear(n) < 0.02)
-            continue;
-        negative += n[0] < -0.02f || n[1] < -0.02f || n[2] < -0.02f;
-        as_signed[facts->count] = length3(n);
-        as_unsigned[facts->count] = length3(decoded);
-        signed_ones += is_one(as_signed[facts->count]);
-        unsigned_ones += is_one(as_unsigned[facts->count++]);
-        linear_ones += is_one(length_of_linear(n));
-        for (int c = 0; c < 3; c++) {
-            facts->low[c] = fminf(facts->low[c], n[c]);
-            facts->high[c] = fmaxf(facts->high[c], n[c]);
-        }
-    }
-    if (ok && facts->count > 0) {
-        const double count = (double)facts->count;
-        facts->negative = (double)negative / count;
-        facts->signed_share = (double)signed_ones / count;
-        facts->unsigned_share = (double)unsigned_ones / count;
-        facts->linear_share = (double)linear_ones / count;
-        facts->signed_length = median_of(as_signed, facts->count);
-        facts->unsigned_length = median_of(as_unsigned, facts->count);
-    }
-    free(as_signed);
-    free(as_unsigned);
-    return ok;
-}
-
-static bool unit_length(double length)
-{
-    return length > 0.9 && length < 1.1;
-}
-
-/* Some texels are negative in any encoding: filters overshoot. */
-static enum normal_encoding encoding_of(const struct encoding_facts *f)
-{
-    if (f->count == 0 || f->negative > 0.005 || f->signed_share > f->unsigned_share + 0.2)
-        return NORMAL_ENCODING_SIGNED;
-    if (f->unsigned_share > f->signed_share + 0.2)
-        return NORMAL_ENCODING_UNSIGNED;
-    return unit_length(f->signed_length)     ? NORMAL_ENCODING_SIGNED
-           : unit_length(f->unsigned_length) ? NORMAL_ENCODING_UNSIGNED
-                                             : NORMAL_ENCODING_AUTO;
-}
-
-/* One component says nothing, and the other two are no normals without it. */
-static bool has_two_components(const struct encoding_facts *f)
-{
-    static const float varies = 0.2f;
-    int constant = 0, varying = 0;
-    for (int c = 0; c < 3; c++) {
-        constant += f->high[c] - f->low[c] < 1e-3f;
-        varying += f->high[c] - f->low[c] > varies;
-    }
-    return constant == 1 && varying == 2 && fmax(f->signed_share, f->unsigned_share) < 0.9;
-}
-
-void gbuffer_drop_normals(struct gbuffer *g)
-{
-    free(g->normals);
-    g->normals = NULL;
-    g->normal_space = NORMAL_SPACE_AUTO;
-    g->view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
-}
-
-/* What cannot be normals in any encoding is left out. */
-static void drop_what_is_none(struct gbuffer *g, const struct encoding_facts *f, const char *path,
-                              struct report *report)
-{
-    const char *label = g->roles.kind[ROLE_NORMAL].label;
-    if (f->count == 0)
-        report_warn(report, "empty normals",
-                    "%s: normals '%s' are zero or no numbers wherever one looks: deriving them "
-                    "from depth",
-                    path, label);
-    else if (has_two_components(f))
-        report_warn(report, "packed normals",
-                    "%s: normals '%s' have two components and a third that is %.3g everywhere: "
-                    "octahedral, or without z; they cannot be read: deriving them from depth",
-                    path, label,
-                    f->high[0] - f->low[0] < 1e-3f   ? (double)f->low[0]
-                    : f->high[1] - f->low[1] < 1e-3f ? (double)f->low[1]
-                                                     : (double)f->low[2]);
-    else
-        return;
-    gbuffer_drop_normals(g);
-}
-
-static bool fail_linear(const struct gbuffer *g, const char *path, struct tool_error *err)
-{
-    fail_hint(err, "write them as data (raw, non-colour); or --normal none");
-    return fail(err, EXIT_CHANNELS,
-                "%s: normals '%s' look like a picture of normals that was made linear, as colours "
-                "are: they are 0..1 encoded only with the curve put back",
-                path, g->roles.kind[ROLE_NORMAL].label);
-}
-
-static bool resolve_encoding(struct gbuffer *g, enum normal_encoding wanted, const char *path,
-                             struct report *report, struct tool_error *err)
-{
-    struct encoding_facts facts;
-    g->normal_encoding = wanted;
-    if (wanted != NORMAL_ENCODING_AUTO)
-        return true;
-    if (!measure_encoding(g, &facts))
-        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
-    drop_what_is_none(g, &facts, path, report);
-    if (!g->normals)
-        return true;
-    g->normal_encoding = encoding_of(&facts);
-    if (facts.linear_share > fmax(facts.signed_share, facts.unsigned_share) + 0.2)
-        return fail_linear(g, path, err);
-    g->normals_lack_negative =
-        g->normal_encoding == NORMAL_ENCODING_SIGNED && !(facts.negative > 0);
-    if (g->normal_encoding == NORMAL_ENCODING_AUTO) {
-        fail_hint(err, "add --normal-encoding signed or unsigned, or --normal none");
-        return fail(
-            err, EXIT_CHANNELS,
-            "%s: normals '%s' are neither signed nor 0..1 encoded: median length %.3g and %.3g",
-            path, g->roles.kind[ROLE_NORMAL].label, facts.signed_length, facts.unsigned_length);
-    }
-    if (g->normal_encoding == NORMAL_ENCODING_UNSIGNED)
-        report_warn(
-            report, "unsigned normals",
-            "%s: normals '%s' look 0..1 encoded: decoded as 2n-1 (--normal-encoding overrides)",
-            path, g->roles.kind[ROLE_NORMAL].label);
-    return true;
-}
-
-/* Most are as long, and not 1: of a program that scales. Longer ones than 1 of all lengths are of
- * one that does not normalise; shorter ones are those of filters, and say where these mixed. */
-static bool make_unit(struct gbuffer *g)
-{
-    static const double alike = 0.03, most = 0.5;
-    const size_t step = gbuffer_sample_step(g), room = gbuffer_texels(g) / step + 1;
-    double *lengths = malloc(room * sizeof *lengths);
-    size_t count = 0, usual = 0;
-    if (!lengths)
-        return false;
-    for (size_t i = 0; i < gbuffer_texels(g); i += step)
-        if (length3(g->normals + i * 4) > 0)
-            lengths[count++] = length3(g->normals + i * 4);
-    const double length = median_of(lengths, count);
-    for (size_t i = 0; i < count; i++)
-        usual += fabs(lengths[i] / length - 1.0) < alike;
-    free(lengths);
-    const bool is_scaled = (double)usual > most * (double)count;
-    if (count == 0 || unit_length(length) || !(is_scaled || length > 1))
-        return true;
-    for (size_t i = 0; i < gbuffer_texels(g); i++) {
-        float *n = g->normals + i * 4;
-        const double by = is_scaled ? length : length3(n);
-        for (int c = 0; c < 3 && by > 0; c++)
-            n[c] = (float)((double)n[c] / by);
-    }
-    return true;
-}
-
-/* The library replaces zero normals by those of the depth. What lies outside the part's data window
- * is zero too, and must not be decoded. */
-static bool decode(struct gbuffer *g)
-{
-    for (size_t i = 0; i < gbuffer_texels(g); i++) {
-        float *n = g->normals + i * 4;
-        if (g->normal_encoding == NORMAL_ENCODING_UNSIGNED && length3(n) > 0)
-            for (int c = 0; c < 3; c++)
-                n[c] = 2.0f * n[c] - 1.0f;
-        /* Afterwards: twice a large number may be none. */
-        if (!finite3(n))
-            n[0] = n[1] = n[2] = 0;
-    }
-    return g->normal_encoding != NORMAL_ENCODING_SIGNED || make_unit(g);
-}
-
 /* --- Space --- */
 
-static void rotate(const float m[9], const float n[3], double out[3])
-{
-    for (int row = 0; row < 3; row++)
-        out[row] = (double)m[row] * (double)n[0] + (double)m[3 + row] * (double)n[1] +
-                   (double)m[6 + row] * (double)n[2];
-}
-
-struct facing {
-    double share;    /* of normals that face the eye */
-    size_t away;     /* that do not */
-    double median_z; /* positive: towards the eye */
-};
-
-static bool measure_facing(const struct gbuffer *g, const float matrix[9], struct facing *facing)
-{
-    size_t step = gbuffer_sample_step(g), count = 0, towards = 0;
-    double *z = malloc((gbuffer_texels(g) / step + 1) * sizeof *z);
-    if (!z)
-        return false;
-    for (size_t i = 0; i < gbuffer_texels(g); i += step) {
-        if (!gbuffer_is_foreground(g, i) || !(length3(g->normals + i * 4) > 0.5))
-            continue;
-        double n[3], x = 0, y = 0;
-        rotate(matrix, g->normals + i * 4, n);
-        if (g->camera.type == CAMERA_PERSPECTIVE)
-            camera_ray(&g->camera, &g->display_window, &g->data_window, (double)(i % g->width),
-                       (double)(i / g->width), &x, &y);
-        towards += n[0] * x + n[1] * y - n[2] < 0;
-        z[count++] = n[2];
-    }
-    facing->away = count - towards;
-    facing->share = count ? (double)towards / (double)count : 1.0;
-    facing->median_z = median_of(z, count);
-    free(z);
-    return true;
-}
-
 /* Camera space: as OpenGL has it, or with z away from the eye (RenderMan, pbrt). */
-static bool camera_matrix(const struct gbuffer *g, float matrix[9], struct facing *facing)
+static bool camera_matrix(const struct gbuffer *g, float matrix[9], struct normal_facing *facing)
 {
-    struct facing away;
-    if (!measure_facing(g, identity, facing) || !measure_facing(g, flipped_z, &away))
+    struct normal_facing away;
+    if (!gbuffer_measure_facing(g, identity, facing) ||
+        !gbuffer_measure_facing(g, flipped_z, &away))
         return false;
     bool flip = away.share > facing->share;
     memcpy(matrix, flip ? flipped_z : identity, sizeof identity);
@@ -290,19 +27,19 @@ static bool camera_matrix(const struct gbuffer *g, float matrix[9], struct facin
 }
 
 /* World space: where the header leaves open which way the camera looks, the normals know. */
-static bool world_matrix(const struct gbuffer *g, float matrix[9], struct facing *facing)
+static bool world_matrix(const struct gbuffer *g, float matrix[9], struct normal_facing *facing)
 {
     camera_normal_to_view(&g->camera, matrix);
-    if (!measure_facing(g, matrix, facing))
+    if (!gbuffer_measure_facing(g, matrix, facing))
         return false;
     if (g->camera.axis_certain)
         return true;
     float turned[9];
-    struct facing other;
+    struct normal_facing other;
     memcpy(turned, matrix, sizeof turned);
     for (int column = 0; column < 3; column++)
         turned[column * 3 + 2] = -turned[column * 3 + 2];
-    if (!measure_facing(g, turned, &other))
+    if (!gbuffer_measure_facing(g, turned, &other))
         return false;
     if (other.share > facing->share) {
         memcpy(matrix, turned, sizeof turned);
@@ -343,19 +80,13 @@ static const double least_agreement = 0.35, clear_agreement = 0.15, poor_agreeme
                     no_agreement = 0.12;
 enum { FEW_PAIRS = 200 };
 
-static void turn_round(float m[9])
-{
-    for (int i = 0; i < 9; i++)
-        m[i] = -m[i];
-}
-
 /* Of what points away from the eye all three axes are the other way round. */
 static void judge_way(struct way *way, const struct normal_pairs *pairs)
 {
     way->is_known = true;
     way->agreement = gbuffer_agreement(pairs, way->matrix);
     if (way->agreement.facing < 0.3 && way->agreement.share > least_agreement)
-        turn_round(way->matrix);
+        gbuffer_turn_round(way->matrix);
 }
 
 static void judge_ways(struct way ways[WAYS], const struct normal_pairs *pairs,
@@ -437,103 +168,6 @@ static void ask_depth(struct gbuffer *g, const struct way ways[WAYS],
     }
 }
 
-/* --- Mirrors --- */
-
-/* Along an axis of the stored normals, or along the direction that the fewest of them have: what
- * those of two directions leave open. */
-enum { MIRROR_SEEN = 3, MIRRORS };
-
-static void mirror(const struct gbuffer *g, int which, float m[9])
-{
-    memcpy(m, g->view.normal_to_view, sizeof g->view.normal_to_view);
-    for (int c = 0; c < 3; c++) {
-        const double *w = g->seen_weakest;
-        float *column = m + c * 3;
-        const double along =
-            (double)column[0] * w[0] + (double)column[1] * w[1] + (double)column[2] * w[2];
-        for (int row = 0; row < 3; row++) {
-            if (which == MIRROR_SEEN)
-                column[row] = (float)((double)column[row] - 2.0 * along * w[row]);
-            else if (which == c)
-                column[row] = -column[row];
-        }
-    }
-}
-
-/* Of a small image few texels tell, and they do if none is left. */
-static bool all_face(const struct facing *as_told, const struct facing *mirrored)
-{
-    static const double most_facing = 0.98, least_facing = 0.99;
-    enum { FEW = 8, TIMES = 8 };
-    if (mirrored->share < least_facing)
-        return false;
-    return as_told->share < most_facing ||
-           (as_told->away >= FEW && mirrored->away * TIMES <= as_told->away);
-}
-
-/* Agreement does not ask which way round a normal points, as leaves do not either. Of what a
- * renderer turned towards the eye more than 99 of 100 face it; of a world with one axis the other
- * way round, as a left-handed one has, 29 to 99. What faces the eye in a mirror alone was mirrored,
- * and leaves that point anywhere face it in none. */
-static bool ask_mirrors(struct gbuffer *g, const struct normal_pairs *pairs, const char *path,
-                        struct report *report)
-{
-    static const double half = 0.5, less = 0.02;
-    static const char *const axes[MIRRORS] = {"their x is turned round", "their y is turned round",
-                                              "their z is turned round",
-                                              "one direction of them is"};
-    struct facing as_told, mirrored;
-    float best[9];
-    int axis = -1;
-    if (!measure_facing(g, g->view.normal_to_view, &as_told))
-        return false;
-    double most = 0;
-    const bool is_asked =
-        as_told.away > 0 && gbuffer_agreement(pairs, g->view.normal_to_view).share > half;
-    for (int c = 0; is_asked && c < MIRRORS; c++) {
-        float m[9];
-        if (c == MIRROR_SEEN && !g->has_seen_rotation)
-            continue;
-        mirror(g, c, m);
-        if (!measure_facing(g, m, &mirrored))
-            return false;
-        const double agreement = gbuffer_agreement(pairs, m).share;
-        if (!all_face(&as_told, &mirrored) || mirrored.share <= most ||
-            agreement < g->normal_agreement - less)
-            continue;
-        most = mirrored.share;
-        axis = c;
-        memcpy(best, m, sizeof best);
-    }
-    if (axis < 0)
-        return true;
-    memcpy(g->view.normal_to_view, best, sizeof best);
-    report_warn(report, "mirrored normals",
-                "%s: %.2g %% of the normals '%s' face away from the camera, and all face it once "
-                "%s: mirrored, as those of a left-handed world are; they are taken so",
-                path, (1.0 - as_told.share) * 100.0, g->roles.kind[ROLE_NORMAL].label, axes[axis]);
-    return true;
-}
-
-/* All of them away from the eye, and along those of depth: inside out, whatever made them so. */
-static bool ask_whether_inside_out(struct gbuffer *g, const struct normal_pairs *pairs,
-                                   const char *path, struct report *report)
-{
-    static const double least_away = 0.99, half = 0.5;
-    struct facing facing;
-    if (!measure_facing(g, g->view.normal_to_view, &facing))
-        return false;
-    if (1.0 - facing.share < least_away ||
-        gbuffer_agreement(pairs, g->view.normal_to_view).share < half)
-        return true;
-    turn_round(g->view.normal_to_view);
-    report_warn(report, "mirrored normals",
-                "%s: the normals '%s' face away from the camera, %.0f %% of them, and lie along "
-                "those of the depth: they point inwards and are turned round",
-                path, g->roles.kind[ROLE_NORMAL].label, (1.0 - facing.share) * 100.0);
-    return true;
-}
-
 /* --- The choice --- */
 
 /* By name, camera and looks; AUTO: none of them tells. */
@@ -541,7 +175,7 @@ static bool choose_space(struct gbuffer *g, enum normal_space wanted, float worl
                          struct tool_error *err, const char *path)
 {
     float camera[9];
-    struct facing by_world = {0}, by_camera;
+    struct normal_facing by_world = {0}, by_camera;
     const enum normal_space named = g->roles.kind[ROLE_NORMAL].normal_space;
     const bool rotation = g->camera.has_rotation;
     if (!camera_matrix(g, camera, &by_camera) || (rotation && !world_matrix(g, world, &by_world)))
@@ -574,53 +208,19 @@ static bool are_alike(const struct normal_pairs *pairs)
     return pairs->count >= FEW_PAIRS;
 }
 
-/* Normals of depth that have a negative component, where what is stored is those without it, or
- * without its sign, and no such normal. */
-static size_t count_lost_signs(const struct gbuffer *g, const struct normal_pairs *pairs)
-{
-    static const double clearly = -0.2, same = 0.985, other = 0.94;
-    const float *m = g->view.normal_to_view;
-    size_t count = 0;
-    for (size_t i = 0; i < pairs->count; i++) {
-        const double *depth = pairs->pair[i].depth, *stored = pairs->pair[i].stored;
-        double least = 0, dot = 0, by_clamped = 0, by_lost = 0, length = 0;
-        for (int c = 0; c < 3; c++) {
-            double n = 0;
-            for (int row = 0; row < 3; row++)
-                n += (double)m[c * 3 + row] * depth[row];
-            least = fmin(least, n);
-            dot += n * stored[c];
-            by_lost += fabs(n) * stored[c];
-            by_clamped += fmax(n, 0) * stored[c];
-            length += fmax(n, 0) * fmax(n, 0);
-        }
-        count += least < clearly && fabs(dot) < other &&
-                 (by_lost > same || by_clamped > same * sqrt(length));
-    }
-    return count;
-}
-
-/* Planes agree nearly all over. Of normals that happen to be positive, bumps and round things
- * leave 75 of 100 agreeing, and none lost a sign but by chance. */
-static const double least_of_planes = 0.8, least_of_positive = 0.7;
-enum { FEW_LOST = 4 };
-
+/* Planes agree nearly all over. */
 static void check_values(struct gbuffer *g, bool alike, size_t lost_signs, const char *path,
                          struct report *report)
 {
-    const char *label = g->roles.kind[ROLE_NORMAL].label;
+    static const double least_of_planes = 0.8;
     if (alike && g->normal_agreement < least_of_planes) {
         report_warn(report, "constant normals",
                     "%s: normals '%s' are the same everywhere, and the depth is of no plane: "
                     "tangent space? deriving them from depth",
-                    path, label);
+                    path, g->roles.kind[ROLE_NORMAL].label);
         gbuffer_drop_normals(g);
-    } else if (g->normals_lack_negative &&
-               (g->normal_agreement < least_of_positive || lost_signs >= FEW_LOST)) {
-        report_warn(report, "positive normals",
-                    "%s: normals '%s' have no negative component anywhere, and %.0f %% agree with "
-                    "the depth: was it clamped, or its sign lost? (--normal none)",
-                    path, label, g->normal_agreement * 100.0);
+    } else {
+        gbuffer_warn_of_lost_signs(g, lost_signs, path, report);
     }
 }
 
@@ -629,7 +229,7 @@ static bool check_normals(struct gbuffer *g, enum normal_space wanted, size_t pa
                           const char *path, struct report *report, struct tool_error *err)
 {
     const char *label = g->roles.kind[ROLE_NORMAL].label;
-    struct facing facing;
+    struct normal_facing facing;
     if (g->normal_space == NORMAL_SPACE_AUTO) {
         if (g->is_camera_doubted)
             report_warn(report, "world normals",
@@ -662,7 +262,7 @@ static bool check_normals(struct gbuffer *g, enum normal_space wanted, size_t pa
                     path, label, g->normal_agreement * 100.0,
                     g->camera.source[0] ? g->camera.source : "assumed");
     }
-    if (!measure_facing(g, g->view.normal_to_view, &facing))
+    if (!gbuffer_measure_facing(g, g->view.normal_to_view, &facing))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     if (facing.share < 0.6)
         report_warn(
@@ -689,31 +289,16 @@ static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const cha
     ask_depth(g, ways, &pairs, wanted, path, report);
     const size_t count = pairs.count;
     const bool alike = are_alike(&pairs);
-    const size_t lost_signs = g->normals_lack_negative ? count_lost_signs(g, &pairs) : 0;
-    const bool ok =
-        count < FEW_PAIRS || g->normal_space == NORMAL_SPACE_AUTO ||
-        (ask_whether_inside_out(g, &pairs, path, report) && ask_mirrors(g, &pairs, path, report));
+    const size_t lost_signs = gbuffer_count_lost_signs(g, &pairs);
+    const bool ok = count < FEW_PAIRS || g->normal_space == NORMAL_SPACE_AUTO ||
+                    (gbuffer_ask_whether_inside_out(g, &pairs, path, report) &&
+                     gbuffer_ask_mirrors(g, &pairs, path, report));
     gbuffer_free_pairs(&pairs);
     if (!ok)
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     if (count >= FEW_PAIRS && wanted == NORMAL_SPACE_AUTO && g->normal_space != NORMAL_SPACE_AUTO)
         check_values(g, alike, lost_signs, path, report);
     return !g->normals || check_normals(g, wanted, count, path, report, err);
-}
-
-bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, const char *path,
-                            struct report *report, struct tool_error *err)
-{
-    if (!g->normals)
-        return true;
-    if (!resolve_encoding(g, wanted, path, report, err))
-        return false;
-    if (!g->normals)
-        return true;
-    if (!decode(g))
-        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
-    g->view.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
-    return true;
 }
 
 bool gbuffer_prepare_normals(struct gbuffer *g, const struct gbuffer_options *options,
