@@ -349,11 +349,49 @@ def existing_previews_of_views_are_kept(scratch):
     scratch.fails(OUTPUT, r'p\.r\.png: exists', *RUN, '--view', 'all', '--preview', 'p.png')
 
 
+@cases([(f'{mode}: {link} to {target}', mode, link, target)
+        for mode in ('never', 'always', 'skip')
+        for link in ('out.2.exr', 'out.2.png', 'cam.2.json', 'out.2.l.png')
+        for target in ('nowhere', 'no/such/directory', 'in a circle')])
+def link_to_nothing_as_output_is_refused_before_any_frame(scratch, _, mode, link, target):
+    target = link if target == 'in a circle' else target
+    for n in (1, 2):
+        views = ({'Z': SCENE.depth()}, {'name': 'Z.l', 'view': 'l'}), \
+                ({'Z': SCENE.depth()}, {'name': 'Z.r', 'view': 'r'})
+        write_exr(scratch.path(f'in.{n}.exr'), *views)
+    os.symlink(target, scratch.path('link'))
+    os.symlink('link', scratch.path(link))
+    line = ('in.@.exr', '--overwrite', mode, '--fov', FOV)
+    said = r': cannot create: it is a symbolic link ' + (
+        'that leads in a circle' if target == link else rf'to {target}, which is not there')
+    if link.startswith('cam'):
+        line = ('inspect', *line, '--write-camera', 'cam.@.json')
+    elif link == 'out.2.l.png':  # known once the views are
+        line = ('in.2.exr', *line[1:], '-o', 'out.2.exr', '--view', 'all', '--preview', 'out.2.png')
+    else:
+        line += ('-o', 'out.@.exr', '--view', 'l', '--preview', 'out.@.png')
+    scratch.fails(OUTPUT, rf'{link}{said}', *line, hint='remove the link, or name the file itself')
+
+
 @case
-def dangling_link_as_output_is_kept(scratch):
+def link_to_no_directory_is_told(scratch):
     gbuffer(scratch)
-    os.symlink('nowhere.exr', scratch.path('out.exr'))
-    scratch.fails(OUTPUT, r'out\.exr: exists', *RUN)
+    os.symlink('not mounted', scratch.path('disk'))
+    for line in (('in.exr', '-o', 'disk/out.exr', '--fov', FOV),
+                 ('inspect', 'in.exr', '--write-camera', 'disk/cam.json', '--fov', FOV)):
+        scratch.fails(OUTPUT, r'there is no directory disk$', *line,
+                      hint="a symbolic link to 'not mounted': make that first")
+
+
+@cases(['out.2.exr', 'out.2.png', 'cam.2.json'])
+def what_is_no_file_is_refused_before_any_frame(scratch, name):
+    for n in (1, 2):
+        gbuffer(scratch, f'in.{n}.exr')
+    os.mkfifo(scratch.path(name))
+    line = ('in.@.exr', '--overwrite', 'always', '--fov', FOV)
+    scratch.fails(OUTPUT, rf'{name}: cannot create: not a regular file',
+                  *(('inspect', *line, '--write-camera', 'cam.@.json') if name[0] == 'c' else
+                    (*line, '-o', 'out.@.exr', '--preview', 'out.@.png')))
 
 
 @case

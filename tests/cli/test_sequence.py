@@ -314,8 +314,10 @@ def what_no_run_leaves_is_not_left_alone(scratch, what):
         os.symlink('nothing.exr', path)
     else:
         scratch.write('ao.0003.exr', '')
-    scratch.fails(OUTPUT, r'ao\.0003\.exr: exists, not overwritten', 'in.####.exr', '-o',
-                  'ao.####.exr', '--overwrite', 'skip', *VIEW, hint='remove it')
+    said = 'cannot create: it is a symbolic link to nothing.exr, which is not there' \
+        if what == 'a link to nothing' else 'exists, not overwritten'
+    scratch.fails(OUTPUT, rf'ao\.0003\.exr: {said}', 'in.####.exr', '-o', 'ao.####.exr',
+                  '--overwrite', 'skip', *VIEW, hint='remove')
     equal(outputs(scratch), ['ao.0003.exr'], 'outputs')
 
 

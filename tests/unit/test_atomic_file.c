@@ -145,6 +145,22 @@ static void replacing_through_a_link_keeps_the_link_and_the_mode(void **state)
     assert_int_equal(status.st_mode & 0777, 0640);
 }
 
+/* As an output is of a disk that is not mounted. */
+static void a_link_to_nothing_is_not_followed(void **state)
+{
+    (void)state;
+    for (int replace = 0; replace < 2; replace++) {
+        struct atomic_file file;
+        struct tool_error err = {0};
+        assert_int_equal(symlink("real.exr", in_directory("link.exr")), 0);
+        assert_false(atomic_file_open(&file, in_directory("link.exr"), replace, &err));
+        assert_int_equal(err.code, EXIT_OUTPUT);
+        assert_non_null(strstr(err.message, "which is not there"));
+        assert_int_equal(files_in_directory(), 1);
+        assert_int_equal(unlink(in_directory("link.exr")), 0);
+    }
+}
+
 static void new_files_have_the_permissions_of_the_umask(void **state)
 {
     (void)state;
@@ -169,6 +185,7 @@ int main(void)
         TEST(output_is_invisible_until_the_commit),
         TEST(interruption_removes_every_pending_file),
         TEST(replacing_through_a_link_keeps_the_link_and_the_mode),
+        TEST(a_link_to_nothing_is_not_followed),
         TEST(new_files_have_the_permissions_of_the_umask),
     };
     return cmocka_run_group_tests(tests, make_directory, remove_directory);

@@ -88,14 +88,31 @@ static bool too_long(const char *path, struct tool_error *err)
     return fail(err, EXIT_OUTPUT, "%.200s...: cannot create: path is too long", path);
 }
 
-/* Follows symbolic links at the last component, also dangling ones, as open(O_CREAT) does: a user
- * who links his output to another disk wants the file there. */
+static bool fail_dead_link(const struct atomic_file *file, int error, struct tool_error *err)
+{
+    if (error == ELOOP)
+        fail(err, EXIT_OUTPUT, "%s: cannot create: it is a symbolic link that leads in a circle",
+             file->path);
+    else if (error == ENOENT || error == ENOTDIR)
+        fail(err, EXIT_OUTPUT, "%s: cannot create: it is a symbolic link to %s, which is not there",
+             file->path, file->target);
+    else
+        fail(err, EXIT_OUTPUT, "%s: cannot create: it is a symbolic link to %s: %s", file->path,
+             file->target, strerror(error));
+    return fail_hint(err, "remove the link, or name the file itself");
+}
+
+/* Follows symbolic links at the last component: a user who links his output to another disk wants
+ * the file there. A link to nothing is refused: a file where nobody looks, or none, is what becomes
+ * of a disk that is not mounted. */
 static bool resolve_links(struct atomic_file *file, struct tool_error *err)
 {
     char link[ATOMIC_FILE_PATH_MAX], joined[2 * ATOMIC_FILE_PATH_MAX];
     strcpy(file->target, file->path);
     for (int depth = 0; depth < 40; depth++) {
         ssize_t length = readlink(file->target, link, sizeof link - 1);
+        if (length < 0 && depth > 0 && errno != EINVAL)
+            return fail_dead_link(file, errno, err);
         if (length < 0)
             return true; /* not a link, or not there: creating it will tell */
         link[length] = '\0';
@@ -106,7 +123,7 @@ static bool resolve_links(struct atomic_file *file, struct tool_error *err)
             return too_long(file->path, err);
         memcpy(file->target, joined, (size_t)joined_length + 1);
     }
-    return fail(err, EXIT_OUTPUT, "%s: cannot create: %s", file->path, strerror(ELOOP));
+    return fail_dead_link(file, ELOOP, err);
 }
 
 static bool fail_exists(const struct atomic_file *file, struct tool_error *err)
@@ -208,10 +225,9 @@ static bool create_temp(struct atomic_file *file, struct tool_error *err)
     return fail_create(file, error, err);
 }
 
-bool atomic_file_open(struct atomic_file *file, const char *path, bool replace,
-                      struct tool_error *err)
+static bool settle_target(struct atomic_file *file, const char *path, bool replace, mode_t *mode,
+                          struct tool_error *err)
 {
-    mode_t mode;
     memset(file, 0, sizeof *file);
     file->fd = -1;
     file->slot = -1;
@@ -219,7 +235,21 @@ bool atomic_file_open(struct atomic_file *file, const char *path, bool replace,
     if (strlen(path) >= sizeof file->path)
         return too_long(path, err);
     strcpy(file->path, path);
-    if (!resolve_links(file, err) || !check_target(file, &mode, err) || !create_temp(file, err))
+    return resolve_links(file, err) && check_target(file, mode, err);
+}
+
+bool atomic_file_check(const char *path, struct tool_error *err)
+{
+    struct atomic_file file;
+    mode_t mode;
+    return settle_target(&file, path, true, &mode, err);
+}
+
+bool atomic_file_open(struct atomic_file *file, const char *path, bool replace,
+                      struct tool_error *err)
+{
+    mode_t mode;
+    if (!settle_target(file, path, replace, &mode, err) || !create_temp(file, err))
         return false;
     if (mode)
         (void)!fchmod(file->fd, mode); /* some file systems have no permissions to keep */

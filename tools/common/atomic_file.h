@@ -28,10 +28,13 @@ struct atomic_file {
     int slot; /* place in the list of pending files, < 0 if none */
 };
 
+/* Whether a file can be at path, in place of one that is there: no directory, no pipe, no symbolic
+ * link to nothing. Asked before any work. Errors: EXIT_OUTPUT. */
+bool atomic_file_check(const char *path, struct tool_error *err);
 /* Creates the temporary file (mode 0666 less the umask). With replace an existing path is replaced
  * at the commit (permission bits are kept); without it an existing path is an error, now or at the
- * commit. Directories, devices and pipes are always an error. Errors: EXIT_OUTPUT. On failure there
- * is nothing to abort, though aborting does no harm. */
+ * commit. Directories, devices, pipes and symbolic links to nothing are always an error. Errors:
+ * EXIT_OUTPUT. On failure there is nothing to abort, though aborting does no harm. */
 bool atomic_file_open(struct atomic_file *file, const char *path, bool replace,
                       struct tool_error *err);
 /* Writes all bytes to fd or fails with EXIT_OUTPUT and the system's reason. */

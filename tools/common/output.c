@@ -7,7 +7,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 enum { NAME_BYTES = 512, STRINGS = 3 };
@@ -122,13 +121,12 @@ static bool check_previews(const struct options *options, const struct plan_fram
 {
     for (size_t v = 0; source->view_count > 1 && v < source->view_count; v++) {
         struct text path = {0};
-        struct stat s;
         preview_path(frame->preview, source->views[v].name, source->view_count, &path);
-        bool taken = path.data && lstat(path.data, &s) == 0;
-        if (taken)
-            plan_fail_exists(options, path.data, err);
+        const bool ok = path.data && !path.out_of_memory
+                            ? plan_check_place(options, path.data, err)
+                            : fail(err, EXIT_MEMORY, "%s: out of memory", frame->preview);
         text_free(&path);
-        if (taken)
+        if (!ok)
             return false;
     }
     return true;
@@ -153,8 +151,7 @@ static bool check_channel(const struct options *o, struct tool_error *err)
 bool output_check_names(const struct options *options, const struct plan_frame *frame,
                         const struct frame_source *source, struct tool_error *err)
 {
-    const bool is_new = options->overwrite != OVERWRITE_ALWAYS && !frame->is_left;
-    if (frame->preview && is_new && !check_previews(options, frame, source, err))
+    if (frame->preview && !frame->is_left && !check_previews(options, frame, source, err))
         return false;
     if (!check_channel(options, err))
         return false;

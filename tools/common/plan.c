@@ -1,11 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 #include "plan.h"
 
+#include "atomic_file.h"
+
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 enum path_kind {
     PATH_INPUT,
@@ -360,6 +363,19 @@ static bool check_names(const struct options *o, struct tool_error *err)
     return true;
 }
 
+/* A dead link is in the way of whoever makes the directory. */
+static void hint_at_directory(const char *directory, struct tool_error *err)
+{
+    char target[256];
+    const ssize_t length = readlink(directory, target, sizeof target - 1);
+    if (length < 0) {
+        fail_hint(err, "make it first: mkdir -p '%s'", directory);
+        return;
+    }
+    target[length] = '\0';
+    fail_hint(err, "it is a symbolic link to '%s': make that first, or remove the link", target);
+}
+
 /* Where there is no directory, no AO needs to be computed. */
 static bool check_directory(const char *path, struct tool_error *err)
 {
@@ -369,7 +385,7 @@ static bool check_directory(const char *path, struct tool_error *err)
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     bool ok = stat(directory, &s) == 0 && S_ISDIR(s.st_mode);
     if (!ok) {
-        fail_hint(err, "make it first: mkdir -p '%s'", directory);
+        hint_at_directory(directory, err);
         fail(err, EXIT_OUTPUT, "%s: cannot create: there is no directory %s", path, directory);
     }
     free(directory);
@@ -391,6 +407,14 @@ bool plan_fail_exists(const struct options *options, const char *path, struct to
                               : "add --overwrite always");
 }
 
+bool plan_check_place(const struct options *options, const char *path, struct tool_error *err)
+{
+    struct stat s;
+    if (options->overwrite != OVERWRITE_ALWAYS && stat(path, &s) == 0)
+        return plan_fail_exists(options, path, err);
+    return atomic_file_check(path, err);
+}
+
 bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,
                         struct tool_error *err)
 {
@@ -398,11 +422,23 @@ bool plan_check_outputs(const struct options *options, const struct plan_frame *
     for (size_t i = 0; i < 2; i++) {
         if (paths[i] && !check_directory(paths[i], err))
             return false;
-        if (options->overwrite != OVERWRITE_ALWAYS && !frame->is_left && paths[i] &&
-            exists(paths[i]))
-            return plan_fail_exists(options, paths[i], err);
+        if (paths[i] && !frame->is_left && !plan_check_place(options, paths[i], err))
+            return false;
     }
     return true;
+}
+
+/* Of inspect, which is told whether a camera exists when it comes to write it: one of a frame that
+ * shows nothing is in nobody's way. */
+static bool check_camera_place(const struct options *options, const struct plan_frame *frame,
+                               struct tool_error *err)
+{
+    const char *path = frame->write_camera;
+    struct stat s;
+    if (!path ||
+        (options->overwrite != OVERWRITE_ALWAYS && stat(path, &s) == 0 && S_ISREG(s.st_mode)))
+        return true;
+    return check_directory(path, err) && atomic_file_check(path, err);
 }
 
 bool plan_fail_of_frame(const struct plan_frame *frame, struct tool_error *err)
@@ -465,6 +501,8 @@ bool plan_make(const struct options *options, struct plan *plan, struct tool_err
         plan->frames[i].is_left = plan_leaves(options, plan->frames[i].output);
     for (size_t i = 0; ok && options->output && !options->continue_on_error && i < plan->count; i++)
         ok = plan_check_outputs(options, &plan->frames[i], err);
+    for (size_t i = 0; ok && i < plan->count; i++)
+        ok = check_camera_place(options, &plan->frames[i], err);
     ok = ok && (options->continue_on_error || check_there(plan, err));
     if (ok && options->output && !options->continue_on_error)
         ok = check_cameras(plan, err);

@@ -47,7 +47,9 @@ void plan_say_cameras(const struct plan *plan, const struct report *report);
 bool plan_leaves(const struct options *options, const char *path);
 /* Of an output that is in the way, with the remedy. Returns false. */
 bool plan_fail_exists(const struct options *options, const char *path, struct tool_error *err);
-/* Whether an output of the frame is in the way. */
+/* Whether a file can be written at path, and may be. Errors: EXIT_OUTPUT. */
+bool plan_check_place(const struct options *options, const char *path, struct tool_error *err);
+/* The same of all outputs of the frame, and whether their directories are there. */
 bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,
                         struct tool_error *err);
 /* A message names the file it is about, which is the input if nothing else is. Returns false. */
