@@ -73,11 +73,8 @@ void hide(inout March march, Slice s, Masks m, reals fall, Offset offset, reals 
     reals thick_y = y - params.thickness_seen * lesser(width, params.thickness_base +
                                                                   params.thickness_slope * x);
     reals back_x = x + VKAO_VBAO_GAP_BACK * gap;
-    /* Cosines of both edges by one division. */
-    reals front_length = sqrt(front_x * front_x + y * y);
-    reals back_length = sqrt(back_x * back_x + thick_y * thick_y);
-    reals inverse = 1.0 / (front_length * back_length);
-    reals front = y * (back_length * inverse), back = thick_y * (front_length * inverse);
+    reals front = y / sqrt(front_x * front_x + y * y);
+    reals back = thick_y / sqrt(back_x * back_x + thick_y * thick_y);
     front = mix(front, greater(front, march.last_front), joined);
     march.upper = mix(m.k0, march.upper, joined);
     /* Without a sign: a driver then sees that nothing is shifted by more. */
