@@ -157,10 +157,11 @@ vkao_result vkao_context_create(const vkao_context_info *caller_info, vkao_conte
                         caller_info->struct_size >= offsetof(vkao_context_info, mark)))
         log = (struct vkao_logger){caller_info->log, caller_info->log_user_data,
                                    caller_info->log_level};
-    if (!out)
-        return vkao_refuse(&log, VKAO_ERROR_INVALID_ARGUMENT, "vkao_context_create: out is NULL");
+    vkao_result result = vkao_want(&log, "vkao_context_create", "out", out);
+    if (result != VKAO_SUCCESS)
+        return result;
     *out = NULL;
-    vkao_result result = vkao_import(&log, VKAO_STRUCT_CONTEXT_INFO, "context", caller_info, &info);
+    result = vkao_import(&log, VKAO_STRUCT_CONTEXT_INFO, "context", caller_info, &info);
     if (result == VKAO_SUCCESS)
         result = check_info(&log, &info);
     if (result != VKAO_SUCCESS)

@@ -135,10 +135,11 @@ vkao_result vkao_effect_create(const vkao_context *ctx, const vkao_effect_info *
         *out = NULL;
     if (!ctx)
         return VKAO_ERROR_INVALID_ARGUMENT;
-    if (!out)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "vkao_effect_create: out is NULL");
-    vkao_result result = vkao_effect_info_check(&ctx->log, info, &settings);
+    vkao_result result = vkao_want(&ctx->log, "vkao_effect_create", "out", out);
+    if (result == VKAO_SUCCESS)
+        result = vkao_want(&ctx->log, "vkao_effect_create", "info", info);
+    if (result == VKAO_SUCCESS)
+        result = vkao_effect_info_check(&ctx->log, info, &settings);
     if (result != VKAO_SUCCESS)
         return result;
     vkao_effect *effect = vkao_calloc(ctx->allocator, sizeof *effect);

@@ -288,13 +288,14 @@ vkao_result vkao_frame_scratch(const vkao_effect *effect, const vkao_frame_info 
     if (!effect)
         return VKAO_ERROR_INVALID_ARGUMENT;
     const vkao_context *ctx = effect->program.ctx;
-    if (!out)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "vkao_frame_scratch: out is NULL");
     vkao_frame frame = {0};
     vkao_frame_info known;
     struct vkao_program own;
-    vkao_result result = describe(effect, info, false, &known, &own, &frame);
+    vkao_result result = vkao_want(&ctx->log, "vkao_frame_scratch", "out", out);
+    if (result == VKAO_SUCCESS)
+        result = vkao_want(&ctx->log, "vkao_frame_scratch", "info", info);
+    if (result == VKAO_SUCCESS)
+        result = describe(effect, info, false, &known, &own, &frame);
     if (result != VKAO_SUCCESS)
         return result;
     VkMemoryRequirements requirements;
@@ -325,13 +326,14 @@ vkao_result vkao_frame_create(const vkao_effect *effect, const vkao_frame_info *
     if (!effect)
         return VKAO_ERROR_INVALID_ARGUMENT;
     const vkao_context *ctx = effect->program.ctx;
-    if (!out)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "vkao_frame_create: out is NULL");
     vkao_frame described = {0};
     vkao_frame_info info;
     struct vkao_program own;
-    vkao_result result = describe(effect, caller_info, true, &info, &own, &described);
+    vkao_result result = vkao_want(&ctx->log, "vkao_frame_create", "out", out);
+    if (result == VKAO_SUCCESS)
+        result = vkao_want(&ctx->log, "vkao_frame_create", "info", caller_info);
+    if (result == VKAO_SUCCESS)
+        result = describe(effect, caller_info, true, &info, &own, &described);
     if (result != VKAO_SUCCESS)
         return result;
     vkao_slots_warn(described.program, &described.images);
@@ -366,7 +368,9 @@ vkao_result vkao_frame_update(vkao_frame *frame, const vkao_images *images)
     vkao_images known;
     char now[VKAO_NAME_BYTES], then[VKAO_NAME_BYTES];
     const vkao_context *ctx = frame->ctx;
-    vkao_result result = vkao_import(&ctx->log, VKAO_STRUCT_IMAGES, "images", images, &known);
+    vkao_result result = vkao_want(&ctx->log, "vkao_frame_update", "images", images);
+    if (result == VKAO_SUCCESS)
+        result = vkao_import(&ctx->log, VKAO_STRUCT_IMAGES, "images", images, &known);
     if (result != VKAO_SUCCESS)
         return result;
     for (uint32_t i = 0; i < VKAO_SLOT_COUNT; ++i) {

@@ -23,6 +23,16 @@ void vkao_log(const struct vkao_logger *log, vkao_log_level level, const char *f
 vkao_result vkao_refuse(const struct vkao_logger *log, vkao_result result, const char *format, ...)
     VKAO_PRINTF(3, 4);
 
+/* Refuses an argument of the call that is NULL. Here, where analysers see it. */
+static inline vkao_result vkao_want(const struct vkao_logger *log, const char *call,
+                                    const char *argument, const void *value)
+{
+    if (value)
+        return VKAO_SUCCESS;
+    (void)vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "%s: %s is NULL", call, argument);
+    return VKAO_ERROR_INVALID_ARGUMENT;
+}
+
 /* Logs that a Vulkan call failed and maps its result. */
 vkao_result vkao_vk_failed(const struct vkao_logger *log, const char *call, VkResult result);
 

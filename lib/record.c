@@ -173,8 +173,15 @@ static vkao_result record(const vkao_frame *frame, VkCommandBuffer cmd, const ch
         return VKAO_ERROR_INVALID_ARGUMENT;
     const vkao_effect_info *e = &frame->program->settings;
     const vkao_stage_flags has = vkao_stages_of(e);
-    if (!cmd)
-        return vkao_refuse(&frame->ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s: cmd is NULL", call);
+    const struct {
+        const char *name;
+        const void *value;
+    } given[] = {{"cmd", cmd}, {"view", view}, {"params", params}};
+    for (size_t i = 0; i < sizeof given / sizeof given[0]; ++i) {
+        const vkao_result result = vkao_want(&frame->ctx->log, call, given[i].name, given[i].value);
+        if (result != VKAO_SUCCESS)
+            return result;
+    }
     if (!stages || (stages & ~has))
         return vkao_refuse(&frame->ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
                            "%s: stages is 0x%x, want bits of 0x%x, which the effect has", call,

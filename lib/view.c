@@ -44,6 +44,14 @@ static vkao_result orthographic_forward(const struct vkao_logger *log, const vka
     return VKAO_SUCCESS;
 }
 
+/* Is any device depth of a perspective matrix in front of the eye? Those on one side of the depth
+ * at infinity are. That may lie between 0 and 1, where a range of depth is folded in. */
+static bool shows_depth(const float *m)
+{
+    const float at_infinity = m[10] / m[11];
+    return m[14] > 0.0f ? at_infinity < 1.0f : at_infinity > 0.0f;
+}
+
 static vkao_result read_projection(const struct vkao_logger *log, const vkao_view *view,
                                    struct projection *p)
 {
@@ -80,12 +88,12 @@ static vkao_result read_projection(const struct vkao_logger *log, const vkao_vie
                            "(column-major, [0] %g [5] %g [10] %g [11] %g [14] %g [15] %g)",
                            (double)m[0], (double)m[5], (double)m[10], (double)m[11], (double)m[14],
                            (double)m[15]);
-    /* What lies between the planes lies in front of the eye, whichever is near. */
-    if (perspective && (0.5 * (double)m[11] - (double)m[10]) * (double)m[11] / (double)m[14] <= 0.0)
+    if (perspective && !shows_depth(m))
         return vkao_refuse(
             log, VKAO_ERROR_INVALID_ARGUMENT,
-            "view.projection puts depth 0.5 behind the eye ([10] %g [11] %g [14] %g): "
-            "is it transposed? m[column * 4 + row] holds columns",
+            "view.projection puts depths 0 to 1 behind the eye ([10] %g [11] %g [14] %g): "
+            "is it transposed, or the sign of one of these wrong? m[column * 4 + row] holds "
+            "columns",
             (double)m[10], (double)m[11], (double)m[14]);
     /* Scale so that w is distance along the axis, or 1. */
     double w = perspective ? fabs((double)m[11]) : (double)m[15];
@@ -205,6 +213,16 @@ static float far_limit(double near, double far)
     return (float)(far * (1.0 - fmin(0.5, 0x1p-22 * ratio)));
 }
 
+/* Of floating depth, relative to that below 1, near the depth of what is far away. */
+static double float_step(double at_infinity)
+{
+    int exponent;
+    if (at_infinity <= 0.0)
+        return 0.0;
+    (void)frexp(at_infinity, &exponent);
+    return ldexp(1.0, exponent < 0 ? exponent : 0);
+}
+
 /* Device depth to view z. The step of the depth format tells how far z may be off: fixed-point
  * steps are the same everywhere, floating ones shrink towards 0, which is why reversed floating
  * depth is accurate. */
@@ -238,14 +256,14 @@ static void read_depth(const struct projection *p, const vkao_effect_info *effec
         double add = p->z_z * p->forward, mul = -p->z_1; /* z = mul / (add - depth) */
         double at_one = add == 1.0 ? INFINITY : mul / (add - 1.0),
                at_zero = add == 0.0 ? INFINITY : mul / add;
-        bool one_is_far = at_one < 0.0 || (at_zero > 0.0 && at_one > at_zero);
+        bool one_is_far = mul > 0.0;
+        /* Negative where the planes of the range that is folded in lie before depth 0 or 1. */
         double far = one_is_far ? at_one : at_zero;
         out->far_depth = one_is_far ? 1.0f : 0.0f;
         out->linearize[0] = (float)mul;
         out->linearize[1] = (float)add;
         if (effect->depth_encoding == VKAO_DEPTH_PROJECTED) {
-            if (!floating || one_is_far)
-                out->depth_error[1] = (float)(step / fabs(mul));
+            out->depth_error[1] = (float)(step * (floating ? float_step(add) : 1.0) / fabs(mul));
         } else if (isfinite(far) && far > 0.0) {
             out->far_z = far_limit(fmin(at_zero, at_one), far);
         }

@@ -23,12 +23,34 @@
  *
  * Synchronization contract, the same for every vkao_cmd_* function:
  *  - Before: images that a stage reads are visible to COMPUTE_SHADER / SHADER_READ in their
- *    declared layout. Images that it writes are in VK_IMAGE_LAYOUT_GENERAL, and earlier accesses to
- *    them have finished before COMPUTE_SHADER and TRANSFER; a barrier that brings them to GENERAL
- *    has SHADER_WRITE | TRANSFER_WRITE in dstAccessMask. The external dependency of the depth pass
- *    does it for depth and normals: srcStageMask LATE_FRAGMENT_TESTS |
- *    COLOR_ATTACHMENT_OUTPUT, srcAccessMask DEPTH_STENCIL_ATTACHMENT_WRITE |
- *    COLOR_ATTACHMENT_WRITE, dstStageMask COMPUTE_SHADER, dstAccessMask SHADER_READ.
+ *    declared layout. The external dependency of the depth pass does it for depth and normals:
+ *    srcStageMask LATE_FRAGMENT_TESTS | COLOR_ATTACHMENT_OUTPUT, srcAccessMask
+ *    DEPTH_STENCIL_ATTACHMENT_WRITE | COLOR_ATTACHMENT_WRITE, dstStageMask COMPUTE_SHADER,
+ *    dstAccessMask SHADER_READ.
+ *  - Before: images that a stage writes are in VK_IMAGE_LAYOUT_GENERAL, and earlier accesses to
+ *    them have finished before COMPUTE_SHADER and TRANSFER: the barrier has dstStageMask
+ *    COMPUTE_SHADER | TRANSFER and dstAccessMask SHADER_WRITE | TRANSFER_WRITE, for output in
+ *    color's image SHADER_READ as well. The other two masks are those of what the image was last
+ *    used for:
+ *        last use                         srcStageMask             srcAccessMask
+ *        read by a shader                 the shader's             0
+ *        written by a shader, or by vkao  the shader's             SHADER_WRITE
+ *        copied from                      TRANSFER                 0
+ *        copied to, or cleared            TRANSFER                 TRANSFER_WRITE
+ *        drawn to                         COLOR_ATTACHMENT_OUTPUT  COLOR_ATTACHMENT_WRITE
+ *        none                             TOP_OF_PIPE              0
+ *    oldLayout may be UNDEFINED if texels outside view.rect need not be kept. AO that a fragment
+ *    shader has read in the frame before, and that is made anew:
+ *        const VkImageMemoryBarrier anew = {
+ *            VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER, NULL,
+ *            0, VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
+ *            VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL,
+ *            VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED,
+ *            ao_image, {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+ *        vkCmdPipelineBarrier(
+ *            cmd, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
+ *            VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT,
+ *            0, 0, NULL, 0, NULL, 1, &anew);
  *  - After: written images were last touched by COMPUTE_SHADER / SHADER_WRITE, still in GENERAL.
  *    The barrier to your own next use is yours. A copy that the library made counts as such a
  *    write.
@@ -51,7 +73,9 @@
  * context info that is too short for its log, without a word. No struct has implicit padding on
  * 64-bit targets. Enums only grow.
  *
- * On any error nothing has been created or recorded, and *out is NULL.
+ * On any error nothing has been created or recorded, and *out is NULL. Each is logged, naming the
+ * argument or member, but where there is no log: if ctx, effect or frame is NULL, or the context
+ * info, or that is too short; and by vkao_preset.
  */
 #ifndef VKAO_H_
 #define VKAO_H_
@@ -223,8 +247,9 @@ typedef uint32_t vkao_stage_flags;
 
 typedef enum vkao_depth_encoding {
     /* Device depth z/w in [0,1] as rasterised with the view's own matrix: standard, reversed or
-     * infinite far. Depth of an oblique near plane is of another matrix, which nothing can tell by
-     * looking: give VIEW_Z instead. */
+     * infinite far. Exactly 1, or 0 if it is reversed, is background, the other the near plane; for
+     * a range of depth see vkao_view.projection. Depth of an oblique near plane is of another
+     * matrix, which nothing can tell by looking: give VIEW_Z instead. */
     VKAO_DEPTH_PROJECTED = 0,
     VKAO_DEPTH_VIEW_Z = 1, /* positive distance along the view axis */
     /* positive distance from the eye (the Z channel of some ray tracers) */
@@ -516,8 +541,9 @@ VKAO_API void vkao_frame_destroy(vkao_frame *frame);
 /* --- Recording: what may change each time --- */
 
 /* Which way the camera looks along the view-space z axis. A perspective matrix says so itself; an
- * orthographic one does through its near and far planes, unless they lie equally far on both sides
- * of the eye. */
+ * orthographic one does through its near and far planes, which depths 0 and 1 are taken to be: name
+ * the axis if they lie equally far on both sides of the eye, or if a range of depth is folded into
+ * the matrix. */
 typedef enum vkao_view_axis {
     VKAO_VIEW_AXIS_FROM_MATRIX = 0,
     VKAO_VIEW_AXIS_NEGATIVE_Z = 1, /* right-handed view space, as OpenGL */
@@ -541,10 +567,21 @@ typedef struct vkao_view {
     /* Texels to write, inside valid. All 0 = valid. Use it to split work; the parts add up to the
      * whole. */
     VkRect2D rect;
-    /* View space to Vulkan clip space, unjittered. Perspective or orthographic as effect.projection
-     * says; off-centre, y-flipped, either hand, reversed or infinite depth are all read off the
-     * matrix. Finite, no shear, no rotation; a texel spans 1e-15 to 1e15 scene units, in
-     * perspective at distance 1. */
+    /* View space to Vulkan clip space: the matrix that depth was drawn with, a jitter for temporal
+     * filters included. Perspective or orthographic as effect.projection says; off-centre,
+     * y-flipped, either hand, reversed or infinite depth are all read off the matrix. Finite, no
+     * shear, no rotation; a texel spans 1e-15 to 1e15 scene units, in perspective at distance 1.
+     *
+     * What is done behind the matrix is folded into it. A jitter by (x, y) in NDC, of which a texel
+     * is 2 / viewport.extent: add x * m[11] to m[8] and y * m[11] to m[9] in perspective, x * m[15]
+     * to m[12] and y * m[15] to m[13] in orthographic views. A viewport whose minDepth and maxDepth
+     * are not 0 and 1, in either order:
+     *     m[10] = (maxDepth - minDepth) * m[10] + minDepth * m[11];
+     *     m[14] = (maxDepth - minDepth) * m[14] + minDepth * m[15];
+     * PROJECTED depth of exactly 0 or 1 is then no plane, but on the far side it is background
+     * still, as are depths beyond that at infinity. The far end of the range is background where
+     * the far plane is infinite, and a surface at the far plane where it is not: clear depth to 0
+     * or 1. An orthographic view wants its axis. */
     float projection[16];
     /* Rotation of stored normals into view space, m[column * 3 + row]. Identity if they are
      * view-space. May scale; all 0 = as if there were none. Normals need not be unit length. One

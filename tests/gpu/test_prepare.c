@@ -123,7 +123,8 @@ static void check_background(struct picture *p, const char *what, double backgro
     }
 }
 
-enum { REVERSED = 1, INFINITE = 2, ORTHOGRAPHIC = 4 };
+/* minDepth 0.25 and maxDepth 0.75 of the viewport, folded into the matrix */
+enum { REVERSED = 1, INFINITE = 2, ORTHOGRAPHIC = 4, RANGE = 8 };
 
 #define PROJECTED VKAO_DEPTH_PROJECTED
 #define VIEW_Z VKAO_DEPTH_VIEW_Z
@@ -146,6 +147,17 @@ static const struct {
     {"orthographic reversed far plane", PROJECTED, D32, 0.0, ORTHOGRAPHIC | REVERSED},
     {"beyond 1", PROJECTED, R32, 1.5, 0},
     {"below 0, reversed", PROJECTED, R32, -0.5, REVERSED},
+    {"cleared to 1, range of depth", PROJECTED, D32, 1.0, RANGE},
+    {"cleared to 1, range of depth, infinite", PROJECTED, D32, 1.0, RANGE | INFINITE},
+    {"cleared to 0, range of depth, reversed", PROJECTED, D32, 0.0, RANGE | REVERSED},
+    {"cleared to 0, range of depth, reversed infinite", PROJECTED, D32, 0.0,
+     RANGE | REVERSED | INFINITE},
+    {"end of the range, infinite", PROJECTED, D32, 0.75, RANGE | INFINITE},
+    {"beyond the range, infinite", PROJECTED, D32, 0.9, RANGE | INFINITE},
+    {"end of the range, reversed infinite", PROJECTED, D32, 0.25, RANGE | REVERSED | INFINITE},
+    {"cleared to 1, range of depth, orthographic", PROJECTED, D32, 1.0, RANGE | ORTHOGRAPHIC},
+    {"cleared to 0, range of depth, orthographic reversed", PROJECTED, D32, 0.0,
+     RANGE | ORTHOGRAPHIC | REVERSED},
     {"projected NaN", PROJECTED, R32, (double)NAN, 0},
     {"projected NaN, orthographic", PROJECTED, R32, (double)NAN, ORTHOGRAPHIC},
     {"projected infinity", PROJECTED, R32, (double)INFINITY, 0},
@@ -178,7 +190,13 @@ static void background_is_exactly_one_and_occludes_nothing(void **state)
         lens.reversed = (backgrounds[i].camera & REVERSED) != 0;
         if (backgrounds[i].camera & INFINITE)
             lens.far = INFINITY;
+        if (backgrounds[i].camera & RANGE) {
+            lens.depth_min = 0.25;
+            lens.depth_max = 0.75;
+        }
         picture_make(&p, VKAO_STAGE_SSAO, &wall);
+        if (backgrounds[i].camera & ORTHOGRAPHIC)
+            p.view.axis = VKAO_VIEW_AXIS_NEGATIVE_Z;
         p.view.depth_encoding = backgrounds[i].encoding;
         picture_render_scene(&p, &wall, &lens, backgrounds[i].format,
                              VK_FORMAT_R32G32B32A32_SFLOAT);
@@ -186,6 +204,60 @@ static void background_is_exactly_one_and_occludes_nothing(void **state)
         p.view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
         check_background(&p, backgrounds[i].name, backgrounds[i].value);
         picture_free(&p);
+    }
+}
+
+/* What the composite shows as view z of a depth image that holds one value, in scene units. */
+static double shown_z(const struct lens *lens, VkFormat format, double depth)
+{
+    struct picture p;
+    picture_init(&p, 16, 12, VKAO_STAGE_ALL);
+    p.view.depth_encoding = VKAO_DEPTH_PROJECTED;
+    p.view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
+    p.view.axis = lens->orthographic ? VKAO_VIEW_AXIS_NEGATIVE_Z : VKAO_VIEW_AXIS_FROM_MATRIX;
+    p.ssao.method = VKAO_SSAO_GTAO; /* vbao leaves a thickness in the last bits of view z */
+    p.composite.mode = VKAO_COMPOSITE_VIEW_Z;
+    p.composite.debug_distance = 1.0f;
+    lens_matrix(lens, p.view.projection);
+    picture_fill(&p, SLOT_DEPTH, format, depth);
+    picture_set(&p, SLOT_AO, VK_FORMAT_R32_SFLOAT, NULL);
+    picture_set(&p, SLOT_OUTPUT, VK_FORMAT_R32G32B32A32_SFLOAT, NULL);
+    picture_run(&p);
+    const double z = p.values[SLOT_OUTPUT][(6 * 16 + 8) * 4];
+    picture_free(&p);
+    return z;
+}
+
+/* Exactly 0 and 1: one is the near plane, where a surface may lie, the other background. With a
+ * range of depth the planes are at its ends, and what is before the near one is in front of it. */
+static void depths_of_zero_and_one_are_the_planes(void **state)
+{
+    (void)state;
+    static const VkFormat formats[] = {D32, R32, VK_FORMAT_D16_UNORM, VK_FORMAT_R16_UNORM};
+    for (unsigned i = 0; i < 16 * sizeof formats / sizeof formats[0]; ++i) {
+        const unsigned camera = i % 16;
+        const bool reversed = camera & REVERSED;
+        if ((camera & ORTHOGRAPHIC) && (camera & INFINITE))
+            continue;
+        struct lens lens =
+            test_lens(camera & ORTHOGRAPHIC, reversed, camera & INFINITE ? (double)INFINITY : 10.0);
+        double ends[2] = {0.0, 1.0};
+        if (camera & RANGE) {
+            ends[0] = lens.depth_min = 0.25;
+            ends[1] = lens.depth_max = 0.75;
+        }
+        const VkFormat format = formats[i / 16];
+        /* An orthographic eye stands behind all depths from 0 to 1: these are at -2.75 and
+         * 14.25. */
+        const double shift =
+            (camera & ORTHOGRAPHIC) && (camera & RANGE) ? 2.75 + 0.001 * 17.0 : 0.0;
+        const double near = shown_z(&lens, format, ends[reversed]),
+                     background = shown_z(&lens, format, reversed ? 0.0 : 1.0);
+        if (!(fabs(near - lens.near - shift) < 2e-4) || background != 0.0)
+            fail_msg("camera 0x%x, format %d: near plane at %g, background %g", camera, (int)format,
+                     near, background);
+        if (camera & RANGE)
+            assert_true(shown_z(&lens, format, reversed ? 1.0 : 0.0) < lens.near + shift - 0.01);
     }
 }
 
@@ -222,6 +294,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         gpu_test(view_z_agrees_with_reference_for_every_format_encoding_and_far_plane),
         gpu_test(background_is_exactly_one_and_occludes_nothing),
+        gpu_test(depths_of_zero_and_one_are_the_planes),
         gpu_test(background_is_exactly_one_in_every_ao_format),
     };
     return fixture_run(tests);

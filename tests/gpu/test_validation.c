@@ -330,12 +330,238 @@ static void validation_sees_a_caller_who_forgets_the_barrier_after_vkao(void **s
     assert_true(messages > 0);
 }
 
+/* --- The last use of an image that vkao writes, and the barrier of the header for it --- */
+
+enum last_use { READ, WRITTEN, COPIED_FROM, CLEARED, DRAWN, NONE, LAST_USES };
+
+static const struct {
+    const char *name;
+    VkPipelineStageFlags stages;
+    VkAccessFlags access;
+} last_uses[LAST_USES] = {
+    [READ] = {"read by a shader", VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0},
+    [WRITTEN] = {"written by vkao", VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT,
+                 VK_ACCESS_SHADER_WRITE_BIT},
+    [COPIED_FROM] = {"copied from", VK_PIPELINE_STAGE_TRANSFER_BIT, 0},
+    [CLEARED] = {"cleared", VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT},
+    [DRAWN] = {"drawn to", VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT,
+               VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT},
+    [NONE] = {"not used", VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, 0},
+};
+
+/* An AO image, and all that may use it before vkao writes it. */
+struct used_ao {
+    struct picture p;
+    struct picture_gpu g;
+    struct gpu_image ao, shown;
+    struct gpu_buffer home;
+    vkao_frame *frame, *reading;
+    vkao_effect *reading_effect;
+    VkRenderPass pass;
+    VkFramebuffer framebuffer;
+};
+
+static bool can_draw(void)
+{
+    VkQueueFamilyProperties families[16];
+    uint32_t count = 16;
+    vkGetPhysicalDeviceQueueFamilyProperties(fixture.gpu.physical_device, &count, families);
+    return fixture.gpu.queue_family < count &&
+           families[fixture.gpu.queue_family].queueFlags & VK_QUEUE_GRAPHICS_BIT;
+}
+
+static void create_pass(struct used_ao *u)
+{
+    const VkAttachmentDescription attachment = {
+        .format = u->ao.format,
+        .samples = VK_SAMPLE_COUNT_1_BIT,
+        .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
+        .storeOp = VK_ATTACHMENT_STORE_OP_STORE,
+        .initialLayout = VK_IMAGE_LAYOUT_GENERAL,
+        .finalLayout = VK_IMAGE_LAYOUT_GENERAL,
+    };
+    const VkAttachmentReference color = {0, VK_IMAGE_LAYOUT_GENERAL};
+    const VkSubpassDescription subpass = {.colorAttachmentCount = 1, .pColorAttachments = &color};
+    assert_int_equal(vkCreateRenderPass(fixture.gpu.device,
+                                        &(VkRenderPassCreateInfo){
+                                            .sType = VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO,
+                                            .attachmentCount = 1,
+                                            .pAttachments = &attachment,
+                                            .subpassCount = 1,
+                                            .pSubpasses = &subpass,
+                                        },
+                                        NULL, &u->pass),
+                     VK_SUCCESS);
+    assert_int_equal(vkCreateFramebuffer(fixture.gpu.device,
+                                         &(VkFramebufferCreateInfo){
+                                             .sType = VK_STRUCTURE_TYPE_FRAMEBUFFER_CREATE_INFO,
+                                             .renderPass = u->pass,
+                                             .attachmentCount = 1,
+                                             .pAttachments = &u->ao.view,
+                                             .width = u->ao.extent.width,
+                                             .height = u->ao.extent.height,
+                                             .layers = 1,
+                                         },
+                                         NULL, &u->framebuffer),
+                     VK_SUCCESS);
+}
+
+static void create_frames(struct used_ao *u)
+{
+    vkao_frame_info info;
+    u->g.slots.ao = gpu_image_slot(&u->ao);
+    u->g.slots.ao.image = u->ao.image; /* where it is faster, vkao copies into it */
+    picture_frame_info(&u->p, &u->g, &info);
+    check_vkao(vkao_frame_create(u->g.effect, &info, &u->frame));
+    vkao_effect_info shows = vkao_effect_info_default();
+    shows.stages = VKAO_STAGE_COMPOSITE;
+    shows.composite_mode = VKAO_COMPOSITE_AO_ONLY;
+    check_vkao(vkao_effect_create(fixture.context, &shows, &u->reading_effect));
+    vkao_images images = vkao_images_default();
+    images.ao = gpu_image_slot(&u->ao);
+    images.output = gpu_image_slot(&u->shown);
+    info.images = &images;
+    check_vkao(vkao_frame_create(u->reading_effect, &info, &u->reading));
+}
+
+static void open_used(struct used_ao *u)
+{
+    const VkExtent2D extent = {80, 60};
+    const VkImageUsageFlags usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
+    const struct scene scene = scene_corner();
+    *u = (struct used_ao){.frame = NULL};
+    picture_make(&u->p, VKAO_STAGE_SSAO | VKAO_STAGE_BLUR, &scene);
+    picture_set(&u->p, SLOT_AO, VK_FORMAT_R8_UNORM, NULL);
+    picture_open(&u->p, &u->g);
+    check(gpu_image_create(&fixture.gpu, VK_FORMAT_R8_UNORM, extent,
+                           usage | (can_draw() ? VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT : 0u), &u->ao,
+                           &fixture.error));
+    check(gpu_image_create(&fixture.gpu, VK_FORMAT_R8G8B8A8_UNORM, extent, usage, &u->shown,
+                           &fixture.error));
+    check(gpu_buffer_create(&fixture.gpu, 80 * 60, VK_BUFFER_USAGE_TRANSFER_DST_BIT, &u->home,
+                            &fixture.error));
+    create_frames(u);
+    if (can_draw())
+        create_pass(u);
+}
+
+static void close_used(struct used_ao *u)
+{
+    vkao_frame_destroy(u->frame);
+    vkao_frame_destroy(u->reading);
+    vkao_effect_destroy(u->reading_effect);
+    vkDestroyFramebuffer(fixture.gpu.device, u->framebuffer, NULL);
+    vkDestroyRenderPass(fixture.gpu.device, u->pass, NULL);
+    gpu_buffer_destroy(&fixture.gpu, &u->home);
+    gpu_image_destroy(&fixture.gpu, &u->ao);
+    gpu_image_destroy(&fixture.gpu, &u->shown);
+    picture_close(&u->g);
+    picture_free(&u->p);
+}
+
+static void record_frame(const struct used_ao *u, const vkao_frame *frame, VkCommandBuffer cmd)
+{
+    const vkao_view view = ao_library_view(&u->p.view);
+    const vkao_params params = vkao_params_default();
+    check_vkao(vkao_cmd_record(frame, cmd, &view, &params));
+}
+
+static void use(const struct used_ao *u, VkCommandBuffer cmd, enum last_use last)
+{
+    const VkClearColorValue black = {{0.0f, 0.0f, 0.0f, 0.0f}};
+    const VkImageSubresourceRange range = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    const VkBufferImageCopy all = {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                                   .imageExtent = {80, 60, 1}};
+    const VkRenderPassBeginInfo draw = {
+        .sType = VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO,
+        .renderPass = u->pass,
+        .framebuffer = u->framebuffer,
+        .renderArea = {{0, 0}, u->ao.extent},
+        .clearValueCount = 1,
+        .pClearValues = &(VkClearValue){.color = black},
+    };
+    if (last == READ || last == WRITTEN) {
+        record_frame(u, last == READ ? u->reading : u->frame, cmd);
+    } else if (last == COPIED_FROM) {
+        vkCmdCopyImageToBuffer(cmd, u->ao.image, VK_IMAGE_LAYOUT_GENERAL, u->home.buffer, 1, &all);
+    } else if (last == CLEARED) {
+        vkCmdClearColorImage(cmd, u->ao.image, VK_IMAGE_LAYOUT_GENERAL, &black, 1, &range);
+    } else if (last == DRAWN) {
+        vkCmdBeginRenderPass(cmd, &draw, VK_SUBPASS_CONTENTS_INLINE);
+        vkCmdEndRenderPass(cmd);
+    }
+}
+
+/* Messages of the layers when the barrier from those stages and accesses stands between the last
+ * use and vkao, in one submit or in two. */
+static uint32_t messages_of(const struct used_ao *u, enum last_use last, bool across_submits,
+                            VkImageLayout from, VkPipelineStageFlags stages, VkAccessFlags access)
+{
+    const VkImageMemoryBarrier anew = {VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
+                                       NULL,
+                                       access,
+                                       VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
+                                       from,
+                                       VK_IMAGE_LAYOUT_GENERAL,
+                                       VK_QUEUE_FAMILY_IGNORED,
+                                       VK_QUEUE_FAMILY_IGNORED,
+                                       u->ao.image,
+                                       {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+    VkCommandBuffer cmds[2] = {gpu_begin(&fixture.gpu, &fixture.error)};
+    use(u, cmds[0], last);
+    cmds[1] = across_submits ? gpu_begin(&fixture.gpu, &fixture.error) : cmds[0];
+    vkCmdPipelineBarrier(cmds[1], stages,
+                         VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT, 0,
+                         0, NULL, 0, NULL, 1, &anew);
+    record_frame(u, u->frame, cmds[1]);
+    for (int i = 0; i <= across_submits; ++i)
+        submit(cmds[i]);
+    assert_int_equal(vkQueueWaitIdle(fixture.gpu.queue), VK_SUCCESS);
+    vkFreeCommandBuffers(fixture.gpu.device, fixture.gpu.command_pool, 1u + across_submits, cmds);
+    const uint32_t messages = fixture.gpu.validation_messages;
+    fixture.gpu.validation_messages = 0;
+    return messages;
+}
+
+static void barriers_that_the_header_names_are_right_and_needed(void **state)
+{
+    (void)state;
+    struct used_ao u;
+    open_used(&u);
+    for (int i = 0; i < LAST_USES * 2; ++i) {
+        const enum last_use last = (enum last_use)(i / 2);
+        const bool across = i % 2;
+        const VkPipelineStageFlags stages = last_uses[last].stages;
+        const VkAccessFlags access = last_uses[last].access;
+        if (last == DRAWN && !can_draw())
+            continue;
+        const VkImageLayout layouts[] = {VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL};
+        for (int k = 0; k < 2; ++k)
+            if (messages_of(&u, last, across, layouts[k], stages, access))
+                fail_msg("%s, %s: the barrier is a hazard", last_uses[last].name,
+                         across ? "two submits" : "one submit");
+        if (last == NONE)
+            continue;
+        fixture.gpu.print_validation = false;
+        const uint32_t none = messages_of(&u, last, across, VK_IMAGE_LAYOUT_UNDEFINED,
+                                          VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, 0),
+                       short_of =
+                           messages_of(&u, last, across, VK_IMAGE_LAYOUT_UNDEFINED, stages, 0);
+        fixture.gpu.print_validation = true;
+        if (!none || (access && !short_of))
+            fail_msg("%s, %s: %u messages without a barrier, %u without srcAccessMask",
+                     last_uses[last].name, across ? "two submits" : "one submit", none, short_of);
+    }
+    close_used(&u);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         gpu_test(validation_sees_a_missing_barrier_within_a_command_buffer),
         gpu_test(validation_sees_a_missing_barrier_between_submits),
         gpu_test(validation_sees_a_caller_who_forgets_the_barrier_after_vkao),
+        gpu_test(barriers_that_the_header_names_are_right_and_needed),
         gpu_test(callers_scratch_at_an_offset_gives_the_same_picture),
         gpu_test(frames_at_different_offsets_do_not_touch_each_other),
         gpu_test(misaligned_scratch_is_refused),

@@ -91,8 +91,28 @@ def every_enum_can_grow():
         assert "_MAX_ENUM = 0x7fffffff" in body, f"{name} has no MAX_ENUM"
 
 
+def the_barrier_of_the_contract_compiles():
+    """From its declaration to the end of the call, in a function that has its names."""
+    code = re.search(r"const VkImageMemoryBarrier anew = .*?&anew\);", HEADER, re.S)
+    assert code, "vkao.h shows no barrier"
+    text = re.sub(r"^ \*", "", code.group(0), flags=re.M)
+    source = ('#include "vkao.h"\nvoid prepare(PFN_vkCmdPipelineBarrier vkCmdPipelineBarrier,\n'
+              f"VkCommandBuffer cmd, VkImage ao_image);\nvoid prepare(PFN_vkCmdPipelineBarrier "
+              f"vkCmdPipelineBarrier,\nVkCommandBuffer cmd, VkImage ao_image)\n{{\n{text}\n}}\n")
+    for compiler, language in (("cc", "c"), ("c++", "c++")):
+        if not shutil.which(compiler):
+            continue
+        command = [compiler, "-fsyntax-only", *FLAGS, f"-I{INCLUDE}"]
+        for directory in filter(None, SYSTEM):
+            command += ["-isystem", directory]
+        done = subprocess.run([*command, f"-x{language}", "-"], input=source, capture_output=True,
+                              text=True)
+        assert done.returncode == 0, done.stderr
+
+
 if __name__ == "__main__":
     run([compiles(*row) for row in COMPILERS] +
         [(f.__name__, f) for f in (every_default_function_is_compiled_here,
                                    defaults_are_those_the_comments_state,
-                                   no_line_is_longer_than_100, every_enum_can_grow)])
+                                   no_line_is_longer_than_100, every_enum_can_grow,
+                                   the_barrier_of_the_contract_compiles)])

@@ -6,19 +6,19 @@
 
 struct lens lens_perspective(double half_width, double half_height)
 {
-    return (struct lens){false, -half_width, half_width, -half_height, half_height,
-                         0.1,   100.0,       false,      -1.0};
+    return (struct lens){false, -half_width, half_width, -half_height, half_height, 0.1,
+                         100.0, false,       -1.0,       0.0,          0.0};
 }
 
 struct lens lens_orthographic(double half_width, double half_height)
 {
-    return (struct lens){true, -half_width, half_width, -half_height, half_height,
-                         0.1,  100.0,       false,      -1.0};
+    return (struct lens){true,  -half_width, half_width, -half_height, half_height, 0.1,
+                         100.0, false,       -1.0,       0.0,          0.0};
 }
 
 /* Device depth is a + b / z in perspective, a + b z in orthographic views: 0 and 1 at the two
  * planes. */
-static void depth_terms(const struct lens *lens, double *a, double *b)
+static void plane_terms(const struct lens *lens, double *a, double *b)
 {
     double n = lens->reversed ? lens->far : lens->near, f = lens->reversed ? lens->near : lens->far;
     if (lens->orthographic) {
@@ -33,6 +33,16 @@ static void depth_terms(const struct lens *lens, double *a, double *b)
     } else {
         *a = f / (f - n);
         *b = -n * f / (f - n);
+    }
+}
+
+/* The same in the viewport's range. */
+static void depth_terms(const struct lens *lens, double *a, double *b)
+{
+    plane_terms(lens, a, b);
+    if (lens->depth_min != 0.0 || lens->depth_max != 0.0) {
+        *a = lens->depth_min + *a * (lens->depth_max - lens->depth_min);
+        *b *= lens->depth_max - lens->depth_min;
     }
 }
 
@@ -78,7 +88,7 @@ double lens_encode(const struct lens *lens, vkao_depth_encoding encoding, double
     default:
         depth_terms(lens, &a, &b);
         if (isinf(z))
-            return lens->reversed ? 0.0 : 1.0;
+            return lens->reversed != (lens->depth_min > lens->depth_max) ? 0.0 : 1.0;
         return lens->orthographic ? a + b * z : a + b / z;
     }
 }

@@ -17,6 +17,8 @@ struct lens {
         far; /* far may be INFINITY in perspective; near may be negative in orthographic views */
     bool reversed;
     double forward; /* -1: the camera looks down -z (right-handed), +1: up z */
+    /* minDepth and maxDepth of the viewport, folded into the matrix. Both 0: 0 and 1. */
+    double depth_min, depth_max;
 };
 
 /* Symmetric, y down, right-handed, near 0.1, far 100; half_width and half_height as x1 and y1. */

@@ -294,9 +294,9 @@ static void every_required_null_is_refused(void **state)
     assert_int_equal(vkao_effect_create(NULL, &w.effect_info, &w.effect),
                      VKAO_ERROR_INVALID_ARGUMENT);
     expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, vkao_effect_create(w.ctx, NULL, &w.effect),
-                   "effect", "NULL");
+                   "vkao_effect_create", "info is NULL");
     expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, vkao_effect_create(w.ctx, &w.effect_info, NULL),
-                   "out", "NULL");
+                   "vkao_effect_create", "out is NULL");
     vkao_effect_destroy(NULL);
     world_close(&w);
 }

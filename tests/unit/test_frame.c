@@ -422,9 +422,11 @@ static void every_required_null_is_refused_and_named(void **state)
     assert_int_equal(vkao_frame_scratch(NULL, &w.frame_info, &query), invalid);
     assert_int_equal(vkao_frame_update(NULL, &w.images), invalid);
     w.frame = (vkao_frame *)&w;
-    expect_refused(&w, invalid, vkao_frame_create(w.effect, NULL, &w.frame), "frame", "NULL");
+    expect_refused(&w, invalid, vkao_frame_create(w.effect, NULL, &w.frame), "vkao_frame_create",
+                   "info is NULL");
     assert_null(w.frame);
-    expect_refused(&w, invalid, vkao_frame_scratch(w.effect, NULL, &query), "frame", "NULL");
+    expect_refused(&w, invalid, vkao_frame_scratch(w.effect, NULL, &query), "vkao_frame_scratch",
+                   "info is NULL");
     w.frame_info.images = NULL;
     expect_refused(&w, invalid, vkao_frame_create(w.effect, &w.frame_info, &w.frame),
                    "frame.images", "NULL");

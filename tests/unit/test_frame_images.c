@@ -613,8 +613,8 @@ static void refused_update_leaves_the_frame(void **state)
             assert_int_equal(fake_count(&w.fake, "vkUpdateDescriptorSets"), 0);
         }
         check_bindings(&w, was);
-        expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, vkao_frame_update(w.frame, NULL), "images",
-                       "NULL");
+        expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, vkao_frame_update(w.frame, NULL),
+                       "vkao_frame_update", "images is NULL");
         world_close(&w);
     }
 }

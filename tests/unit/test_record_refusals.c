@@ -42,8 +42,10 @@ static void every_required_null_is_refused_and_named(void **state)
                    "vkao_cmd_record", "cmd is NULL");
     expect_refused(&w, invalid, vkao_cmd_stage(w.frame, NULL, VKAO_STAGE_SSAO, &w.view, &w.params),
                    "vkao_cmd_stage", "cmd is NULL");
-    expect_refused(&w, invalid, vkao_cmd_record(w.frame, cmd, NULL, &w.params), "view", "NULL");
-    expect_refused(&w, invalid, vkao_cmd_record(w.frame, cmd, &w.view, NULL), "params", "NULL");
+    expect_refused(&w, invalid, vkao_cmd_record(w.frame, cmd, NULL, &w.params), "vkao_cmd_record",
+                   "view is NULL");
+    expect_refused(&w, invalid, vkao_cmd_record(w.frame, cmd, &w.view, NULL), "vkao_cmd_record",
+                   "params is NULL");
     expect_nothing_recorded(&w);
     world_close(&w);
 }

@@ -15,10 +15,15 @@ static const VkExtent2D extent = {640, 360};
 struct camera {
     bool orthographic, left_handed, reversed, infinite, off_centre, flipped;
     double near, far;
-    float scale; /* of the whole matrix: clip space is homogeneous */
+    double depth_min, depth_max; /* of the viewport */
+    float scale;                 /* of the whole matrix: clip space is homogeneous */
 };
 
-enum { CAMERAS = 128 };
+/* The viewport's minDepth and maxDepth, as an engine folds them into the matrix. */
+static const double ranges[][2] = {{0.0, 1.0}, {0.5, 1.0}, {0.1, 0.9}, {0.0, 0.4},
+                                   {1.0, 0.0}, {0.9, 0.1}, {1.0, 0.6}, {0.3, 0.35}};
+
+enum { PLAIN_CAMERAS = 128, CAMERAS = PLAIN_CAMERAS * COUNT(ranges) };
 
 /* Every combination; an infinite orthographic one falls back to finite. */
 static struct camera camera_of(unsigned index)
@@ -33,6 +38,8 @@ static struct camera camera_of(unsigned index)
         .near = 0.25,
         .far = 50.0,
         .scale = index >> 6 & 1u ? 2.5f : 1.0f,
+        .depth_min = ranges[index / PLAIN_CAMERAS][0],
+        .depth_max = ranges[index / PLAIN_CAMERAS][1],
     };
     if (c.orthographic)
         c.infinite = false;
@@ -54,6 +61,21 @@ static void depth_terms(const struct camera *c, double *a, double *b)
         *a = at_near - *b * n;
     else
         *a = c->infinite ? at_far : at_far - *b / f;
+    *a = c->depth_min + *a * (c->depth_max - c->depth_min);
+    *b *= c->depth_max - c->depth_min;
+}
+
+/* Is depth the greater the nearer it is? */
+static bool falls(const struct camera *c)
+{
+    return c->reversed != (c->depth_min > c->depth_max);
+}
+
+/* Do depths 0 and 1 lie at the planes? Else they lie before, beyond, or on the other side of the
+ * eye. */
+static bool has_planes_at_zero_and_one(const struct camera *c)
+{
+    return fabs(c->depth_max - c->depth_min) == 1.0;
 }
 
 static vkao_view view_of(const struct camera *c)
@@ -61,6 +83,8 @@ static vkao_view view_of(const struct camera *c)
     vkao_view view = vkao_view_default();
     const double forward = c->left_handed ? 1.0 : -1.0;
     double a, b;
+    if (c->orthographic && !has_planes_at_zero_and_one(c))
+        view.axis = c->left_handed ? VKAO_VIEW_AXIS_POSITIVE_Z : VKAO_VIEW_AXIS_NEGATIVE_Z;
     depth_terms(c, &a, &b);
     double m[16] = {0};
     m[0] = c->orthographic ? 0.2 : 1.3;
@@ -142,6 +166,14 @@ static double linearize(const struct view_constants *k, double depth)
                            : k->linearize[0] / (k->linearize[1] - depth);
 }
 
+/* What is added to view z: an orthographic eye stands behind all depths from 0 to 1. */
+static double shift_of(const struct view_constants *k, const struct camera *c)
+{
+    double a, b;
+    depth_terms(c, &a, &b);
+    return c->orthographic ? linearize(k, a) : 0.0;
+}
+
 static void expect_near(double got, double want, double tolerance, const char *what, unsigned index)
 {
     if (!(fabs(got - want) <= tolerance))
@@ -189,7 +221,8 @@ static void check_round_trip(vkao_view view, const struct camera *c, unsigned in
                     index);
         expect_near((y * k.unproject[1] + k.unproject[3]) * reach, p[1], 1e-5 * p[2] + 1e-5, "y",
                     index);
-        expect_near(linearize(&k, clip[2] / clip[3]), p[2], 1e-3 * p[2], "z", index);
+        expect_near(linearize(&k, clip[2] / clip[3]) - shift_of(&k, c), p[2], 1e-3 * p[2], "z",
+                    index);
     }
 }
 
@@ -226,8 +259,13 @@ static void linear_depth_is_the_matrix_inverse(void **state)
         for (int step = 1; step < 20; ++step) {
             double depth = step / 20.0, v[4];
             transform(inverse, (double[4]){0.2, -0.4, depth, 1.0}, v);
-            double want = fabs(v[2] / v[3]);
-            expect_near(linearize(&k, depth), want, 1e-5 * want, "linearised depth", i);
+            double want = v[2] / v[3] * (c.left_handed ? 1.0 : -1.0);
+            double shift = shift_of(&k, &c), got = linearize(&k, depth) - shift;
+            /* Less the depth at infinity, which only ranges have between 0 and 1. */
+            if (fabs(want) < 1e4)
+                expect_near(got, want,
+                            1e-5 / fabs(c.depth_max - c.depth_min) * fmax(fabs(want), shift),
+                            "linearised depth", i);
         }
     }
 }
@@ -239,14 +277,17 @@ static void far_depth_is_the_far_planes(void **state)
         const struct camera c = camera_of(i);
         vkao_view view = view_of(&c);
         struct view_constants k = read_off(&view);
-        expect_near(k.far_depth, c.reversed ? 0.0 : 1.0, 0.0, "far depth", i);
+        expect_near(k.far_depth, falls(&c) ? 0.0 : 1.0, 0.0, "far depth", i);
         expect_near(k.far_z, FLT_MAX, 0.0, "far z of device depth", i);
         vkao_effect_info effect = effect_of(&view);
         effect.depth_encoding = VKAO_DEPTH_VIEW_Z;
         assert_int_equal(
             vkao_view_constants_init(&silent, &view, &effect, extent, VK_FORMAT_D32_SFLOAT, &k),
             VKAO_SUCCESS);
-        expect_near(k.far_z, c.infinite ? FLT_MAX : c.far, c.far * 1e-3, "far z", i);
+        if (has_planes_at_zero_and_one(&c))
+            expect_near(k.far_z, c.infinite ? FLT_MAX : c.far, c.far * 1e-3, "far z", i);
+        else if (!(k.far_z >= c.far * 0.999))
+            fail_msg("far z of camera 0x%x is %g, before its far plane", i, (double)k.far_z);
     }
 }
 

@@ -131,6 +131,38 @@ static void transposed_projection_is_refused(void **state)
     world_close(&w);
 }
 
+/* minDepth and maxDepth of a viewport: z' = (max - min) z + min w. What leaves no depth from 0 to 1
+ * in front of the eye is refused: one of the signs is wrong. */
+static void depth_range_may_be_folded_into_the_projection(void **state)
+{
+    (void)state;
+    static const float ranges[][2] = {{0.5f, 1.0f}, {0.7f, 1.0f}, {0.1f, 0.9f}, {0.0f, 0.3f},
+                                      {1.0f, 0.5f}, {1.0f, 0.0f}, {0.0f, 0.5f}};
+    /* [10] and [14] for near 0.1: far 100 or none, standard and reversed */
+    static const float planes[][2] = {
+        {-1.001001f, -0.1001001f}, {0.001001f, 0.1001001f}, {-1.0f, -0.1f}, {0.0f, 0.1f}};
+    struct world w;
+    world_open_frame(&w, VKAO_STAGE_ALL);
+    for (size_t i = 0; i < COUNT(ranges) * COUNT(planes); ++i) {
+        const float *plane = planes[i / COUNT(ranges)], *range = ranges[i % COUNT(ranges)];
+        float *m = w.view.projection, size = range[1] - range[0];
+        char name[80];
+        snprintf(name, sizeof name, "[10] %g [14] %g in [%g,%g]", (double)plane[0],
+                 (double)plane[1], (double)range[0], (double)range[1]);
+        memset(m, 0, sizeof w.view.projection);
+        m[0] = m[5] = 1.5f;
+        m[11] = -1.0f;
+        m[10] = size * plane[0] + range[0] * m[11];
+        m[14] = size * plane[1];
+        expect_all_accept(&w, name);
+        /* Standard depth, or one above a least of 0, with w turned round. */
+        m[11] = 1.0f;
+        if (m[10] < 0.0f && m[14] < 0.0f)
+            expect_all_refuse(&w, "view.projection", "behind the eye");
+    }
+    world_close(&w);
+}
+
 static void projection_that_is_none_is_refused(void **state)
 {
     (void)state;
@@ -330,6 +362,7 @@ int main(void)
         cmocka_unit_test(integer_out_of_range_is_refused_and_named),
         cmocka_unit_test(not_finite_number_is_refused_and_named),
         cmocka_unit_test(transposed_projection_is_refused),
+        cmocka_unit_test(depth_range_may_be_folded_into_the_projection),
         cmocka_unit_test(projection_that_is_none_is_refused),
         cmocka_unit_test(default_view_wants_a_projection),
         cmocka_unit_test(ambiguous_orthographic_view_wants_an_axis),
