@@ -11,6 +11,7 @@ Consumers know of the source tree only where they build it themselves.
 import glob
 import os
 import re
+import shlex
 import shutil
 import struct
 import subprocess
@@ -185,6 +186,40 @@ def cmake_takes_the_library_beside_the_headers():
     assert library.startswith(moved + os.sep), library
 
 
+def cmake_finds_the_package_behind_a_link():
+    """Of a system where /lib is a link to /usr/lib, whichever way find_package takes."""
+    need("cmake")
+    root = folder("cmake-usr-merged")
+    shutil.copytree(PREFIX, os.path.join(root, "usr"), symlinks=True)
+    package = glob.glob(os.path.join(root, "usr", "lib*", "**", "cmake", "vkao"),
+                        recursive=True)[0]
+    library = os.path.relpath(package, os.path.join(root, "usr"))
+    top = library.split(os.sep)[0]
+    os.symlink(os.path.join("usr", top), os.path.join(root, top))
+    build = cmake_consumer("cmake-behind-a-link", f"-Dvkao_DIR={os.path.join(root, library)}")
+    with open(os.path.join(build, "CMakeCache.txt"), encoding="utf-8") as file:
+        found = re.search(r"^vkao_LIBRARY:\w+=(.*)$", file.read(), re.M).group(1)
+    assert found.startswith(os.path.join(os.path.realpath(root), "usr") + os.sep), found
+
+
+def folders_that_lie_apart_are_found():
+    """Library and headers outside the prefix, all of them with spaces in their names."""
+    need("pkg-config", "cmake")
+    root = folder("lies apart")
+    build = os.path.join(root, "build")
+    library = os.path.join(root, "the library")
+    execute([MESON, "setup", build, SOURCE, f"--prefix={os.path.join(root, 'the prefix')}",
+             f"-Dlibdir={library}", f"-Dincludedir={os.path.join(root, 'the headers')}",
+             "-Dtools=false", "-Ddefault_library=shared"])
+    execute([MESON, "install", "-C", build])
+    flags = execute(["pkg-config", "--cflags", "--libs", "vkao"],
+                    env={"PKG_CONFIG_PATH": os.path.join(library, "pkgconfig")}).stdout
+    output = os.path.join(root, "smoke")
+    execute(["cc", os.path.join(HERE, "smoke.c"), *shlex.split(flags), "-o", output])
+    execute([output], env={"LD_LIBRARY_PATH": library})
+    cmake_consumer("cmake apart", f"-Dvkao_DIR={os.path.join(library, 'cmake', 'vkao')}")
+
+
 def cmake_builds_what_meson_builds():
     """add_subdirectory: the same sources, and the same SPIR-V to the byte."""
     build = cmake_consumer("cmake-subdirectory", f"-DVKAO_SOURCE={SOURCE}")
@@ -352,8 +387,10 @@ if __name__ == "__main__":
         *((case.__name__, case) for case in (
             static_consumers_get_their_define, meson_subproject_builds_the_library_alone,
             the_package_wants_no_loader, cmake_takes_the_library_beside_the_headers,
-            cmake_finds_the_package, cmake_builds_what_meson_builds, a_program_loads_the_library,
-            python_takes_defaults_and_tables, rust_makes_an_effect_on_a_device_of_ash)),
+            cmake_finds_the_package, cmake_finds_the_package_behind_a_link,
+            folders_that_lie_apart_are_found, cmake_builds_what_meson_builds,
+            a_program_loads_the_library, python_takes_defaults_and_tables,
+            rust_makes_an_effect_on_a_device_of_ash)),
         engine_is_timed("c11_engine_is_timed", ["cc", "-std=c11"]),
         engine_is_timed("cpp17_engine_is_timed", ["c++", "-xc++", "-std=c++17"]),
         example_shades_the_box_in_silence("example_with_the_shared_library", False),
