@@ -9,8 +9,8 @@ import time
 
 import numpy as np
 
-from cli import (INTERRUPTED, OK, OUTPUT, TERMINATED, TIMEOUT, case, cases, check, check_ao, equal,
-                 main, matches, read_ao, write_exr)
+from cli import (INTERRUPTED, OK, OUTPUT, TERMINATED, TIMEOUT, beside_vkao, case, cases, check,
+                 check_ao, equal, main, matches, read_ao, skip, write_exr)
 from exr_raw import read_raw
 from scene import Scene
 
@@ -109,6 +109,63 @@ def kill_while_overwriting_leaves_the_old_file(scratch):
     code = interrupt_writing(scratch, signal.SIGKILL, '--overwrite', 'always')
     equal(code, -signal.SIGKILL, 'exit code')
     equal(scratch.bytes('out.exr'), b'old', 'the old file')
+
+
+def outputs(scratch):
+    return {name: scratch.bytes(os.path.join(folder, name)) for folder in ('.', 'png')
+            for name in scratch.files(folder) if name.startswith(('out.', '.out.'))}
+
+
+def stereo(scratch):
+    depth = Scene(32, 18).depth()
+    for n in (1, 2):
+        write_exr(scratch.path(f'in.{n}.exr'), ({'Z': depth}, {'name': 'Z.l', 'view': 'l'}),
+                  ({'Z': depth}, {'name': 'Z.r', 'view': 'r'}))
+
+
+PAIR = ('in.@.exr', '-o', 'out.@.exr', '--view', 'all', '--fov', 60, '--radius', 0.5)
+
+
+@cases([*((f'here: {n}', '', n) for n in range(1, 7)),
+        *((f'apart: {n}', 'png/', n) for n in (2, 3))])
+def kill_between_renames_is_mended_by_the_next_run(scratch, _, folder, number):
+    """A frame whose EXR file is there has its previews, and one that lacks it is made anew, with
+    previews that say whose they are."""
+    shim = beside_vkao('..', '..', 'tests', 'cli', 'libvkao_kill_shim.so')
+    if not os.path.exists(shim):
+        skip(f'{shim} is not built')
+    stereo(scratch)
+    os.mkdir(scratch.path('png'))
+    line = (*PAIR, '--preview', f'{folder}out.@.png', '--overwrite', 'skip')
+    scratch.render(*line)
+    wanted = outputs(scratch)
+    equal(len(wanted), 6, 'outputs')
+    for name in wanted:
+        os.remove(scratch.path(folder if name.endswith('png') else '', name))
+    run = scratch.run(*line, env={'LD_PRELOAD': os.path.abspath(shim), 'VKAO_KILL_AT': str(number)})
+    equal(run.code, -signal.SIGKILL, 'exit code')
+    left = outputs(scratch)
+    equal(len([name for name in left if not name.endswith('.tmp')]), number - 1, 'files renamed')
+    for n in (1, 2):
+        check(f'out.{n}.exr' not in left or {f'out.{n}.l.png', f'out.{n}.r.png'} <= {*left},
+              f'{n} has lost a preview: {[*left]}')
+    for name in [name for name in left if name.endswith('.tmp')]:
+        os.remove(scratch.path(folder if '.png.' in name else '', name))
+    scratch.render(*line)
+    equal(outputs(scratch), wanted, 'what the next run makes of it')
+
+
+@cases([('of another output', ('-o', 'other.1.exr')), ('without a note', ('by hand',))])
+def previews_of_others_stop_the_run(scratch, _, maker):
+    stereo(scratch)
+    line = ('in.1.exr', *PAIR[3:], '--preview', 'out.png', '-o')
+    if maker[0] == '-o':
+        scratch.render(*line, 'other.1.exr')
+        os.remove(scratch.path('other.1.exr'))
+    else:
+        scratch.write('out.l.png', b'\x89PNG\r\n\x1a\n')
+    scratch.fails(OUTPUT, r'out\.l\.png: exists, not overwritten', *line, 'out.1.exr',
+                  '--overwrite', 'skip', hint='remove it')
 
 
 @case

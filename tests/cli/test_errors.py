@@ -500,8 +500,9 @@ def file_size_limit_leaves_no_preview(scratch, _, share):
     write_exr(scratch.path('in.exr'),
               {'Z': 5 + grey, 'R': grey, 'G': grey, 'B': grey})
     run = ('in.exr', '--fov', FOV, '--mode', 'comp', '--compression', 'dwab')
-    scratch.render(*run, '-o', 'whole.exr', '--preview', 'whole.png')
-    exr, png = (os.path.getsize(scratch.path('whole.' + f)) for f in ('exr', 'png'))
+    os.mkdir(scratch.path('whole'))
+    scratch.render(*run, '-o', 'whole/out.exr', '--preview', 'whole/out.png')
+    exr, png = (os.path.getsize(scratch.path('whole', 'out.' + f)) for f in ('exr', 'png'))
     check(exr < png, f'the picture to fail on is smaller than the EXR: {png} < {exr}')
     limit = int(exr + (png - 1 - exr) * share)
     failed = scratch.run(*run, '-o', 'out.exr', '--preview', 'out.png',

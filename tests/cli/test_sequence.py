@@ -45,13 +45,14 @@ def every_token_finds_all_frames(scratch, token, name):
 def frames_equal_single_runs(scratch):
     sequence(scratch)
     scratch.render('in.####.exr', '-o', 'ao.####.exr', '--preview', 'ao.####.png', *VIEW)
+    os.mkdir(scratch.path('one'))
     seen = []
     for n in (1, 2, 3):
-        scratch.render(f'in.000{n}.exr', '-o', 'one.exr', '--preview', 'one.png', '--overwrite',
-                       'always', *VIEW)
-        equal(scratch.bytes(f'ao.000{n}.exr'), scratch.bytes('one.exr'), f'frame {n}')
-        equal(scratch.bytes(f'ao.000{n}.png'), scratch.bytes('one.png'), f'preview {n}')
-        seen.append(scratch.bytes('one.exr'))
+        exr, png = f'ao.000{n}.exr', f'ao.000{n}.png'
+        scratch.render(f'in.000{n}.exr', '-o', f'one/{exr}', '--preview', f'one/{png}', *VIEW)
+        equal(scratch.bytes(exr), scratch.bytes(f'one/{exr}'), f'frame {n}')
+        equal(scratch.bytes(png), scratch.bytes(f'one/{png}'), f'preview {n}')
+        seen.append(scratch.bytes(f'one/{exr}'))
     check(len(set(seen)) == 3, 'frames do not differ')
 
 
@@ -242,6 +243,7 @@ def a_second_run_makes_what_is_missing(scratch):
     equal(again.stderr.count('left as it is\n'), 3, 'frames left')
     check('computed again' not in again.stderr, f'nothing is to be made: {again}')
     os.remove(scratch.path('ao.0001.exr'))
+    scratch.write('ao.0001.png', 'mine')
     scratch.fails(OUTPUT, r'ao\.0001\.png: exists', *options, hint='remove it')
 
 
@@ -299,6 +301,7 @@ def previews_of_both_eyes_are_left_with_their_frame(scratch):
     check('not known' not in run.stderr, f'frame 1 is not computed again: {run}')
     equal({name: scratch.bytes(name) for name in outputs(scratch)}, made, 'outputs')
     os.remove(scratch.path('ao.0001.exr'))
+    scratch.write('ao.0001.left.png', 'mine')
     run = scratch.run(*options)
     equal(run.code, OUTPUT, 'exit code')
     matches(r'ao\.0001\.left\.png: exists, not overwritten\n +remove it', run.stderr, 'stderr')

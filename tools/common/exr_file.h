@@ -6,6 +6,7 @@
 #ifndef VKAO_TOOLS_EXR_FILE_H_
 #define VKAO_TOOLS_EXR_FILE_H_
 
+#include "atomic_file.h"
 #include "error.h"
 
 #include <stdbool.h>
@@ -125,11 +126,15 @@ struct exr_new_part {
                   * 0 = OpenEXR's defaults, 4 and 45 */
 };
 
-/* Writes a new file. With copy_from every part of that file is copied first, its pixels as raw
- * chunks and its attributes as they are, and the new parts follow. The file is written beside path,
- * read back (copies byte for byte, new pixels decoded and, if the compression keeps them,
- * compared), synced and renamed; on error nothing is left. If replace is false an existing path is
- * EXIT_OUTPUT, also when it appears meanwhile. */
+/* Writes a new file that its caller commits or aborts; file: zeroed. With copy_from every part of
+ * that file is copied first, its pixels as raw chunks and its attributes as they are, and the new
+ * parts follow. The file is written beside path and read back: copies byte for byte, new pixels
+ * decoded and, if the compression keeps them, compared. On error nothing is left. If replace is
+ * false an existing path is EXIT_OUTPUT, also when it appears meanwhile. */
+bool exr_prepare_file(struct atomic_file *file, const char *path, const struct exr_info *copy_from,
+                      const struct exr_new_part *parts, size_t count, bool replace,
+                      struct tool_error *err);
+/* Both at once: the file appears whole or not at all. */
 bool exr_write_file(const char *path, const struct exr_info *copy_from,
                     const struct exr_new_part *parts, size_t count, bool replace,
                     struct tool_error *err);

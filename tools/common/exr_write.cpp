@@ -41,14 +41,11 @@ namespace
 class output_stream : public Imf::OStream
 {
 public:
-    output_stream(const char *path, bool replace) : Imf::OStream(path)
+    output_stream(atomic_file &file, const char *path, bool replace)
+        : Imf::OStream(path), file_(file)
     {
         if (!atomic_file_open(&file_, path, replace, &error_))
             throw_error();
-    }
-    ~output_stream() override
-    {
-        atomic_file_abort(&file_);
     }
     void write(const char data[], int bytes) override
     {
@@ -76,17 +73,11 @@ public:
         flush();
         return file_.temp;
     }
-    void commit()
-    {
-        flush();
-        if (!atomic_file_commit(&file_, &error_))
-            throw_error();
-    }
 
 private:
     static constexpr size_t buffer_bytes = 1 << 18;
     void flush();
-    atomic_file file_ = {};
+    atomic_file &file_;
     tool_error error_ = {};
     std::vector<char> buffer_;
     uint64_t position_ = 0; /* in the file, of the buffer's first byte */
@@ -498,14 +489,14 @@ void check_written(const char *path, const char *written, source_file *source,
         check_part(parts[i], *file, int(copies + i), path);
 }
 
-void write_file(const char *path, const exr_info *copy_from, const exr_new_part *parts,
-                size_t count, bool replace)
+void write_file(atomic_file &file, const char *path, const exr_info *copy_from,
+                const exr_new_part *parts, size_t count, bool replace)
 {
     std::unique_ptr<source_file> source;
     if (copy_from)
         source = std::make_unique<source_file>(*copy_from);
     const std::vector<Imf::Header> headers = make_headers(path, source.get(), parts, count);
-    output_stream stream(path, replace);
+    output_stream stream(file, path, replace);
     try {
         write_parts(stream, source.get(), headers, parts, count);
     } catch (const tool_exception &) {
@@ -523,16 +514,27 @@ void write_file(const char *path, const exr_info *copy_from, const exr_new_part 
     }
     if (source)
         source->input.stream.check_unchanged();
-    stream.commit();
 }
 
 } // namespace
+
+bool exr_prepare_file(struct atomic_file *file, const char *path, const struct exr_info *copy_from,
+                      const struct exr_new_part *parts, size_t count, bool replace,
+                      struct tool_error *err)
+{
+    set_limits();
+    const bool ok = at_border(err, EXIT_OUTPUT, path, "cannot write",
+                              [&] { write_file(*file, path, copy_from, parts, count, replace); });
+    if (!ok)
+        atomic_file_abort(file);
+    return ok;
+}
 
 bool exr_write_file(const char *path, const struct exr_info *copy_from,
                     const struct exr_new_part *parts, size_t count, bool replace,
                     struct tool_error *err)
 {
-    set_limits();
-    return at_border(err, EXIT_OUTPUT, path, "cannot write",
-                     [&] { write_file(path, copy_from, parts, count, replace); });
+    atomic_file file = {};
+    return exr_prepare_file(&file, path, copy_from, parts, count, replace, err) &&
+           atomic_file_commit(&file, err);
 }

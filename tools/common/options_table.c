@@ -505,9 +505,10 @@ const struct option_row option_table[] = {
              "that was interrupted. They get what all frames share, as an automatic radius or a "
              "camera that is estimated, from the first frame that exists and shows something: "
              "the record in it has the radius, and it is computed again for the rest. Settings "
-             "that differ from its own are a warning. A preview goes with its output. An empty "
-             "file and a directory are not left alone: they stop the run. Symbolic links are "
-             "followed, except those to nothing: whatever WHEN is, these stop the run."},
+             "that differ from its own are a warning. A preview goes with its output: where "
+             "that is missing, one that a killed run left, as it says itself, is replaced. An "
+             "empty file and a directory are not left alone: they stop the run. Symbolic links "
+             "are followed, except those to nothing: whatever WHEN is, these stop the run."},
     {.name = "frames", .letter = 'f', .argument = "SPEC",
      .help = "frames of a sequence: 1-100, 1-100x2 (every second), 1,5,20-30. Default: all files"
              " that match INPUT",

@@ -2,6 +2,7 @@
 #include "output.h"
 
 #include "png_file.h"
+#include "preview.h"
 #include "record.h"
 
 #include <stdio.h>
@@ -98,23 +99,6 @@ static void color_part_name(const struct options *o, const struct rendered_view 
         snprintf(name, NAME_BYTES, "%s", base);
 }
 
-/* 'x.png' becomes 'x.left.png' where there is more than one view. A view's name is the file's, and
- * must not lead to another directory. */
-static void preview_path(const char *path, const char *view, size_t view_count, struct text *out)
-{
-    const char *dot = strrchr(path, '.');
-    size_t stem = dot && !strchr(dot, '/') ? (size_t)(dot - path) : strlen(path);
-    if (view_count < 2) {
-        text_add(out, "%s", path);
-        return;
-    }
-    text_add(out, "%.*s.%s%s", (int)stem, path, view, path + stem);
-    const size_t end = stem + 1 + strlen(view);
-    for (size_t i = stem + 1; out->data && !out->out_of_memory && i < end; i++)
-        if (out->data[i] == '/')
-            out->data[i] = '_';
-}
-
 /* The plan checked the path as given; what it becomes for each view is known only now. */
 static bool check_previews(const struct options *options, const struct plan_frame *frame,
                            const struct frame_source *source, struct tool_error *err)
@@ -123,7 +107,7 @@ static bool check_previews(const struct options *options, const struct plan_fram
         struct text path = {0};
         preview_path(frame->preview, source->views[v].name, source->view_count, &path);
         const bool ok = path.data && !path.out_of_memory
-                            ? plan_check_place(options, path.data, err)
+                            ? plan_check_preview(options, frame, path.data, err)
                             : fail(err, EXIT_MEMORY, "%s: out of memory", frame->preview);
         text_free(&path);
         if (!ok)
@@ -296,9 +280,9 @@ static bool fill_part(const struct options *o, const struct frame_source *source
     return true;
 }
 
-static bool write_exr(const struct options *o, const struct plan_frame *frame,
-                      const struct frame_source *source, const struct rendered_view *views,
-                      const char *device, struct tool_error *err)
+static bool prepare_exr(const struct options *o, const struct plan_frame *frame,
+                        const struct frame_source *source, const struct rendered_view *views,
+                        const char *device, struct atomic_file *file, struct tool_error *err)
 {
     struct part_storage *storage = calloc(source->view_count, sizeof *storage);
     struct exr_new_part *parts = calloc(source->view_count, sizeof *parts);
@@ -307,8 +291,9 @@ static bool write_exr(const struct options *o, const struct plan_frame *frame,
         fail(err, EXIT_MEMORY, "%s: out of memory", frame->output);
     for (size_t i = 0; ok && i < source->view_count; i++)
         ok = fill_part(o, source, &views[i], device, &storage[i], &parts[i], err);
-    ok = ok && exr_write_file(frame->output, o->mode == OUTPUT_APPEND ? &source->info : NULL, parts,
-                              source->view_count, o->overwrite == OVERWRITE_ALWAYS, err);
+    ok =
+        ok && exr_prepare_file(file, frame->output, o->mode == OUTPUT_APPEND ? &source->info : NULL,
+                               parts, source->view_count, o->overwrite == OVERWRITE_ALWAYS, err);
     for (size_t i = 0; storage && i < source->view_count; i++)
         free(storage[i].params);
     free(storage);
@@ -318,9 +303,9 @@ static bool write_exr(const struct options *o, const struct plan_frame *frame,
 
 /* --- PNG --- */
 
-static bool prepare_preview(const struct options *o, const char *path,
-                            const struct rendered_view *view, struct atomic_file *file,
-                            struct tool_error *err)
+static bool prepare_preview(const struct options *o, const struct plan_frame *frame,
+                            const char *path, const struct rendered_view *view,
+                            struct atomic_file *file, struct tool_error *err)
 {
     bool grey = o->mode != OUTPUT_COMP;
     const struct exr_box *window = output_window(o, &view->gbuffer);
@@ -336,8 +321,17 @@ static bool prepare_preview(const struct options *o, const char *path,
         for (size_t c = 0; !grey && c < 3; c++)
             pixels[i * 3 + c] = byte_of(srgb_of((double)view->result.output[i * 4 + c]));
     }
-    bool ok = png_file_prepare(file, path, window_width(window), window_height(window),
-                               grey ? 1 : 3, pixels, o->overwrite == OVERWRITE_ALWAYS, err);
+    char key[] = PREVIEW_OWNER_KEY, *owner = preview_owner(path, frame->output);
+    const struct png_picture picture = {
+        .width = window_width(window),
+        .height = window_height(window),
+        .channels = grey ? 1 : 3,
+        .pixels = pixels,
+        .key = owner ? key : NULL,
+        .text = owner,
+    };
+    bool ok = png_file_prepare(file, path, &picture, plan_replaces_preview(o, frame, path), err);
+    free(owner);
     free(pixels);
     return ok;
 }
@@ -350,7 +344,7 @@ static bool prepare_previews(const struct options *o, const struct plan_frame *f
         struct text path = {0};
         preview_path(frame->preview, views[i].name, source->view_count, &path);
         bool ok = path.data && !path.out_of_memory
-                      ? prepare_preview(o, path.data, &views[i], &files[i], err)
+                      ? prepare_preview(o, frame, path.data, &views[i], &files[i], err)
                       : fail(err, EXIT_MEMORY, "%s: out of memory", frame->preview);
         text_free(&path);
         if (!ok)
@@ -359,18 +353,16 @@ static bool prepare_previews(const struct options *o, const struct plan_frame *f
     return true;
 }
 
-/* What is left to fail when all is written: a rename. Then nothing may stay that the next run would
- * stop at. */
-static bool commit_previews(const struct options *o, const struct plan_frame *frame,
-                            struct atomic_file *files, size_t count, struct tool_error *err)
+/* The EXR file is the last: where it is, the frame is whole, whoever ends the run. What is left to
+ * fail when all is written is a rename. Then nothing may stay that the next run would stop at. */
+static bool commit_all(struct atomic_file *files, size_t count, struct tool_error *err)
 {
     for (size_t i = 0; i < count; i++) {
         if (atomic_file_commit(&files[i], err))
             continue;
-        for (size_t done = 0; o->overwrite != OVERWRITE_ALWAYS && done < i; done++)
-            unlink(files[done].target);
-        if (o->overwrite != OVERWRITE_ALWAYS)
-            unlink(frame->output);
+        for (size_t done = 0; done < i; done++)
+            if (!files[done].replace)
+                unlink(files[done].target);
         return false;
     }
     return true;
@@ -380,15 +372,14 @@ bool output_write(const struct options *options, const struct plan_frame *frame,
                   const struct frame_source *source, const struct rendered_view *views,
                   const char *device, struct tool_error *err)
 {
-    if (!frame->preview)
-        return write_exr(options, frame, source, views, device, err);
-    struct atomic_file *files = calloc(source->view_count, sizeof *files);
+    const size_t previews = frame->preview ? source->view_count : 0;
+    struct atomic_file *files = calloc(previews + 1, sizeof *files);
     if (!files)
-        return fail(err, EXIT_MEMORY, "%s: out of memory", frame->preview);
-    bool ok = prepare_previews(options, frame, source, views, files, err) &&
-              write_exr(options, frame, source, views, device, err) &&
-              commit_previews(options, frame, files, source->view_count, err);
-    for (size_t i = 0; i < source->view_count; i++)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", frame->output);
+    bool ok = (!frame->preview || prepare_previews(options, frame, source, views, files, err)) &&
+              prepare_exr(options, frame, source, views, device, &files[previews], err) &&
+              commit_all(files, previews + 1, err);
+    for (size_t i = 0; i <= previews; i++)
         atomic_file_abort(&files[i]);
     free(files);
     return ok;

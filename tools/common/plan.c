@@ -2,6 +2,7 @@
 #include "plan.h"
 
 #include "atomic_file.h"
+#include "preview.h"
 
 #include <errno.h>
 #include <inttypes.h>
@@ -407,25 +408,38 @@ bool plan_fail_exists(const struct options *options, const char *path, struct to
                               : "add --overwrite always");
 }
 
-bool plan_check_place(const struct options *options, const char *path, struct tool_error *err)
+static bool check_place(const struct options *options, const char *path, bool is_replaced,
+                        struct tool_error *err)
 {
     struct stat s;
-    if (options->overwrite != OVERWRITE_ALWAYS && stat(path, &s) == 0)
+    if (!is_replaced && stat(path, &s) == 0)
         return plan_fail_exists(options, path, err);
     return atomic_file_check(path, err);
+}
+
+bool plan_replaces_preview(const struct options *options, const struct plan_frame *frame,
+                           const char *path)
+{
+    return options->overwrite == OVERWRITE_ALWAYS ||
+           (options->overwrite == OVERWRITE_SKIP && !exists(frame->output) &&
+            preview_is_of(path, frame->output));
+}
+
+bool plan_check_preview(const struct options *options, const struct plan_frame *frame,
+                        const char *path, struct tool_error *err)
+{
+    return check_place(options, path, plan_replaces_preview(options, frame, path), err);
 }
 
 bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,
                         struct tool_error *err)
 {
-    const char *paths[] = {frame->output, frame->preview};
-    for (size_t i = 0; i < 2; i++) {
-        if (paths[i] && !check_directory(paths[i], err))
-            return false;
-        if (paths[i] && !frame->is_left && !plan_check_place(options, paths[i], err))
-            return false;
-    }
-    return true;
+    const char *output = frame->output, *preview = frame->preview;
+    if (!check_directory(output, err) || (preview && !check_directory(preview, err)))
+        return false;
+    return frame->is_left ||
+           (check_place(options, output, options->overwrite == OVERWRITE_ALWAYS, err) &&
+            (!preview || plan_check_preview(options, frame, preview, err)));
 }
 
 /* Of inspect, which is told whether a camera exists when it comes to write it: one of a frame that

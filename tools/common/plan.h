@@ -47,8 +47,13 @@ void plan_say_cameras(const struct plan *plan, const struct report *report);
 bool plan_leaves(const struct options *options, const char *path);
 /* Of an output that is in the way, with the remedy. Returns false. */
 bool plan_fail_exists(const struct options *options, const char *path, struct tool_error *err);
-/* Whether a file can be written at path, and may be. Errors: EXIT_OUTPUT. */
-bool plan_check_place(const struct options *options, const char *path, struct tool_error *err);
+/* Whether a preview that is there is replaced: always, or with skip if it says that it is the
+ * frame's and the output is not there, as after a run that was killed between the two. */
+bool plan_replaces_preview(const struct options *options, const struct plan_frame *frame,
+                           const char *path);
+/* Whether a preview can be written at path, and may be. Errors: EXIT_OUTPUT. */
+bool plan_check_preview(const struct options *options, const struct plan_frame *frame,
+                        const char *path, struct tool_error *err);
 /* The same of all outputs of the frame, and whether their directories are there. */
 bool plan_check_outputs(const struct options *options, const struct plan_frame *frame,
                         struct tool_error *err);

@@ -240,7 +240,8 @@ static bool write_picture(struct viewer *viewer, const struct rendered_view *vie
         for (size_t c = 0; c < 3; c++)
             rgb[i * 3 + c] = byte_of(color[c]);
     }
-    bool ok = png_file_write(path, g->width, g->height, 3, rgb, false, err);
+    const struct png_picture picture = {g->width, g->height, 3, rgb, NULL, NULL};
+    bool ok = png_file_write(path, &picture, false, err);
     free(rgb);
     return ok;
 }

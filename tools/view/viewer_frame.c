@@ -234,7 +234,8 @@ static bool write_capture(struct viewer *v, uint32_t frame, VkExtent2D extent,
         rgb[i * 3 + 1] = from[i * 4 + 1];
         rgb[i * 3 + 2] = from[i * 4 + (blue_first ? 0 : 2)];
     }
-    bool ok = png_file_write(path, extent.width, extent.height, 3, rgb, true, err);
+    const struct png_picture picture = {extent.width, extent.height, 3, rgb, NULL, NULL};
+    bool ok = png_file_write(path, &picture, true, err);
     free(rgb);
     return ok;
 }
