@@ -199,6 +199,23 @@ def positions_through_a_lens_need_the_camera(scratch, _, by):
                   'in.exr', '-o', 'x.exr', '--camera', 'c.json', hint='--depth NAME')
 
 
+def around(eye):
+    """Half of them before and half of them behind it."""
+    p = np.empty((90, 160, 3), np.float32)
+    p[:, :80], p[:, 80:] = eye + [1, 2, 3], eye - [1, 2, 3]
+    return p
+
+
+@cases([('one point', np.full((90, 160, 3), 3, np.float32), 'they are background'),
+        ('no numbers', np.full((90, 160, 3), np.nan, np.float32), 'they are background'),
+        ('around the eye', around(-MOVE @ TURN), 'they lie in a plane')])
+def positions_that_the_camera_does_not_see_are_said(scratch, _, p, why):
+    write_exr(scratch.path('in.exr'), {f'P.{c}': p[..., i] for i, c in enumerate('XYZ')})
+    write_camera(scratch.path('c.json'))
+    scratch.fails(CHANNELS, rf'{why}, and the camera that is known \(camera file\) does not see '
+                  'them$', 'in.exr', '-o', 'x.exr', '--camera', 'c.json', hint='--depth NAME')
+
+
 @case
 def positions_of_a_plane_need_a_camera(scratch):
     scene = Scene()

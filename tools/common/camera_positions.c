@@ -431,7 +431,7 @@ bool positions_miss(const struct positions *positions, const struct position_cam
             y += 2.0 * camera->shift_y * height / width / positions->pixel_aspect;
             const double off = hypot(component(camera, 0, v) / z / camera->half_width - x,
                                      component(camera, 1, v) / z / camera->half_width - y);
-            misses[count++] = z > 0 && isfinite(off) ? off * width / 2.0 : 1e9;
+            misses[count++] = z > 0 && isfinite(off) ? off * width / 2.0 : INFINITY;
         }
     *texels = count ? median_of(misses, count) : INFINITY;
     free(misses);

@@ -36,7 +36,7 @@ bool positions_are_there(const float position[3]);
 /* Distance along the view axis, scene units. */
 double position_depth(const struct position_camera *camera, const float position[3]);
 /* Texels between where a camera sees the positions and where they stand: the median. INFINITY if
- * there are none. False if memory runs out. */
+ * there are none, or most are not before it. False if memory runs out. */
 bool positions_miss(const struct positions *positions, const struct position_camera *camera,
                     double *texels);
 

@@ -322,7 +322,7 @@ static bool knows_placement(const struct gbuffer *g)
     return g->camera.source[0] && g->camera.has_rotation && g->camera.has_translation;
 }
 
-/* miss: of the camera that is known, texels. */
+/* miss: of the camera that is known, texels; INFINITY: it does not see them. */
 static bool fail_positions(const struct gbuffer *g, const char *why, double miss, const char *path,
                            struct tool_error *err)
 {
@@ -336,6 +336,11 @@ static bool fail_positions(const struct gbuffer *g, const char *why, double miss
     }
     fail_hint(err, "render depth too and name it, --depth NAME; or give the camera of this image, "
                    "if that was no fisheye or panorama");
+    if (!isfinite(miss))
+        return fail(err, EXIT_CHANNELS,
+                    "%s: no depth, and positions '%s' do not give it: %s, and the camera that is "
+                    "known (%s) does not see them",
+                    path, label, why, g->camera.source);
     return fail(err, EXIT_CHANNELS,
                 "%s: no depth, and positions '%s' do not give it: %s, and the camera that is known "
                 "(%s) sees them %.3g pixels from where they are",
