@@ -50,6 +50,13 @@ def inspect(scratch, *options, code=OK):
     return json.loads(result.stdout)['views'][0]
 
 
+def inspect_and_hear(scratch, *options, code=OK):
+    """Also what it says."""
+    result = scratch.run('inspect', 'in.exr', '--json', '-v', *options)
+    equal(result.code, code, str(result))
+    return json.loads(result.stdout)['views'][0], result.stderr
+
+
 def rotation_header():
     """worldToCamera for row vectors, looking along +z."""
     to_camera = np.eye(4)

@@ -7,7 +7,7 @@ import re
 import shutil
 import subprocess
 
-from cli import (CHANNELS, INPUT, OK, OUTPUT, TIMEOUT, beside_vkao, case, cases, check, equal,
+from cli import (CHANNELS, INPUT, OK, OUTPUT, TIMEOUT, beside_vkao, cases, check, equal,
                  loaded_driver, main, write_exr)
 from exr_raw import read_raw
 from scene import FOV, Scene
