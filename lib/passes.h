@@ -120,8 +120,6 @@ struct vkao_step {
     VkPipeline forms[VKAO_MOST_FORMS];
 };
 
-struct vkao_frame_cpu;
-
 struct vkao_program {
     const vkao_context *ctx;
     vkao_effect_info settings; /* checked */

@@ -27,14 +27,15 @@ static_assert(VKAO_GLSL_THICKNESS_AS_SEEN == (int)VKAO_THICKNESS_AS_SEEN &&
                   VKAO_GLSL_THICKNESS_BACK_DEPTH == (int)VKAO_THICKNESS_BACK_DEPTH,
               "params.h repeats vkao_thickness_input");
 
-uint32_t vkao_view_z_columns(uint32_t width)
+/* How many columns a block of the image of view z has: see shaders/gpu/columns.glsl. */
+static uint32_t view_z_columns(uint32_t width)
 {
     return (width + VKAO_VIEW_Z_BLOCKS - 1) / VKAO_VIEW_Z_BLOCKS + 2;
 }
 
 VkExtent2D vkao_view_z_extent(VkExtent2D grid)
 {
-    return (VkExtent2D){vkao_view_z_columns(grid.width) * VKAO_VIEW_Z_BLOCKS,
+    return (VkExtent2D){view_z_columns(grid.width) * VKAO_VIEW_Z_BLOCKS,
                         grid.height + 2 * VKAO_VIEW_Z_BORDER};
 }
 
@@ -126,13 +127,12 @@ void vkao_prepare_constants(const struct vkao_recording *r, const vkao_params *p
                             struct vkao_constants *out)
 {
     const struct view_constants *image = &r->image, *grid = &r->grid;
-    const float radius =
-        fminf(fmaxf(params->radius, (float)VKAO_NEAREST_Z), (float)VKAO_FARTHEST_Z);
+    const float radius = vkao_radius_of(params);
     out->break_least = image->orthographic ? (float)VKAO_VBAO_BREAK_LEAST_RADII * radius
                                            : (float)VKAO_VBAO_BREAK_LEAST;
     out->width_reach = image->orthographic ? (float)VKAO_VBAO_WIDTH_REACH_RADII * radius
                                            : (float)VKAO_VBAO_WIDTH_REACH;
-    out->view_z_columns = vkao_view_z_columns(vkao_area(r, VKAO_AREA_WHOLE).x1);
+    out->view_z_columns = view_z_columns(vkao_area(r, VKAO_AREA_WHOLE).x1);
     out->view_z_pitch = (float)(out->view_z_columns * VKAO_VIEW_Z_BLOCKS - 1);
     out->view_z_last = (float)out->view_z_columns - 1.0f / (float)VKAO_VIEW_Z_BLOCKS;
     const bool far_is_one = image->far_depth > 0.5f;

@@ -16,7 +16,9 @@ static bool overlap(const struct vkao_block *a, const struct vkao_block *b)
     return a->offset < b->offset + b->size && b->offset < a->offset + a->size;
 }
 
-VkDeviceSize vkao_place(struct vkao_block *blocks[], uint32_t count)
+/* Places blocks so that those that live at the same time do not overlap; returns the size of
+ * all. */
+static VkDeviceSize place(struct vkao_block *blocks[], uint32_t count)
 {
     VkDeviceSize all = 0;
     for (uint32_t i = 0; i < count; ++i) {
@@ -119,7 +121,7 @@ static VkDeviceSize place_parts(const struct vkao_program *program,
         if (block->size)
             parts[count++] = block;
     }
-    return vkao_place(parts, count);
+    return place(parts, count);
 }
 
 /* Places the buffer's memory: the end of it may lie in the memory of images, once the last of its
@@ -180,7 +182,7 @@ vkao_result vkao_scratch_create(const struct vkao_program *program,
         if (out->alignment < blocks[i]->alignment)
             out->alignment = blocks[i]->alignment;
     }
-    out->size = vkao_place(blocks, count);
+    out->size = place(blocks, count);
     return VKAO_SUCCESS;
 }
 

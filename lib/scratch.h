@@ -41,10 +41,6 @@ struct vkao_scratch_plan {
     VkDeviceSize parts[VKAO_RESOURCE_COUNT]; /* bytes, from VKAO_RESOURCE_CONSTANTS on */
 };
 
-/* Places blocks so that those that live at the same time do not overlap; returns the size of
- * all. */
-VkDeviceSize vkao_place(struct vkao_block *blocks[], uint32_t count);
-
 /* Creates it, unbound, and tells the memory that it takes. On failure the rest is for
  * vkao_scratch_destroy. */
 vkao_result vkao_scratch_create(const struct vkao_program *program,

@@ -8,8 +8,6 @@
 #include "vkao_ssao_sphere.h"
 #include "vkao_ssao_vbao.h"
 
-#include <math.h>
-
 #define METHOD(method)                                                                             \
     {                                                                                              \
         .name = "vkao ssao " #method, .label = "ssao", .stage = VKAO_STAGE_SSAO,                   \
@@ -37,8 +35,7 @@ void vkao_ssao_constants(const struct vkao_recording *r, const vkao_params *para
     const float thickness =
         params->thickness *
         (effect->falloff == VKAO_FALLOFF_THRESHOLD ? (float)VKAO_THICKNESS_THRESHOLD : 1.0f);
-    /* Beyond that all depth is near, or all far: nothing changes but that squares are floats. */
-    out->radius = fminf(fmaxf(params->radius, (float)VKAO_NEAREST_Z), (float)VKAO_FARTHEST_Z);
+    out->radius = vkao_radius_of(params);
     out->inverse_radius = 1.0f / out->radius;
     out->bias = params->bias * out->radius;
     out->bias_cosine = params->bias;

@@ -7,6 +7,8 @@
 
 #include "recording.h"
 
+#include <math.h>
+
 /* In the order in which they run. PREPARE is in a program that makes AO. */
 #define VKAO_STAGES(X)                                                                             \
     X(PREPARE, prepare)                                                                            \
@@ -21,10 +23,15 @@
 VKAO_STAGES(VKAO_DECLARE_STAGE)
 #undef VKAO_DECLARE_STAGE
 
-/* The image of view z for a grid of texels, and how many columns a block of it has: see
- * shaders/gpu/columns.glsl. */
+/* As constants have it. Beyond that all depth is near, or all far: nothing changes but that squares
+ * are floats. */
+static inline float vkao_radius_of(const vkao_params *params)
+{
+    return fminf(fmaxf(params->radius, (float)VKAO_NEAREST_Z), (float)VKAO_FARTHEST_Z);
+}
+
+/* The image of view z for a grid of texels. */
 VkExtent2D vkao_view_z_extent(VkExtent2D grid);
-uint32_t vkao_view_z_columns(uint32_t width);
 /* VKAO_SETTING_TILE_WORDS. */
 uint32_t vkao_blur_tile_words(const vkao_effect_info *effect);
 

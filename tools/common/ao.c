@@ -88,7 +88,8 @@ void ao_session_destroy(struct ao_session *session)
 
 static const VkFormat ao_format = VK_FORMAT_R32_SFLOAT;
 
-vkao_effect_info ao_job_effect(const struct ao_job *job)
+/* What a job is compiled for. */
+static vkao_effect_info effect_of(const struct ao_job *job)
 {
     vkao_effect_info effect = job->setting.effect;
     effect.stages = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR | (job->color ? VKAO_STAGE_COMPOSITE : 0u);
@@ -172,7 +173,7 @@ static bool create_frame(struct ao_session *session, const struct ao_job *job,
 /* An effect for this job, if that of the last one does not fit. */
 static bool fit_effect(struct ao_session *session, const struct ao_job *job, struct tool_error *err)
 {
-    vkao_effect_info info = ao_job_effect(job);
+    vkao_effect_info info = effect_of(job);
     /* Messages of validation are counted in one thread. */
     info.parallel = session->gpu->messenger ? NULL : parallel_run;
     if (session->effect && memcmp(&session->compiled, &info, sizeof info) == 0)

@@ -48,7 +48,4 @@ bool ao_run(struct ao_session *session, const struct ao_job *job, struct ao_resu
             struct tool_error *err);
 void ao_result_free(struct ao_result *result);
 
-/* What a job is compiled for. */
-vkao_effect_info ao_job_effect(const struct ao_job *job);
-
 #endif

@@ -78,7 +78,9 @@ static uint64_t resource_limit(int resource)
                : UINT64_MAX;
 }
 
-uint64_t budget_machine_memory(void)
+/* The bytes of memory that this process could ever have: the machine's, or those that control
+ * groups and resource limits leave of them. */
+static uint64_t machine_memory(void)
 {
     const long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
     uint64_t memory = pages > 0 && page > 0 ? (uint64_t)pages * (uint64_t)page : UINT64_MAX;
@@ -103,7 +105,7 @@ bool budget_allows_pixels(const struct budget *budget, const char *path, uint64_
 bool budget_allows_memory(const struct budget *budget, const char *path, uint64_t width,
                           uint64_t height, uint64_t bytes, struct tool_error *err)
 {
-    const uint64_t machine = budget_machine_memory(), mega = UINT64_C(1) << 20;
+    const uint64_t machine = machine_memory(), mega = UINT64_C(1) << 20;
     const uint64_t most = budget->memory ? budget->memory : machine / 4 * 3;
     const uint64_t needed = bytes / mega + (bytes % mega > 0);
     if (bytes <= most)

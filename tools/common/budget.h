@@ -14,15 +14,11 @@
 
 /* Zero members stand for the defaults. */
 struct budget {
-    /* Bytes, of host and device together. Default: three quarters of what budget_machine_memory
-     * says */
+    /* Bytes, of host and device together. Default: three quarters of the machine's, or
+     * of what control groups and resource limits leave of them */
     uint64_t memory;
     uint64_t pixels; /* of one image. Default: BUDGET_DEFAULT_PIXELS, 16384 x 16384 */
 };
-
-/* The bytes of memory that this process could ever have: the machine's, or those that control
- * groups and resource limits leave of them. */
-uint64_t budget_machine_memory(void);
 
 /* Whether an image of the file at path fits. Errors: EXIT_INPUT, with --max-pixels as the
  * remedy. */

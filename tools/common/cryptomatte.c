@@ -37,7 +37,8 @@ static uint32_t hash(const char *name, size_t length)
     return h ^ h >> 16;
 }
 
-float cryptomatte_id(const char *name, size_t length)
+/* What a name of so many bytes is stored as. */
+static float id_of(const char *name, size_t length)
 {
     uint32_t bits = hash(name, length);
     const uint32_t exponent = bits >> 23 & 255;
@@ -224,7 +225,7 @@ bool cryptomatte_find(const struct exr_info *info, const char *view, const char 
             continue;
         if (!check_name(info, name, err))
             return false;
-        matte->ids[matte->id_count++] = cryptomatte_id(name, length);
+        matte->ids[matte->id_count++] = id_of(name, length);
     }
     return matte->id_count > 0 || fail(err, EXIT_CHANNELS, "%s: '%s%s' names no object", info->path,
                                        CRYPTOMATTE_PREFIX, names);

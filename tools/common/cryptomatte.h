@@ -31,7 +31,5 @@ bool cryptomatte_find(const struct exr_info *info, const char *view, const char 
                       struct cryptomatte *matte, struct tool_error *err);
 /* Whether an identifier is one of the names. */
 bool cryptomatte_has(const struct cryptomatte *matte, float id);
-/* What a name of so many bytes is stored as. */
-float cryptomatte_id(const char *name, size_t length);
 
 #endif

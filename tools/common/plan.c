@@ -400,7 +400,8 @@ bool plan_leaves(const struct options *options, const char *path)
            s.st_size > 0;
 }
 
-bool plan_fail_exists(const struct options *options, const char *path, struct tool_error *err)
+/* Of an output that is in the way, with the remedy. */
+static bool fail_exists(const struct options *options, const char *path, struct tool_error *err)
 {
     fail(err, EXIT_OUTPUT, "%s: exists, not overwritten", path);
     return fail_hint(err, options->overwrite == OVERWRITE_SKIP
@@ -413,7 +414,7 @@ static bool check_place(const struct options *options, const char *path, bool is
 {
     struct stat s;
     if (!is_replaced && stat(path, &s) == 0)
-        return plan_fail_exists(options, path, err);
+        return fail_exists(options, path, err);
     return atomic_file_check(path, err);
 }
 

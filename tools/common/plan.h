@@ -45,8 +45,6 @@ void plan_say_cameras(const struct plan *plan, const struct report *report);
 /* Is an output there that --overwrite skip leaves alone? An empty file, a directory and a dead link
  * are not: they are in the way. */
 bool plan_leaves(const struct options *options, const char *path);
-/* Of an output that is in the way, with the remedy. Returns false. */
-bool plan_fail_exists(const struct options *options, const char *path, struct tool_error *err);
 /* Whether a preview that is there is replaced: always, or with skip if it says that it is the
  * frame's and the output is not there, as after a run that was killed between the two. */
 bool plan_replaces_preview(const struct options *options, const struct plan_frame *frame,

@@ -9,7 +9,7 @@ void trace_camera_look_at(struct trace_camera *camera, struct vec3 eye, struct v
     camera->translation = scale(mul_mat(camera->rotation, eye), -1.0);
 }
 
-struct vec3 trace_camera_eye(const struct trace_camera *camera)
+static struct vec3 eye_of(const struct trace_camera *camera)
 {
     return scale(mul_transposed(camera->rotation, camera->translation), -1.0);
 }
@@ -27,7 +27,7 @@ struct trace_ray trace_camera_ray(const struct trace_camera *camera, double x, d
     double half = half_width(camera);
     double u = (2.0 * x / width - 1.0) * half;
     double v = (1.0 - 2.0 * y / height) * half * height / width;
-    struct vec3 eye = trace_camera_eye(camera);
+    struct vec3 eye = eye_of(camera);
     if (camera->orthographic) {
         return (struct trace_ray){
             .origin = add(eye, mul_transposed(camera->rotation, vec3(u, v, 0))),

@@ -26,7 +26,6 @@ struct trace_ray {
 
 /* Eye at `eye`, looking at `target`, +y of the world up. Projection fields are left as they are. */
 void trace_camera_look_at(struct trace_camera *camera, struct vec3 eye, struct vec3 target);
-struct vec3 trace_camera_eye(const struct trace_camera *camera);
 
 /* The ray through image position (x, y) in texels, row 0 at the top; texel centres are at +0.5. */
 struct trace_ray trace_camera_ray(const struct trace_camera *camera, double x, double y, int width,

@@ -4,8 +4,6 @@
 #include <string.h>
 #include <vulkan/vulkan.h>
 
-const char *const stage_names[STAGES] = {"prepare", "ssao", "blur", "composite"};
-
 /* The panel offers what is in range only, so that an invalid argument is a bug. */
 static bool library_ok(struct tool_error *err, const char *call, vkao_result result)
 {

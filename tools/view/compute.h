@@ -17,7 +17,6 @@ struct inputs {
 };
 
 enum { STAGES = 4 };
-extern const char *const stage_names[STAGES];
 
 struct stage_times {
     double ms[STAGES]; /* < 0: the stage did not run */

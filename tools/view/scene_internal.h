@@ -18,8 +18,6 @@ enum live_attachment {
     ATTACHMENT_COLORS = ATTACHMENT_DEPTH
 };
 extern const VkFormat live_formats[ATTACHMENT_COUNT];
-/* Where the render pass leaves them. */
-extern const VkImageLayout live_layouts[ATTACHMENT_COUNT];
 
 struct live_scene {
     struct gpu *gpu;

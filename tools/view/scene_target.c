@@ -13,7 +13,8 @@ const VkFormat live_formats[ATTACHMENT_COUNT] = {
     [ATTACHMENT_DEPTH] = VK_FORMAT_D32_SFLOAT,
 };
 
-const VkImageLayout live_layouts[ATTACHMENT_COUNT] = {
+/* Where the render pass leaves them. */
+static const VkImageLayout final_layouts[ATTACHMENT_COUNT] = {
     [ATTACHMENT_NORMALS] = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
     [ATTACHMENT_INDIRECT] = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
     [ATTACHMENT_DIRECT] = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
@@ -44,7 +45,7 @@ bool live_pass_create(struct gpu *gpu, VkRenderPass *pass, struct tool_error *er
             .stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE,
             .stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE,
             .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED, /* what the last frame left is not needed */
-            .finalLayout = live_layouts[i],
+            .finalLayout = final_layouts[i],
         };
         if (i < ATTACHMENT_COLORS)
             colors[i] = (VkAttachmentReference){i, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
@@ -160,7 +161,7 @@ void live_target_destroy(struct live_target *target)
 
 static vkao_image slot(const struct gpu_image *image, enum live_attachment attachment)
 {
-    return (vkao_image){image->view, live_layouts[attachment], image->format, VK_NULL_HANDLE};
+    return (vkao_image){image->view, final_layouts[attachment], image->format, VK_NULL_HANDLE};
 }
 
 void live_target_images(const struct live_target *target, vkao_images *images)
