@@ -4,11 +4,11 @@
  * panels come. Each refusal names field, value and range. */
 #include "parameters.h"
 
-#include "formats.h"
 #include "vk.h"
 
 #include <float.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* --- The tables --- */
@@ -395,6 +395,35 @@ static vkao_result check_all(const struct vkao_logger *log, const char *name, Vk
     return result;
 }
 
+/* " (hbao)" of the method 2; "" of what is no choice. */
+static const char *word_of(const char *name, uint32_t value, char buffer[VKAO_NAME_BYTES])
+{
+    buffer[0] = '\0';
+    for (int i = 0; i < PARAMETER_COUNT; ++i) {
+        const vkao_parameter *p = &parameters[i];
+        if (p->type == VKAO_PARAMETER_CHOICE && strcmp(p->name, name) == 0)
+            snprintf(buffer, VKAO_NAME_BYTES, " (%s)", p->choices[value]);
+    }
+    return buffer;
+}
+
+const char *vkao_stages_name(vkao_stage_flags stages, char buffer[VKAO_NAME_BYTES])
+{
+    static const char *const names[] = {"SSAO", "BLUR", "COMPOSITE", "PREPARE"};
+    int length = snprintf(buffer, VKAO_NAME_BYTES, "0x%x", stages);
+    const char *before = " (";
+    for (int i = 0; i < 4; ++i) {
+        if (!(stages & 1u << i))
+            continue;
+        length +=
+            snprintf(buffer + length, (size_t)(VKAO_NAME_BYTES - length), "%s%s", before, names[i]);
+        before = " | ";
+    }
+    if (stages & 15u)
+        snprintf(buffer + length, (size_t)(VKAO_NAME_BYTES - length), ")");
+    return buffer;
+}
+
 /* Rules between members of an effect. */
 static vkao_result check_combination(const struct vkao_logger *log, const vkao_effect_info *e)
 {
@@ -442,11 +471,13 @@ static vkao_result check_combination(const struct vkao_logger *log, const vkao_e
         {e->depth_bits && e->depth_bits != 16 && e->depth_bits != 24 && e->depth_bits != 32,
          "depth_bits", e->depth_bits, "0, 16, 24 or 32"},
     };
+    char stages[VKAO_NAME_BYTES], word[VKAO_NAME_BYTES];
     for (size_t i = 0; i < sizeof rules / sizeof rules[0]; ++i) {
         if (rules[i].wrong)
             return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                               "effect.%s is %u, want %s (effect.stages is 0x%x)", rules[i].name,
-                               rules[i].value, rules[i].want, e->stages);
+                               "effect.%s is %u%s, want %s (effect.stages is %s)", rules[i].name,
+                               rules[i].value, word_of(rules[i].name, rules[i].value, word),
+                               rules[i].want, vkao_stages_name(e->stages, stages));
     }
     return VKAO_SUCCESS;
 }
@@ -454,13 +485,14 @@ static vkao_result check_combination(const struct vkao_logger *log, const vkao_e
 vkao_result vkao_effect_info_check(const struct vkao_logger *log, const vkao_effect_info *in,
                                    vkao_effect_info *out)
 {
+    char name[VKAO_NAME_BYTES], all[VKAO_NAME_BYTES];
     vkao_result result = vkao_import(log, VKAO_STRUCT_EFFECT_INFO, "effect", in, out);
     if (result != VKAO_SUCCESS)
         return result;
     if (!out->stages || (out->stages & ~VKAO_STAGE_ALL))
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "effect.stages is 0x%x, want bits of 0x%x", out->stages, VKAO_STAGE_ALL);
-    char name[VKAO_NAME_BYTES];
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "effect.stages is %s, want bits of %s",
+                           vkao_stages_name(out->stages, name),
+                           vkao_stages_name(VKAO_STAGE_ALL, all));
     if (out->ao_format && !vkao_format_is_ao(out->ao_format))
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "effect.ao_format is %s, want R8_UNORM, R16_UNORM, R16_SFLOAT or "

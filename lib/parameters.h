@@ -4,6 +4,7 @@
 #ifndef VKAO_PARAMETERS_H_
 #define VKAO_PARAMETERS_H_
 
+#include "formats.h"
 #include "log.h"
 
 #include <stdbool.h>
@@ -19,6 +20,9 @@ enum vkao_struct {
     VKAO_STRUCT_PARAMS,
     VKAO_STRUCT_COUNT
 };
+
+/* "0x3 (SSAO | BLUR)" */
+const char *vkao_stages_name(vkao_stage_flags stages, char buffer[VKAO_NAME_BYTES]);
 
 /* The struct rule of vkao.h: copies src into dst, which has `known` bytes. least: what the first
  * 0.2 had. */

@@ -4,6 +4,7 @@
 #include "recording.h"
 
 #include "cpu/cpu.h"
+#include "formats.h"
 #include "parameters.h"
 #include "stages.h"
 
@@ -173,6 +174,7 @@ static vkao_result record(const vkao_frame *frame, VkCommandBuffer cmd, const ch
         return VKAO_ERROR_INVALID_ARGUMENT;
     const vkao_effect_info *e = &frame->program->settings;
     const vkao_stage_flags has = vkao_stages_of(e);
+    char asked[VKAO_NAME_BYTES], all[VKAO_NAME_BYTES];
     const struct {
         const char *name;
         const void *value;
@@ -184,8 +186,8 @@ static vkao_result record(const vkao_frame *frame, VkCommandBuffer cmd, const ch
     }
     if (!stages || (stages & ~has))
         return vkao_refuse(&frame->ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "%s: stages is 0x%x, want bits of 0x%x, which the effect has", call,
-                           stages, has);
+                           "%s: stages is %s, want bits of %s, which the effect has", call,
+                           vkao_stages_name(stages, asked), vkao_stages_name(has, all));
     vkao_result result = check_view(frame, view, &r.image);
     if (result == VKAO_SUCCESS)
         result = vkao_params_check(&frame->ctx->log, params, &known);

@@ -2,6 +2,7 @@
 #include "slots.h"
 
 #include "formats.h"
+#include "parameters.h"
 
 #include <stddef.h>
 
@@ -104,6 +105,22 @@ static vkao_result check_encoding(const struct vkao_program *program, uint32_t i
     return VKAO_SUCCESS;
 }
 
+/* The settings that ask for an image. */
+static const char *const requirers[VKAO_SLOT_COUNT] = {
+    [VKAO_RESOURCE_DEPTH] = "stages SSAO and BLUR",
+    [VKAO_RESOURCE_NORMALS] = "normal_encoding other than FROM_DEPTH",
+    [VKAO_RESOURCE_AO_NOISY] = "noisy_ao, or stages with BLUR and without SSAO",
+    [VKAO_RESOURCE_AO] = "stages, unless they make AO and composite it",
+    [VKAO_RESOURCE_COLOR] = "composite_mode MULTIPLY and INDIRECT",
+    [VKAO_RESOURCE_DIRECT] = "composite_mode INDIRECT",
+    [VKAO_RESOURCE_OUTPUT] = "stages COMPOSITE",
+    [VKAO_RESOURCE_BENT_NORMALS] = "bent_normals, or by what shows or reads them",
+    [VKAO_RESOURCE_ALBEDO] = "multi_bounce",
+    [VKAO_RESOURCE_SPECULAR] = "specular other than NONE",
+    [VKAO_RESOURCE_THICKNESS] = "thickness_input other than AS_SEEN",
+    [VKAO_RESOURCE_SECOND_DEPTH] = "second_layer",
+};
+
 static vkao_result check_slot(const struct vkao_program *program, uint32_t i,
                               const vkao_image *image, bool reads, bool writes)
 {
@@ -112,12 +129,12 @@ static vkao_result check_slot(const struct vkao_program *program, uint32_t i,
     char is[VKAO_NAME_BYTES], other[VKAO_NAME_BYTES];
     vkao_format_name(image->format, is);
     if (!image->format && image->view)
-        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s has a view but no format",
-                           name);
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "%s has a view but no format: set format to that of the view", name);
     if (!image->format && (reads || writes) && is_required(program, i))
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "%s is required by effect.stages 0x%x and its settings", name,
-                           program->settings.stages);
+                           "%s has no format, but is required by effect.%s (effect.stages is %s)",
+                           name, requirers[i], vkao_stages_name(program->settings.stages, other));
     if (!image->format)
         return VKAO_SUCCESS;
     if (image->image && i != VKAO_RESOURCE_AO)

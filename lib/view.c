@@ -75,10 +75,11 @@ static vkao_result read_projection(const struct vkao_logger *log, const vkao_vie
     /* -near far / (far - near), or near, stands where w's factor of z should, and that where the
      * former should. */
     if (m[15] == 0.0f && fabsf(m[11]) != 1.0f && fabsf(m[14]) == 1.0f)
-        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "view.projection is transposed: [11] is %g and [14] is %g, want [11] 1 "
-                           "or -1 in perspective, as m[column * 4 + row] holds columns",
-                           (double)m[11], (double)m[14]);
+        return vkao_refuse(
+            log, VKAO_ERROR_INVALID_ARGUMENT,
+            "view.projection is transposed or inverse: [11] is %g and [14] is %g, want "
+            "[11] 1 or -1 in perspective, as m[column * 4 + row] holds columns",
+            (double)m[11], (double)m[14]);
     bool perspective = m[11] != 0.0f && m[15] == 0.0f,
          orthographic = m[11] == 0.0f && m[15] != 0.0f;
     if ((!perspective && !orthographic) || m[0] == 0.0f || m[5] == 0.0f ||
@@ -316,9 +317,12 @@ vkao_result vkao_view_constants_init(const struct vkao_logger *log, const vkao_v
     if (result != VKAO_SUCCESS)
         return result;
     if (p.orthographic != (effect->projection == VKAO_PROJECTION_ORTHOGRAPHIC))
-        return vkao_refuse(
-            log, VKAO_ERROR_INVALID_ARGUMENT, "view.projection is %s, but effect.projection is %u",
-            p.orthographic ? "orthographic" : "perspective", (unsigned)effect->projection);
+        return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
+                           "view.projection is %s ([11] is %g, [15] %g), but effect.projection is "
+                           "%u: views of the other kind need an effect of their own",
+                           p.orthographic ? "orthographic" : "perspective",
+                           (double)view->projection[11], (double)view->projection[15],
+                           (unsigned)effect->projection);
     *out = (struct view_constants){.orthographic = p.orthographic};
     result = resolve_rects(log, view, extent, &out->valid, &out->rect);
     if (result != VKAO_SUCCESS)

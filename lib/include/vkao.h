@@ -60,7 +60,9 @@
  *    and for the change of layout dstAccessMask DEPTH_STENCIL_ATTACHMENT_WRITE |
  *    COLOR_ATTACHMENT_WRITE.
  *  - Between vkao calls on one queue the library's own barriers order everything, scratch included,
- *    also across submits. Across queues, a semaphore is yours.
+ *    also across submits. Across queues, a semaphore is yours, and across families the transfer of
+ *    your images. What the other queue did has finished before the stages in which the semaphore is
+ *    waited for: these are srcStageMask then, with srcAccessMask 0.
  *  - State left behind: compute pipeline, compute descriptor set 0, push constants. Nothing else
  *    changes.
  *  - Record outside a render pass, in any command buffer whose queue family supports compute.
@@ -101,8 +103,9 @@
 #endif
 
 /* NAME_init: the default of each member that lies within size bytes, sizeof of the caller's struct,
- * to which it sets struct_size; what is unknown to the library is zero. NAME_default: the same,
- * inline, so that programs keep working with a library whose structs have grown. */
+ * to which it sets struct_size; what is unknown to the library is zero. NULL is ignored.
+ * NAME_default: the same, inline, so that programs keep working with a library whose structs have
+ * grown. */
 #define VKAO_DEFAULT(name)                                                                         \
     VKAO_API void name##_init(name *out, uint32_t size);                                           \
     static inline name name##_default(void)                                                        \
@@ -529,13 +532,13 @@ VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_create(const vkao_effect *effect
                                                        vkao_frame **out);
 
 /* Points the frame at other images with the same used slots, formats and extent (rotating or
- * transient images). No allocation. The frame must not be in use by a pending command buffer. On
- * error the frame is unchanged. */
+ * transient images). No allocation. The frame must not be in use by a pending command buffer, and
+ * what it was recorded into before has to be recorded anew. On error the frame is unchanged. */
 VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_update(vkao_frame *frame,
                                                        const vkao_images *images);
 
-/* The frame must not be in use by a pending command buffer. NULL is ignored. Legal after device
- * loss. */
+/* The frame must not be in use by a pending command buffer, nor what it was recorded into submitted
+ * any more: wait for its fence first. NULL is ignored. Legal after device loss. */
 VKAO_API void vkao_frame_destroy(vkao_frame *frame);
 
 /* --- Recording: what may change each time --- */
@@ -578,6 +581,7 @@ typedef struct vkao_view {
      * are not 0 and 1, in either order:
      *     m[10] = (maxDepth - minDepth) * m[10] + minDepth * m[11];
      *     m[14] = (maxDepth - minDepth) * m[14] + minDepth * m[15];
+     * So is a matrix for OpenGL's z from -w to w, which cannot be told from others, with .5 and 1.
      * PROJECTED depth of exactly 0 or 1 is then no plane, but on the far side it is background
      * still, as are depths beyond that at infinity. The far end of the range is background where
      * the far plane is infinite, and a surface at the far plane where it is not: clear depth to 0
@@ -598,7 +602,8 @@ VKAO_DEFAULT(vkao_view)
 typedef struct vkao_params {
     uint32_t struct_size;
     /* any; 0 = the static pattern; a frame counter if something temporal follows. The pattern lies
-     * still in the image, wherever valid is: views of an atlas differ by noise */
+     * still in the image, wherever valid is: views of an atlas differ by noise, and so do one image
+     * by a matrix with y up and by one with y down */
     uint32_t noise_index;
     float radius; /* (0,inf) scene units that an occluder reaches. Default 0.5 */
     /* [0,1] fraction of radius by which the scene must stand in front of a point to block it; hides

@@ -330,6 +330,30 @@ static void validation_sees_a_caller_who_forgets_the_barrier_after_vkao(void **s
     assert_true(messages > 0);
 }
 
+/* What was recorded before is worth nothing. */
+static void validation_sees_a_frame_updated_between_recording_and_submit(void **state)
+{
+    (void)state;
+    struct picture p;
+    struct picture_gpu g;
+    make(&p, scene_corner());
+    picture_open(&p, &g);
+    VkCommandBuffer cmd = gpu_begin(&fixture.gpu, &fixture.error);
+    picture_record(&p, &g, cmd);
+    check_vkao(vkao_frame_update(g.frame, &g.slots));
+    fixture.gpu.print_validation = false;
+    (void)gpu_submit(&fixture.gpu, cmd, &fixture.error);
+    const uint32_t messages = fixture.gpu.validation_messages;
+    fixture.gpu.validation_messages = 0;
+    fixture.gpu.print_validation = true;
+    cmd = gpu_begin(&fixture.gpu, &fixture.error);
+    picture_record(&p, &g, cmd);
+    check(gpu_submit(&fixture.gpu, cmd, &fixture.error));
+    picture_close(&g);
+    picture_free(&p);
+    assert_true(messages > 0);
+}
+
 /* --- The last use of an image that vkao writes, and the barrier of the header for it --- */
 
 enum last_use { READ, WRITTEN, COPIED_FROM, CLEARED, DRAWN, NONE, LAST_USES };
@@ -561,6 +585,7 @@ int main(void)
         gpu_test(validation_sees_a_missing_barrier_within_a_command_buffer),
         gpu_test(validation_sees_a_missing_barrier_between_submits),
         gpu_test(validation_sees_a_caller_who_forgets_the_barrier_after_vkao),
+        gpu_test(validation_sees_a_frame_updated_between_recording_and_submit),
         gpu_test(barriers_that_the_header_names_are_right_and_needed),
         gpu_test(callers_scratch_at_an_offset_gives_the_same_picture),
         gpu_test(frames_at_different_offsets_do_not_touch_each_other),

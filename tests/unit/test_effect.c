@@ -258,29 +258,34 @@ static void combinations_that_make_no_sense_are_refused_and_named(void **state)
         vkao_stage_flags stages;
         size_t offset;
         uint32_t value;
-        const char *name;
+        const char *name, *said;
     } rows[] = {
-        {VKAO_STAGE_SSAO, offsetof(vkao_effect_info, half_resolution), 1, "half_resolution"},
-        {VKAO_STAGE_BLUR, offsetof(vkao_effect_info, half_resolution), 1, "half_resolution"},
-        {VKAO_STAGE_SSAO, offsetof(vkao_effect_info, noisy_ao), 1, "noisy_ao"},
-        {VKAO_STAGE_BLUR, offsetof(vkao_effect_info, bent_normals), 1, "bent_normals"},
+        {VKAO_STAGE_SSAO, offsetof(vkao_effect_info, half_resolution), 1, "half_resolution",
+         "stages is 0x1 (SSAO)"},
+        {VKAO_STAGE_BLUR, offsetof(vkao_effect_info, half_resolution), 1, "half_resolution",
+         "want"},
+        {VKAO_STAGE_SSAO, offsetof(vkao_effect_info, noisy_ao), 1, "noisy_ao", "want"},
+        {VKAO_STAGE_BLUR, offsetof(vkao_effect_info, bent_normals), 1, "bent_normals", "want"},
         {VKAO_STAGE_COMPOSITE, offsetof(vkao_effect_info, composite_mode), VKAO_COMPOSITE_VIEW_Z,
-         "composite_mode"},
+         "composite_mode", "is 6 (view-z), want"},
         {VKAO_STAGE_ALL, offsetof(vkao_effect_info, composite_mode), VKAO_COMPOSITE_BENT_NORMALS,
-         "composite_mode"},
-        {VKAO_STAGE_ALL, offsetof(vkao_effect_info, specular), VKAO_SPECULAR_FROM_AO, "specular"},
-        {VKAO_STAGE_ALL, offsetof(vkao_effect_info, specular), VKAO_SPECULAR_FROM_BENT, "specular"},
-        {VKAO_STAGE_ALL, offsetof(vkao_effect_info, depth_bits), 17, "depth_bits"},
+         "composite_mode", "is 5 (bent-normals), want"},
+        {VKAO_STAGE_ALL, offsetof(vkao_effect_info, specular), VKAO_SPECULAR_FROM_AO, "specular",
+         "want"},
+        {VKAO_STAGE_ALL, offsetof(vkao_effect_info, specular), VKAO_SPECULAR_FROM_BENT, "specular",
+         "want"},
+        {VKAO_STAGE_ALL, offsetof(vkao_effect_info, depth_bits), 17, "depth_bits", "want"},
         {VKAO_STAGE_ALL, offsetof(vkao_effect_info, ao_format), VK_FORMAT_R8G8B8A8_UNORM,
-         "ao_format"},
-        {0, offsetof(vkao_effect_info, noisy_ao), 0, "stages"},
-        {8, offsetof(vkao_effect_info, noisy_ao), 0, "stages"},
+         "ao_format", "want"},
+        {0, offsetof(vkao_effect_info, noisy_ao), 0, "stages", "want"},
+        {8, offsetof(vkao_effect_info, noisy_ao), 0, "stages",
+         "is 0x8 (PREPARE), want bits of 0x7 (SSAO | BLUR | COMPOSITE)"},
     };
     for (size_t i = 0; i < COUNT(rows); ++i) {
         struct world w;
         open_for(&w, rows[i].stages, false, true);
         memcpy((char *)&w.effect_info + rows[i].offset, &rows[i].value, sizeof rows[i].value);
-        expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, create(&w), rows[i].name, "want");
+        expect_refused(&w, VKAO_ERROR_INVALID_ARGUMENT, create(&w), rows[i].name, rows[i].said);
         assert_null(w.effect);
         world_close(&w);
     }

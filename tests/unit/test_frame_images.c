@@ -116,11 +116,13 @@ static void layers_are_required_where_they_are_read(void **state)
     w.effect_info.thickness_input = VKAO_THICKNESS_GIVEN;
     expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, "thickness_input", "method VBAO or RAYMARCH");
     w.effect_info.method = VKAO_SSAO_VBAO;
-    expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, "images.thickness", "required");
+    expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, "images.thickness",
+                  "required by effect.thickness_input");
     w.images.thickness = w.images.depth;
     expect_result(&w, VKAO_SUCCESS, "images.thickness", "");
     w.effect_info.second_layer = VK_TRUE;
-    expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, "images.second_depth", "required");
+    expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, "images.second_depth",
+                  "required by effect.second_layer");
     w.images.second_depth = w.images.depth;
     expect_result(&w, VKAO_SUCCESS, "images.second_depth", "");
     w.images.thickness.format = VK_FORMAT_R8G8B8A8_UNORM;

@@ -246,6 +246,49 @@ static void viewport_moves_and_scales_ndc(void **state)
     }
 }
 
+/* As the header folds it in: texel x + 1 then shows what texel x did. */
+static void jitter_of_a_texel_moves_the_image_by_one(void **state)
+{
+    (void)state;
+    for (unsigned i = 0; i < PLAIN_CAMERAS; ++i) {
+        const struct camera c = camera_of(i);
+        vkao_view view = view_of(&c);
+        float *m = view.projection;
+        const float x = 2.0f / (float)extent.width, y = 2.0f / (float)extent.height;
+        const struct view_constants still = read_off(&view);
+        if (c.orthographic) {
+            m[12] += x * m[15];
+            m[13] += y * m[15];
+        } else {
+            m[8] += x * m[11];
+            m[9] += y * m[11];
+        }
+        const struct view_constants moved = read_off(&view);
+        for (int k = 0; k < 2; ++k)
+            expect_near(moved.unproject[k] + moved.unproject[2 + k], still.unproject[2 + k], 1e-5,
+                        "unprojected texel", i);
+    }
+}
+
+/* z from -w to w, for depths of z / w / 2 + 1/2. */
+static void opengl_matrix_is_folded_like_a_range(void **state)
+{
+    (void)state;
+    const double n = 0.25, f = 50.0;
+    vkao_view view = vkao_view_default();
+    float *m = view.projection;
+    m[0] = m[5] = 1.5f;
+    m[10] = (float)(-(f + n) / (f - n));
+    m[11] = -1.0f;
+    m[14] = (float)(-2.0 * f * n / (f - n));
+    m[10] = (1.0f - 0.5f) * m[10] + 0.5f * m[11];
+    m[14] = (1.0f - 0.5f) * m[14] + 0.5f * m[15];
+    const struct view_constants k = read_off(&view);
+    expect_near(linearize(&k, 0.0), n, 1e-5, "near plane", 0);
+    expect_near(linearize(&k, 1.0), f, 1e-2, "far plane", 0);
+    expect_near(k.far_depth, 1.0, 0.0, "far depth", 0);
+}
+
 static void linear_depth_is_the_matrix_inverse(void **state)
 {
     (void)state;
@@ -431,6 +474,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(texel_and_depth_lead_back_to_the_point),
         cmocka_unit_test(viewport_moves_and_scales_ndc),
+        cmocka_unit_test(jitter_of_a_texel_moves_the_image_by_one),
+        cmocka_unit_test(opengl_matrix_is_folded_like_a_range),
         cmocka_unit_test(linear_depth_is_the_matrix_inverse),
         cmocka_unit_test(far_depth_is_the_far_planes),
         cmocka_unit_test(depth_error_covers_one_step_of_the_format),
