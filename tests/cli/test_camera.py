@@ -68,6 +68,41 @@ def camera_is_found(scratch, name, channel, kind, size, fov, space, aspect):
     check_same_ao(scratch, ('--camera', 'c.json', '--depth-type', kind, *near), name)
 
 
+def smooth_things_on_a_floor(width, height, fov):
+    """Depth and world normals of balls on a floor, seen from above. Of the balls the normals are
+    shaded smooth: off by a degree or so, where those of the floor are exact."""
+    scene, random = Scene(width, height, fov), np.random.default_rng(3)
+    up = np.array([0, np.cos(0.6), np.sin(0.6)])
+    across, away = np.array([1.0, 0, 0]), np.array([0, np.sin(0.6), -np.cos(0.6)])
+    ray = np.stack([scene.x, scene.y, -np.ones_like(scene.x)], axis=-1)
+    z, normal = -4 / (ray @ up), np.broadcast_to(up, ray.shape)
+    for _ in range(12):
+        x, y, radius = random.uniform([-2.5, 4, 0.3], [2.5, 8, 0.8])
+        ball = across * x + away * y + up * (radius - 4)
+        along, square = ray @ ball, scene.stretch ** 2
+        with np.errstate(invalid='ignore'):
+            at = (along - np.sqrt(along ** 2 - square * (ball @ ball - radius ** 2))) / square
+        is_hit = (at > 0) & (at < z)
+        round_one = (ray * at[..., None] - ball) / radius
+        shaded = round_one + 0.03 * np.sin(20 * round_one[..., [1, 2, 0]])
+        z = np.where(is_hit, at, z)
+        normal = np.where(is_hit[..., None],
+                          shaded / np.linalg.norm(shaded, axis=-1, keepdims=True), normal)
+    return {'Z': z.astype(np.float32), **{f'N.{c}': (normal @ TURN)[..., i].astype(np.float32)
+                                          for i, c in enumerate('XYZ')}}
+
+
+@cases([(320, 200, 39.6), (240, 240, 55.0), (400, 225, 73.7)])
+def floor_beneath_smooth_things_does_not_decide_alone(scratch, width, height, fov):
+    write_exr(scratch.path('in.exr'), smooth_things_on_a_floor(width, height, fov))
+    view, _ = inspect(scratch)
+    camera = view['camera']
+    matches(r'^estimated, \+-0?\.?\d+ %$', camera['source'], 'the source')
+    error = half_width(camera['fov_x_deg']) / half_width(fov) - 1
+    check(abs(error) < 0.01, f'{camera["fov_x_deg"]} degrees, want {fov}')
+    equal(camera['rotation'], 'estimated', 'rotation')
+
+
 # z = a x + b y + c: few, and those that touch a dome.
 CORNERS = ((0.7, 0.1, 5), (-0.6, 0.3, 5), (0.1, -0.9, 4.6), (0.2, 0.8, 5.2))
 DOME = tuple((-0.5 * x, -0.5 * y, 5 + 0.25 * (x * x + y * y)) for x in (-2, -0.7, 0.6, 1.9)

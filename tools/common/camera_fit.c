@@ -14,6 +14,8 @@ enum { MOST_FOUND = 64, MOST_RIVALS = 8, SEARCH_SAMPLES = 1500, FIELDS_OF_VIEW =
 static const double sharpest_sigma = 0.0005, least_sigma = 0.004, most_sigma = 0.12;
 /* Of these nothing more is asked, unless the camera is found shifted. */
 static const double all_agree = 0.995;
+/* Share of the normals beside the one direction that most have: of fewer no rotation is told. */
+static const double least_beside = 0.035;
 
 /* --- Search --- */
 
@@ -247,15 +249,25 @@ static void refine_all(const struct fit_samples *s, struct found *f, double *sig
     }
 }
 
+static bool has_directions(const struct fit_samples *s, const struct fit_solution *at,
+                           struct vec3 *weakest)
+{
+    double values[3];
+    fit_directions(s, at, values, weakest);
+    return values[1] > least_beside;
+}
+
 /* Smaller and smaller scales, as long as they make the field of view surer: flat faces decide and
- * smooth shading drops out. */
+ * smooth shading drops out. But where a floor is all that is flat, the floor alone tells nothing. */
 static struct fit_solution sharpened(const struct fit_samples *s, const struct fit_solution *from)
 {
     struct fit_solution best = *from, t = *from;
+    struct vec3 weakest;
     while (t.sigma > sharpest_sigma) {
         fit_refine(s, &t, fmax(t.sigma * 0.5, sharpest_sigma));
         const double moved = fabs(t.p[FIT_LN_K] - best.p[FIT_LN_K]);
-        if (t.inlier_weight < 0.25 || moved > 3.0 * best.deviation[FIT_LN_K] + 0.005)
+        if (t.inlier_weight < 0.25 || moved > 3.0 * best.deviation[FIT_LN_K] + 0.005 ||
+            !has_directions(s, &t, &weakest))
             break;
         if (t.deviation[FIT_LN_K] < 0.9 * best.deviation[FIT_LN_K])
             best = t;
@@ -552,8 +564,8 @@ static bool judge(const struct fit_samples *s, const struct found *f, double sig
                   const struct fit_solution *best, struct fit *fit)
 {
     const struct shares shares = find_shares(s, best);
-    double values[3];
     struct vec3 weakest;
+    const bool tells_rotation = has_directions(s, best, &weakest);
     /* No less than what the differences of a coarse image leave out of curved surfaces. */
     fit->bound = fmax(2.5 * best->deviation[FIT_LN_K] + best->doubt +
                           (best->sigma > least_sigma ? 0.15 * best->sigma : 0),
@@ -573,17 +585,15 @@ static bool judge(const struct fit_samples *s, const struct found *f, double sig
         snprintf(fit->why, sizeof fit->why, "the lens shift is uncertain");
     if (!fit->why[0] && !find_rival(s, f, sigma, best, fit))
         return false;
-    fit_directions(s, best, values, &weakest);
     fit->weakest[0] = weakest.x;
     fit->weakest[1] = weakest.y;
     fit->weakest[2] = weakest.z;
-    const bool has_directions = values[1] > 0.035;
     const bool is_vague = shares.near < 0.4 || fit->bound > sure_bound;
-    fit->rotation_known = has_directions && best->rotation_deviation < 1.0;
+    fit->rotation_known = tells_rotation && best->rotation_deviation < 1.0;
     if (!fit->rotation_known && !fit->why[0])
         snprintf(fit->why, sizeof fit->why, "nearly all normals are parallel");
     fit->is_sure = !fit->why[0];
-    fit->is_usable = fit->is_sure || (is_vague && has_directions && is_likely(fit));
+    fit->is_usable = fit->is_sure || (is_vague && tells_rotation && is_likely(fit));
     return true;
 }
 
