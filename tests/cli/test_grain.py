@@ -219,7 +219,7 @@ def wide_blur_is_seen_beside_borders_of_normals(scratch):
             str(inspect(scratch, '--fov', FOV)['warnings']), 'said')
 
 
-@cases([('as they are', 0), ('a texel', 1), ('two', 2), ('four', 4)])
+@cases([('as they are', 0), ('over pixels', 0.7), ('a texel', 1), ('two', 2), ('four', 4)])
 def blurred_normals_are_said(scratch, _, deviation):
     depth, normals = cards()
     if deviation:
@@ -229,7 +229,8 @@ def blurred_normals_are_said(scratch, _, deviation):
         normals = {n: p / np.maximum(length, 1e-6) for n, p in normals.items()}
     write_exr(scratch.path('in.exr'), {'Z': depth, **normals})
     said = str(inspect(scratch, '--fov', FOV)['warnings'])
-    equal('are blurred (denoised, or enlarged)' in said, deviation > 0, f'whether it is in {said}')
+    equal('are blurred (denoised, or enlarged)' in said, deviation >= 1, f'whether it is in {said}')
+    equal('are averaged over pixels' in said, 0 < deviation < 1, f'whether it is in {said}')
 
 
 BLURS = [('of a lens', [1.0, 0.7, 0.25, 0.04], (0, 1)), ('wide', np.exp(-np.arange(9) ** 2 / 18.0),

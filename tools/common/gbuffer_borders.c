@@ -237,11 +237,13 @@ static bool is_bent(const struct bends *b)
 }
 
 /* Of clean renders at most 11 of 100 turns are slow. Of normals that are blurred with a deviation
- * of a texel 7 to 60 are, of most more than 20; of two texels 70 and more. */
-static bool is_slow(const struct turns *t)
+ * of a texel 7 to 60 are, of most more than 20; of two texels 70 and more. Those of renderers that
+ * average them over a pixel, by a filter somewhat wider than that, are among the former. */
+static const double slow = 0.16, slower = 0.65;
+
+static double slow_share(const struct turns *t)
 {
-    static const double slow = 0.16;
-    return t->count >= FEW_STEPS && (double)t->slow > slow * (double)t->count;
+    return t->count >= FEW_STEPS ? (double)t->slow / (double)t->count : 0;
 }
 
 /* Whole millimetres, or parts of 16 bits: between two steps flat things bend. */
@@ -265,11 +267,17 @@ void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct r
                     "lie beside those of depth, where AO is wrong; write them at full size, or "
                     "derive them from depth by --normal none",
                     path, normals, block);
-    else if (is_slow(&b.turns))
+    else if (slow_share(&b.turns) > slower)
         report_warn(report, "blurred normals",
                     "%s: normals '%s' are blurred (denoised, or enlarged): they turn little by "
                     "little where depth steps at once; AO is wrong there; write them unfiltered, "
                     "or derive them from depth by --normal none",
+                    path, normals);
+    else if (slow_share(&b.turns) > slow)
+        report_warn(report, "averaged normals",
+                    "%s: normals '%s' are averaged over pixels and their neighbours (antialiased), "
+                    "or blurred: they turn over several texels where depth steps at once; AO is "
+                    "off along silhouettes; one sample, in the centre of the pixel, has neither",
                     path, normals);
     else if (nearest)
         report_warn(report, "nearest depth",
