@@ -258,7 +258,7 @@ static bool has_directions(const struct fit_samples *s, const struct fit_solutio
 }
 
 /* Smaller and smaller scales, as long as they make the field of view surer: flat faces decide and
- * smooth shading drops out. But where a floor is all that is flat, the floor alone tells nothing. */
+ * smooth shading drops out. But a floor, where that is all that is flat, tells nothing alone. */
 static struct fit_solution sharpened(const struct fit_samples *s, const struct fit_solution *from)
 {
     struct fit_solution best = *from, t = *from;
