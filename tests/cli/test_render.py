@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: MIT
 """vkao render: the ways that files come in and go out, and what must not change the result."""
 import json
+import os
 import struct
 
 import numpy as np
@@ -122,10 +123,12 @@ def same_input_gives_the_same_bytes(scratch):
     write_exr(scratch.path('in.exr'), gbuffer(color=True))
     for mode in ('ao', 'append', 'comp'):
         outputs = []
-        for i in range(3):
-            scratch.render('in.exr', '-o', f'{mode}{i}.exr', '--mode', mode, '--preview',
-                           f'{mode}{i}.png', '--threads', i, *VIEW)
-            outputs.append(scratch.bytes(f'{mode}{i}.exr') + scratch.bytes(f'{mode}{i}.png'))
+        for i in range(3):  # of the same name, which previews name
+            exr, png = f'{mode}{i}/out.exr', f'{mode}{i}/out.png'
+            os.mkdir(scratch.path(f'{mode}{i}'))
+            scratch.render('in.exr', '-o', exr, '--mode', mode, '--preview', png, '--threads', i,
+                           *VIEW)
+            outputs.append(scratch.bytes(exr) + scratch.bytes(png))
         check(outputs[0] == outputs[1] == outputs[2], f'--mode {mode} differs from run to run')
 
 
