@@ -1,30 +1,20 @@
 /* SPDX-License-Identifier: MIT
  *
- * The search for the model, field of view and rotation that explain the stored normals, and the
- * verdict on what is found. The limits are those that neither crops of real G-buffers nor
- * made-up ones led astray. */
+ * The search for the model, field of view and rotation that explain the stored normals. The limits
+ * are those that neither crops of real G-buffers nor made-up ones led astray. */
 #include "camera_fit_internal.h"
 
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-enum { MOST_FOUND = 64, MOST_RIVALS = 8, SEARCH_SAMPLES = 1500, FIELDS_OF_VIEW = 15 };
+enum { MOST_RIVALS = 8, SEARCH_SAMPLES = 1500, FIELDS_OF_VIEW = 15 };
 
-static const double sharpest_sigma = 0.0005, least_sigma = 0.004, most_sigma = 0.12;
+static const double most_sigma = 0.12;
 /* Of these nothing more is asked, unless the camera is found shifted. */
 static const double all_agree = 0.995;
-/* Share of the normals beside the one direction that most have: of fewer no rotation is told. */
-static const double least_beside = 0.035;
 
 /* --- Search --- */
 
-struct found {
-    struct fit_solution list[MOST_FOUND];
-    size_t count;
-};
-
-static void sort(struct found *f)
+static void sort(struct fit_found *f)
 {
     for (size_t i = 1; i < f->count; i++) {
         const struct fit_solution x = f->list[i];
@@ -35,9 +25,9 @@ static void sort(struct found *f)
     }
 }
 
-static void keep(struct found *f, const struct fit_solution *solution)
+static void keep(struct fit_found *f, const struct fit_solution *solution)
 {
-    if (f->count < MOST_FOUND)
+    if (f->count < FIT_MOST_FOUND)
         f->list[f->count++] = *solution;
 }
 
@@ -91,7 +81,7 @@ static double trial(const struct fit_samples *s, enum fit_model model, int i, in
 /* Where half of the normals are turned away, as of leaves, the closed form starts nowhere: 24 turns
  * of a cube instead, whichever way normals point. */
 static void search_turns(const struct fit_samples *s, const struct fit_solution *from,
-                         struct found *out)
+                         struct fit_found *out)
 {
     static const double sigmas[] = {0.5, 0.25, 0.12};
     const struct vec3 axes[3] = {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)};
@@ -113,9 +103,9 @@ static void search_turns(const struct fit_samples *s, const struct fit_solution 
 
 /* The three best minima of one model over all fields of view, or at the one that is known. */
 static void search_model(const struct fit_samples *s, const struct fit_input *input,
-                         enum fit_model model, struct found *out)
+                         enum fit_model model, struct fit_found *out)
 {
-    struct found minima = {.count = 0};
+    struct fit_found minima = {.count = 0};
     const struct starts starts = starts_of(model);
     const bool is_known = input->half_width > 0;
     const int count = is_known ? 1 : FIELDS_OF_VIEW;
@@ -154,7 +144,7 @@ static bool is_inside(const struct fit_samples *s, const struct fit_solution *at
            (!at->free[FIT_LN_K] || (at->p[FIT_LN_K] > low + 0.02 && at->p[FIT_LN_K] < high - 0.02));
 }
 
-static void drop_outside(const struct fit_samples *s, struct found *f)
+static void drop_outside(const struct fit_samples *s, struct fit_found *f)
 {
     size_t kept = 0;
     for (size_t i = 0; i < f->count; i++)
@@ -164,7 +154,7 @@ static void drop_outside(const struct fit_samples *s, struct found *f)
     sort(f);
 }
 
-static void merge_doubles(struct found *f)
+static void merge_doubles(struct fit_found *f)
 {
     size_t kept = 0;
     for (size_t i = 0; i < f->count && kept < MOST_RIVALS; i++) {
@@ -185,7 +175,7 @@ static bool is_in_unit_range(const struct fit_samples *s)
     return s->least >= -1e-6 && s->most <= 1.0001;
 }
 
-static bool search(const struct fit_samples *s, const struct fit_input *input, struct found *f)
+static bool search(const struct fit_samples *s, const struct fit_input *input, struct fit_found *f)
 {
     struct fit_samples few;
     const bool in_unit_range = is_in_unit_range(s);
@@ -229,11 +219,11 @@ static double robust_scale(const struct fit_samples *s, const struct fit_solutio
     while (bin < BINS - 1 && (sum += histogram[bin]) < 0.5 * s->total_weight)
         bin++;
     const double median = (bin + 0.5) * most_sigma / 2.0 / BINS;
-    return fmin(fmax(2.0 * median, least_sigma), most_sigma);
+    return fmin(fmax(2.0 * median, FIT_LEAST_SIGMA), most_sigma);
 }
 
 /* All rivals at one scale, at that of the best. */
-static void refine_all(const struct fit_samples *s, struct found *f, double *sigma)
+static void refine_all(const struct fit_samples *s, struct fit_found *f, double *sigma)
 {
     *sigma = robust_scale(s, &f->list[0]);
     for (int again = 0; again < 2 && f->count > 0; again++) {
@@ -243,18 +233,10 @@ static void refine_all(const struct fit_samples *s, struct found *f, double *sig
         if (f->count == 0)
             return;
         const double better = robust_scale(s, &f->list[0]);
-        if (better > 0.7 * *sigma || *sigma <= least_sigma)
+        if (better > 0.7 * *sigma || *sigma <= FIT_LEAST_SIGMA)
             return;
         *sigma = better; /* the best fits better than the search knew */
     }
-}
-
-static bool has_directions(const struct fit_samples *s, const struct fit_solution *at,
-                           struct vec3 *weakest)
-{
-    double values[3];
-    fit_directions(s, at, values, weakest);
-    return values[1] > least_beside;
 }
 
 /* Smaller and smaller scales, as long as they make the field of view surer: flat faces decide and
@@ -263,24 +245,16 @@ static struct fit_solution sharpened(const struct fit_samples *s, const struct f
 {
     struct fit_solution best = *from, t = *from;
     struct vec3 weakest;
-    while (t.sigma > sharpest_sigma) {
-        fit_refine(s, &t, fmax(t.sigma * 0.5, sharpest_sigma));
+    while (t.sigma > FIT_SHARPEST_SIGMA) {
+        fit_refine(s, &t, fmax(t.sigma * 0.5, FIT_SHARPEST_SIGMA));
         const double moved = fabs(t.p[FIT_LN_K] - best.p[FIT_LN_K]);
         if (t.inlier_weight < 0.25 || moved > 3.0 * best.deviation[FIT_LN_K] + 0.005 ||
-            !has_directions(s, &t, &weakest))
+            !fit_has_directions(s, &t, &weakest))
             break;
         if (t.deviation[FIT_LN_K] < 0.9 * best.deviation[FIT_LN_K])
             best = t;
     }
     return best;
-}
-
-static struct fit_solution refined(const struct fit_samples *s, const struct fit_solution *from,
-                                   double sigma)
-{
-    struct fit_solution t = *from;
-    fit_refine(s, &t, sigma);
-    return t;
 }
 
 /* Where flat faces are few and point few ways, a wrong field of view may suit them as well as the
@@ -291,7 +265,7 @@ static bool is_seen_in_all(const struct fit_samples *s, const struct fit_solutio
 {
     static const double least = 0.02;
     const double sigma = fmax(with->sigma, least);
-    const struct fit_solution a = refined(s, with, sigma), b = refined(s, without, sigma);
+    const struct fit_solution a = fit_refined(s, with, sigma), b = fit_refined(s, without, sigma);
     return a.cost < 0.85 * b.cost && fit_paired_z(&a, &b) > 3;
 }
 
@@ -308,9 +282,9 @@ static void try_shift(const struct fit_samples *s, const struct fit_solution *co
     fit_refine(s, &t, fmax(sigma, 0.03));
     t = sharpened(s, &t);
     /* What is exact for most needs no sharpening, and is held against the sharpest scale. */
-    const bool is_exact = robust_scale(s, &t) <= least_sigma;
-    const double scale = fmax(is_exact ? least_sigma : t.sigma, best->sigma);
-    struct fit_solution with = refined(s, &t, scale), without = refined(s, best, scale);
+    const bool is_exact = robust_scale(s, &t) <= FIT_LEAST_SIGMA;
+    const double scale = fmax(is_exact ? FIT_LEAST_SIGMA : t.sigma, best->sigma);
+    struct fit_solution with = fit_refined(s, &t, scale), without = fit_refined(s, best, scale);
     const double *p = with.p, *deviation = with.deviation;
     const double z = fit_paired_z(&with, &without);
     const double ratio = with.cost / fmax(without.cost, 1e-12);
@@ -331,8 +305,8 @@ static void try_shift(const struct fit_samples *s, const struct fit_solution *co
 
 /* Far off the axis another model, or another field of view, may seem best as long as there is no
  * shift. */
-static void try_shift_of_rivals(const struct fit_samples *s, const struct found *f, double sigma,
-                                struct fit_solution *best)
+static void try_shift_of_rivals(const struct fit_samples *s, const struct fit_found *f,
+                                double sigma, struct fit_solution *best)
 {
     enum { MOST = 4 };
     for (size_t i = 1; i < f->count && i < MOST && !best->shifted; i++) {
@@ -349,17 +323,10 @@ static void try_shift_of_rivals(const struct fit_samples *s, const struct found 
 static bool earns(const struct fit_samples *s, const struct fit_solution *plain,
                   const struct fit_solution *offset, double sigma)
 {
-    struct fit_solution without = refined(s, plain, sigma), with = refined(s, offset, sigma);
+    struct fit_solution without = fit_refined(s, plain, sigma),
+                        with = fit_refined(s, offset, sigma);
     return fabs(with.p[FIT_C]) > fmax(5.0 * with.deviation[FIT_C], 0.001) &&
            without.cost - with.cost > 0.01 && fit_paired_z(&with, &without) > 2.5;
-}
-
-static enum fit_model without_offset(enum fit_model model)
-{
-    return model == FIT_RADIAL_NEAR || model == FIT_RADIAL_NORMALIZED ? FIT_RADIAL
-           : model == FIT_PLANAR_NORMALIZED                           ? FIT_PLANAR
-           : model == FIT_DEVICE                                      ? FIT_INVERSE
-                                                                      : model;
 }
 
 /* The near plane has to earn its place, at the sharp scale and, since what is exact there may be
@@ -368,7 +335,7 @@ static void settle_offset(const struct fit_samples *s, const struct fit_input *i
                           struct fit_solution *best)
 {
     struct fit_solution plain = *best, offset = *best;
-    plain.model = without_offset(best->model);
+    plain.model = fit_model_without_offset(best->model);
     plain.p[FIT_C] = 0;
     plain.free[FIT_C] = false;
     best->near_known = true;
@@ -381,7 +348,7 @@ static void settle_offset(const struct fit_samples *s, const struct fit_input *i
     } else if (plain.model == best->model || !(input->models >> plain.model & 1u)) {
         return;
     }
-    const double common = fmax(best->sigma, least_sigma);
+    const double common = fmax(best->sigma, FIT_LEAST_SIGMA);
     fit_refine(s, &offset, common);
     /* A little of an offset is what filters and rounding leave. */
     const double least =
@@ -429,172 +396,13 @@ static void settle_sign(const struct fit_samples *s, struct fit_solution *best)
     fit_refine(s, &t, best->sigma);
     /* Round things tell it too, which are not exact. */
     const double common = fmax(best->sigma, 0.02);
-    const struct fit_solution as_is = refined(s, best, common), turned = refined(s, &t, common);
+    const struct fit_solution as_is = fit_refined(s, best, common),
+                              turned = fit_refined(s, &t, common);
     const double worse = turned.cost - as_is.cost;
     if (worse < 0.01 || (worse < 0.05 && fit_paired_z(&as_is, &turned) < 3)) {
         t.hand_unknown = true;
         *best = t;
     }
-}
-
-/* --- Verdict --- */
-
-static int compare(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static bool is_to_scale(enum fit_model model)
-{
-    return model == FIT_PLANAR || model == FIT_RADIAL || model == FIT_RADIAL_NEAR ||
-           model == FIT_ORTHO;
-}
-
-/* By how much two solutions differ as geometry: ln of what a texel spans, 90th percentile. False if
- * memory runs out. */
-static bool difference(const struct fit_samples *s, const struct fit_solution *a,
-                       const struct fit_solution *b, double *most)
-{
-    double *logs = malloc(s->count * sizeof *logs), middle = 0;
-    if (!logs)
-        return false;
-    for (size_t i = 0; i < s->count; i++)
-        logs[i] = log(fit_model_scale(s, &s->list[i], a->model, a->p) /
-                      fit_model_scale(s, &s->list[i], b->model, b->p));
-    qsort(logs, s->count, sizeof *logs, compare);
-    if (!is_to_scale(a->model) || !is_to_scale(b->model))
-        middle = logs[s->count / 2];
-    for (size_t i = 0; i < s->count; i++)
-        logs[i] = fabs(logs[i] - middle);
-    qsort(logs, s->count, sizeof *logs, compare);
-    *most = logs[s->count * 9 / 10];
-    free(logs);
-    return true;
-}
-
-static void tell_rival(const struct fit_solution *rival, struct fit *fit)
-{
-    const double half_width = exp(rival->p[FIT_LN_K]);
-    const char *name = fit_model_name(rival->model);
-    if (fit_model_is_ortho(rival->model))
-        snprintf(fit->why, sizeof fit->why, "%s depth of a view %.4g wide fits as well", name,
-                 2.0 * half_width);
-    else
-        snprintf(fit->why, sizeof fit->why, "%s depth of %.4g degrees fits as well", name,
-                 2.0 * atan(half_width) * 180.0 / PI);
-}
-
-/* Another solution that fits as well and is not the same geometry; fit->why says which. */
-static bool find_rival(const struct fit_samples *s, const struct found *f, double sigma,
-                       const struct fit_solution *best, struct fit *fit)
-{
-    const struct fit_solution at = refined(s, best, sigma);
-    for (size_t i = 0; i < f->count; i++) {
-        struct fit_solution rival = f->list[i];
-        double apart;
-        if (without_offset(rival.model) == without_offset(best->model) &&
-            fabs(rival.p[FIT_LN_K] - best->p[FIT_LN_K]) < 0.05)
-            continue; /* the same, or its near plane */
-        if (best->shifted) {
-            rival.free[FIT_CX] = rival.free[FIT_CY] = !fit_model_is_ortho(rival.model);
-            fit_refine(s, &rival, sigma);
-        }
-        const double worse = rival.cost - at.cost;
-        if (!(worse < 0.03 || (worse < 0.15 && fit_paired_z(&at, &rival) < 3)))
-            continue;
-        if (!difference(s, best, &rival, &apart))
-            return false;
-        if (apart > 0.03 && !fit->why[0])
-            tell_rival(&rival, fit);
-    }
-    return true;
-}
-
-/* Shares of the weight: within 10 degrees; of flat faces, and of those within 3 degrees. */
-struct shares {
-    double near, flat, flat_near;
-};
-
-static struct shares find_shares(const struct fit_samples *s, const struct fit_solution *at)
-{
-    struct shares shares = {0};
-    double flat = 0, cosine;
-    for (size_t i = 0; i < s->count; i++) {
-        const struct fit_sample *p = &s->list[i];
-        const double e2 = fit_error(s, p, at, &cosine);
-        shares.near += e2 < 0.03 ? p->weight : 0;
-        flat += p->flat ? p->weight : 0;
-        shares.flat_near += p->flat && e2 < 0.0027 ? p->weight : 0;
-    }
-    shares.near /= s->total_weight;
-    shares.flat = flat / s->total_weight;
-    shares.flat_near = flat > 0 ? shares.flat_near / flat : 1.0;
-    return shares;
-}
-
-/* Relative error of a field of view that is sure. */
-static const double sure_bound = 0.02;
-
-/* Of the crops of renders whose field of view was uncertain, these were nearer to the truth than 40
- * degrees; not so what ends where the search does. */
-static bool is_likely(const struct fit *fit)
-{
-    static const double narrowest = 0.09, widest = 1.7;
-    if (fit->model == FIT_ORTHO)
-        return fit->bound < 0.02;
-    return fit->model <= FIT_RADIAL_NEAR && fit->bound < 0.25 && fit->half_width > narrowest &&
-           fit->half_width < widest;
-}
-
-/* Relative change of half_width that turns normals by less than any are true. Of faces that are
- * square to the view none turns at all. */
-static double unseen_change(const struct fit_samples *s, const struct fit_solution *at)
-{
-    return sharpest_sigma / fmax(fit_sensitivity(s, at), 1e-9);
-}
-
-static void tell_uncertain(struct fit *fit)
-{
-    snprintf(fit->why, sizeof fit->why, "the field of view is uncertain by %.2g %%",
-             fit->bound * 100.0);
-}
-
-static bool judge(const struct fit_samples *s, const struct found *f, double sigma,
-                  const struct fit_solution *best, struct fit *fit)
-{
-    const struct shares shares = find_shares(s, best);
-    struct vec3 weakest;
-    const bool tells_rotation = has_directions(s, best, &weakest);
-    /* No less than what the differences of a coarse image leave out of curved surfaces. */
-    fit->bound = fmax(2.5 * best->deviation[FIT_LN_K] + best->doubt +
-                          (best->sigma > least_sigma ? 0.15 * best->sigma : 0),
-                      0.005);
-    fit->bound = fmax(fit->bound, unseen_change(s, best));
-    if (shares.near < 0.4)
-        snprintf(fit->why, sizeof fit->why, "normals do not follow the depth: %.0f %% do",
-                 shares.near * 100.0);
-    else if (shares.flat > 0.2 && shares.flat_near < 0.7)
-        snprintf(fit->why, sizeof fit->why, "flat faces contradict each other: %.0f %% agree",
-                 shares.flat_near * 100.0);
-    else if (fit->bound > 1.0)
-        snprintf(fit->why, sizeof fit->why, "the normals are the same in any field of view");
-    else if (fit->bound > sure_bound)
-        tell_uncertain(fit);
-    else if (best->shifted && fmax(best->deviation[FIT_CX], best->deviation[FIT_CY]) > 0.02)
-        snprintf(fit->why, sizeof fit->why, "the lens shift is uncertain");
-    if (!fit->why[0] && !find_rival(s, f, sigma, best, fit))
-        return false;
-    fit->weakest[0] = weakest.x;
-    fit->weakest[1] = weakest.y;
-    fit->weakest[2] = weakest.z;
-    const bool is_vague = shares.near < 0.4 || fit->bound > sure_bound;
-    fit->rotation_known = tells_rotation && best->rotation_deviation < 1.0;
-    if (!fit->rotation_known && !fit->why[0])
-        snprintf(fit->why, sizeof fit->why, "nearly all normals are parallel");
-    fit->is_sure = !fit->why[0];
-    fit->is_usable = fit->is_sure || (is_vague && tells_rotation && is_likely(fit));
-    return true;
 }
 
 /* --- The whole --- */
@@ -617,7 +425,7 @@ static void describe(const struct fit_samples *s, const struct fit_input *input,
                           ? best->p[FIT_C] * s->median
                           : 0;
     fit->near_known = best->near_known;
-    if (without_offset(best->model) == FIT_RADIAL) {
+    if (fit_model_without_offset(best->model) == FIT_RADIAL) {
         fit->seen_near = best->near * s->median;
         fit->near_bound = 2.5 * best->near_deviation * s->median;
     }
@@ -660,7 +468,7 @@ static bool find_causes(const struct fit_samples *s, const struct fit_input *inp
 static bool attempt(const struct fit_input *input, unsigned blur, struct attempt *a, bool *tried)
 {
     struct fit_samples s;
-    struct found f;
+    struct fit_found f;
     double sigma;
     *a = (struct attempt){.near_share = 0};
     *tried = false;
@@ -681,13 +489,13 @@ static bool attempt(const struct fit_input *input, unsigned blur, struct attempt
             }
             settle_offset(&s, input, &a->best);
             settle_sign(&s, &a->best);
-            a->near_share = find_shares(&s, &a->best).near;
+            a->near_share = fit_near_share(&s, &a->best);
             describe(&s, input, &a->best, &a->fit);
             a->fit.agreement = 1.0 - fit_cost(&s, &a->best, FIT_HALF_AGREEMENT);
-            a->fit.tells_view = unseen_change(&s, &a->best) < sure_bound;
+            a->fit.tells_view = fit_tells_view(&s, &a->best);
             if ((a->fit.agreement < all_agree || a->best.shifted) && blur == 0)
                 ok = find_causes(&s, input, &a->best, &a->fit);
-            ok = ok && judge(&s, &f, sigma, &a->best, &a->fit);
+            ok = ok && fit_judge(&s, &f, sigma, &a->best, &a->fit);
             *tried = true;
         }
     }
@@ -714,13 +522,8 @@ static void take_doubts(const struct attempt *best, const struct attempt attempt
         const struct fit_solution *s = &attempts[i].best;
         if (s->model == best->best.model && !s->shifted &&
             fabs(s->p[FIT_LN_K] - best->best.p[FIT_LN_K]) < same)
-            fit->bound = fmax(fit->bound, s->doubt);
+            fit_doubt(fit, s->doubt);
     }
-    if (!fit->is_sure || fit->bound <= sure_bound)
-        return;
-    fit->is_sure = false;
-    fit->is_usable = is_likely(fit);
-    tell_uncertain(fit);
 }
 
 /* Patches blur what tells a lens shift that single normals have shown. */
@@ -733,7 +536,7 @@ static bool is_settled(const struct attempt *a)
  * only make one up. */
 static bool tells_nothing(const struct attempt *a)
 {
-    return !a->fit.tells_view && a->near_share > 0.9 && a->best.sigma <= least_sigma;
+    return !a->fit.tells_view && a->near_share > 0.9 && a->best.sigma <= FIT_LEAST_SIGMA;
 }
 
 bool camera_fit(const struct fit_input *input, struct fit *fit, struct tool_error *err)

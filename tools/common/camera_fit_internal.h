@@ -64,11 +64,21 @@ struct fit_solution {
     double doubt;                /* of ln k: by a shift that is not accepted, and not excluded */
 };
 
+/* The best of each model and field of view, the least cost first. */
+enum { FIT_MOST_FOUND = 64 };
+struct fit_found {
+    struct fit_solution list[FIT_MOST_FOUND];
+    size_t count;
+};
+
+/* Scales at which flat faces alone decide, and at which what is exact for most is held. */
+#define FIT_SHARPEST_SIGMA 0.0005
+#define FIT_LEAST_SIGMA 0.004
+
 bool fit_model_is_ortho(enum fit_model model);
+/* The one of which this has a near plane more, or itself. */
+enum fit_model fit_model_without_offset(enum fit_model model);
 const char *fit_model_name(enum fit_model model);
-/* Unit normal of the surface at a sample, by the depth alone. */
-struct vec3 fit_model_normal(const struct fit_samples *s, const struct fit_sample *sample,
-                             enum fit_model model, const double p[FIT_SHAPE]);
 /* Scene units across one unit of the image plane at a sample. */
 double fit_model_scale(const struct fit_samples *s, const struct fit_sample *sample,
                        enum fit_model model, const double p[FIT_SHAPE]);
@@ -84,6 +94,10 @@ struct mat3 fit_improve_rotation(const struct fit_samples *s, const struct fit_s
 void fit_directions(const struct fit_samples *s, const struct fit_solution *at, double values[3],
                     struct vec3 *weakest);
 
+/* Whether enough normals lie beside the one direction that most have. */
+bool fit_has_directions(const struct fit_samples *s, const struct fit_solution *at,
+                        struct vec3 *weakest);
+
 double fit_cost(const struct fit_samples *s, const struct fit_solution *at, double sigma);
 /* The square of the sine between model and stored normal, whichever way that points, and the
  * cosine. */
@@ -94,10 +108,23 @@ void fit_descend(const struct fit_samples *s, struct fit_solution *at, double si
 /* By how much the normals turn with ln k, as a sine, where the rotation and all that is free follow
  * it: 0 if any field of view fits, as faces do that are square to the view. */
 double fit_sensitivity(const struct fit_samples *s, const struct fit_solution *at);
-/* The same, and everything else of the solution. */
+/* Descends, and fills everything of the solution. */
 void fit_refine(const struct fit_samples *s, struct fit_solution *at, double sigma);
+struct fit_solution fit_refined(const struct fit_samples *s, const struct fit_solution *from,
+                                double sigma);
 /* How surely one is better than the other, from their costs by tiles: in standard errors. */
 double fit_paired_z(const struct fit_solution *better, const struct fit_solution *worse);
+
+/* Fills bound, why, weakest, rotation_known, is_sure and is_usable, of the best of what was found
+ * at one scale. False if memory runs out. */
+bool fit_judge(const struct fit_samples *s, const struct fit_found *f, double sigma,
+               const struct fit_solution *best, struct fit *fit);
+/* The field of view is no surer than that, which may leave the whole unsure. */
+void fit_doubt(struct fit *fit, double bound);
+/* Share of the weight within 10 degrees. */
+double fit_near_share(const struct fit_samples *s, const struct fit_solution *at);
+/* Whether another field of view would turn the normals by more than any are true. */
+bool fit_tells_view(const struct fit_samples *s, const struct fit_solution *at);
 
 /* Bumps and smooth shading turn normals by as much, as a sine: half of one agrees. */
 #define FIT_HALF_AGREEMENT 0.12

@@ -15,6 +15,14 @@ bool fit_model_is_ortho(enum fit_model model)
            model == FIT_ORTHO_EXPONENTIAL;
 }
 
+enum fit_model fit_model_without_offset(enum fit_model model)
+{
+    return model == FIT_RADIAL_NEAR || model == FIT_RADIAL_NORMALIZED ? FIT_RADIAL
+           : model == FIT_PLANAR_NORMALIZED                           ? FIT_PLANAR
+           : model == FIT_DEVICE                                      ? FIT_INVERSE
+                                                                      : model;
+}
+
 const char *fit_model_name(enum fit_model model)
 {
     static const char *const names[FIT_MODELS] = {
@@ -125,7 +133,8 @@ static struct vec3 normal_with(const struct fit_samples *s, const struct fit_sam
     return scale(n, 1.0 / fmax(length(n), 1e-30));
 }
 
-struct vec3 fit_model_normal(const struct fit_samples *s, const struct fit_sample *sample,
+/* Unit normal of the surface at a sample, by the depth alone. */
+static struct vec3 normal_at(const struct fit_samples *s, const struct fit_sample *sample,
                              enum fit_model model, const double p[FIT_SHAPE])
 {
     return normal_with(s, sample, model, exp(p[FIT_LN_K]), p);
@@ -227,7 +236,7 @@ static double robust_weight(double e2, double sigma)
 double fit_error(const struct fit_samples *s, const struct fit_sample *sample,
                  const struct fit_solution *at, double *cosine)
 {
-    const struct vec3 n = fit_model_normal(s, sample, at->model, at->p);
+    const struct vec3 n = normal_at(s, sample, at->model, at->p);
     /* 1 - cos^2 would lose all the digits of small angles. */
     const struct vec3 q = mul_mat(at->rotation, sample->m), e = cross(n, q);
     *cosine = dot(n, q);
@@ -259,8 +268,7 @@ struct mat3 fit_start_rotation(const struct fit_samples *s, const struct fit_sol
     struct fit_solution now = *at;
     double b[3][3] = {{0}};
     for (size_t i = 0; i < s->count; i++)
-        add_outer(b, fit_model_normal(s, &s->list[i], at->model, at->p), s->list[i].m,
-                  s->list[i].weight);
+        add_outer(b, normal_at(s, &s->list[i], at->model, at->p), s->list[i].m, s->list[i].weight);
     now.rotation = nearest_rotation((const double(*)[3])b);
     for (size_t i = 0; i < sizeof sigmas / sizeof *sigmas; i++)
         now.rotation = fit_improve_rotation(s, &now, sigmas[i], 2);
@@ -276,7 +284,7 @@ void fit_directions(const struct fit_samples *s, const struct fit_solution *at, 
         double cosine;
         const double e2 = fit_error(s, &s->list[i], at, &cosine);
         const double weight = s->list[i].weight * robust_weight(e2, at->sigma);
-        const struct vec3 n = fit_model_normal(s, &s->list[i], at->model, at->p);
+        const struct vec3 n = normal_at(s, &s->list[i], at->model, at->p);
         add_outer(b, n, s->list[i].m, cosine < 0 ? -weight : weight);
         add_outer(of_depth, n, n, weight);
     }
@@ -286,6 +294,15 @@ void fit_directions(const struct fit_samples *s, const struct fit_solution *at, 
     const double sum = fmax(values[0] + values[1] + values[2], 1e-30);
     for (int i = 0; i < 3; i++)
         values[i] /= sum;
+}
+
+bool fit_has_directions(const struct fit_samples *s, const struct fit_solution *at,
+                        struct vec3 *weakest)
+{
+    static const double least_beside = 0.035; /* share of them: of fewer no rotation is told */
+    double values[3];
+    fit_directions(s, at, values, weakest);
+    return values[1] > least_beside;
 }
 
 /* --- Descent --- */
@@ -325,7 +342,7 @@ static void differentiate(const struct fit_samples *s, const struct fit_sample *
         double p[FIT_SHAPE];
         memcpy(p, at->p, sizeof p);
         p[eq->parameter[a - 3]] += step;
-        const struct vec3 moved = fit_model_normal(s, sample, at->model, p);
+        const struct vec3 moved = normal_at(s, sample, at->model, p);
         de[a] = cross(scale(sub(moved, n), 1.0 / step), q);
     }
 }
@@ -342,7 +359,7 @@ static void linearise(const struct fit_samples *s, const struct fit_solution *at
             eq->parameter[eq->count++ - 3] = i;
     for (size_t i = 0; i < s->count; i++) {
         const struct fit_sample *sample = &s->list[i];
-        const struct vec3 n = fit_model_normal(s, sample, at->model, at->p);
+        const struct vec3 n = normal_at(s, sample, at->model, at->p);
         struct vec3 q = mul_mat(at->rotation, sample->m), de[FIT_PARAMETERS];
         if (dot(n, q) < 0)
             q = scale(q, -1.0);
@@ -531,6 +548,14 @@ void fit_refine(const struct fit_samples *s, struct fit_solution *at, double sig
     }
     at->inlier_weight = inliers / s->total_weight;
     find_deviations(s, at);
+}
+
+struct fit_solution fit_refined(const struct fit_samples *s, const struct fit_solution *from,
+                                double sigma)
+{
+    struct fit_solution t = *from;
+    fit_refine(s, &t, sigma);
+    return t;
 }
 
 double fit_paired_z(const struct fit_solution *better, const struct fit_solution *worse)

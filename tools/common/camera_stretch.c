@@ -50,9 +50,8 @@ bool fit_find_stretch(const struct fit_samples *all, const struct fit_solution *
     *stretch = (struct fit_stretch){.times = 1.0, .cost = INFINITY};
     if (!fit_samples_thin(all, ENOUGH_SAMPLES, &s))
         return false;
-    struct fit_solution without = *best;
-    fit_refine(&s, &without, sigma);
-    const struct fit_solution with = find_best(&s, best, sigma);
+    const struct fit_solution without = fit_refined(&s, best, sigma),
+                              with = find_best(&s, best, sigma);
     const double change = fabs(with.p[FIT_LN_A]);
     const bool is_other = change > least && change > 5.0 * with.deviation[FIT_LN_A];
     /* Of clean renders none is stretched by more than 1.6 %, and none gains more than 0.0015. */

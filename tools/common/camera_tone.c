@@ -67,9 +67,8 @@ bool fit_find_tone(const struct fit_samples *all, const struct fit_solution *bes
     *tone = (struct fit_tone){.cost = INFINITY};
     if (!fit_samples_thin(all, ENOUGH_SAMPLES, &s))
         return false;
-    struct fit_solution without = *best;
-    fit_refine(&s, &without, sigma);
-    const struct fit_solution with = find_best(&s, best, sigma);
+    const struct fit_solution without = fit_refined(&s, best, sigma),
+                              with = find_best(&s, best, sigma);
     const double c = with.p[FIT_C], ratio = with.cost / fmax(without.cost, 1e-12);
     const double gain = without.cost - with.cost, z = fit_paired_z(&with, &without);
     /* Of clean renders c is 0.002 at most, and nothing is gained. */
