@@ -14,8 +14,8 @@ from cli import case, cases, check, equal, main, matches, skip
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..')
 
-# Cubes and a floor; a camera of SETTINGS; renders FILE.exr if asked; prints where points of the
-# world stand in the image, by Blender.
+# Cubes, or heads that are shaded smooth, and a floor; a camera of SETTINGS; renders FILE.exr if
+# asked; prints where points of the world stand in the image, by Blender.
 SCENE = '''
 import json, sys
 import bpy, mathutils
@@ -25,7 +25,13 @@ for thing in list(bpy.data.objects):
     bpy.data.objects.remove(thing)
 bpy.ops.mesh.primitive_plane_add(size=20)
 for x, y, turn in ((0, 0, .3), (1.5, 1, .9), (-2, 1.5, 2.)):
-    bpy.ops.mesh.primitive_cube_add(location=(x, y, .8), rotation=(.4, turn, turn))
+    if not settings['heads']:
+        bpy.ops.mesh.primitive_cube_add(location=(x, y, .8), rotation=(.4, turn, turn))
+        continue
+    bpy.ops.mesh.primitive_monkey_add(location=(x, y, .8), rotation=(-.4, 0, .3 - turn / 3))
+    bpy.context.object.modifiers.new('smooth', 'SUBSURF').render_levels = 2
+    for face in bpy.context.object.data.polygons:
+        face.use_smooth = True
 data = bpy.data.cameras.new('camera')
 camera = bpy.data.objects.new('camera', data)
 bpy.context.collection.objects.link(camera)
@@ -42,7 +48,7 @@ scene.frame_set(1)
 points = [(0, 0, 1), (2, 3, 0), (-3, 4, .5), (.3, -1, 2)]
 seen = [list(world_to_camera_view(scene, camera, mathutils.Vector(p))) for p in points]
 if settings['exr']:
-    scene.render.engine, scene.cycles.samples, scene.cycles.device = 'CYCLES', 1, 'CPU'
+    scene.render.engine, scene.cycles.samples, scene.cycles.device = 'CYCLES', 8, 'CPU'
     layer = bpy.context.view_layer
     layer.use_pass_z = layer.use_pass_normal = True
     image = scene.render.image_settings
@@ -61,13 +67,13 @@ def snippet():
     return page.split('*Blender*, one file', 1)[1].split('```')[1]
 
 
-def run_blender(scratch, camera, render, exr=''):
+def run_blender(scratch, camera, render, exr='', heads=False):
     python = os.environ.get('VKAO_BPY_PYTHON', sys.executable)
     probe = subprocess.run([python, '-c', 'import bpy'], capture_output=True, check=False)
     if probe.returncode != 0:
         skip(f'{python} has no module bpy')
     settings = {'camera': camera, 'render': render, 'blend': scratch.path('scene.blend'),
-                'snippet': scratch.write('snippet.py', snippet()), 'exr': exr}
+                'snippet': scratch.write('snippet.py', snippet()), 'exr': exr, 'heads': heads}
     done = subprocess.run([python, scratch.write('scene.py', SCENE), json.dumps(settings)],
                           capture_output=True, text=True, check=False)
     check(done.returncode == 0, done.stdout + done.stderr)
@@ -107,10 +113,10 @@ def camera_file_is_blenders_camera(scratch, _, camera, render):
               f'{point} stands at {ndc * 0.5 + 0.5}, {-z}; Blender says {wanted}')
 
 
-@case
-def render_is_understood_as_it_comes(scratch):
+@cases([('cubes', False), ('heads', True)])
+def render_is_understood_as_it_comes(scratch, _, heads):
     run_blender(scratch, {'lens': 31}, {**SIZE, 'resolution_x': 320, 'resolution_y': 180},
-                scratch.path('shot.exr'))
+                scratch.path('shot.exr'), heads)
     views = []
     for options in ((), ('--camera', 'camera.0001.json')):
         got = scratch.render('inspect', 'shot.exr', '--json', *options)
