@@ -155,17 +155,20 @@ def kill_between_renames_is_mended_by_the_next_run(scratch, _, folder, number):
     equal(outputs(scratch), wanted, 'what the next run makes of it')
 
 
-@cases([('of another output', ('-o', 'other.1.exr')), ('without a note', ('by hand',))])
+@cases([('of another output', ('-o', 'other.1.exr')), ('without a note', ('by hand',)),
+        ('pipe', ('pipe',))])
 def previews_of_others_stop_the_run(scratch, _, maker):
     stereo(scratch)
     line = ('in.1.exr', *PAIR[3:], '--preview', 'out.png', '-o')
     if maker[0] == '-o':
         scratch.render(*line, 'other.1.exr')
         os.remove(scratch.path('other.1.exr'))
+    elif maker[0] == 'pipe':
+        os.mkfifo(scratch.path('out.l.png'))
     else:
         scratch.write('out.l.png', b'\x89PNG\r\n\x1a\n')
     scratch.fails(OUTPUT, r'out\.l\.png: exists, not overwritten', *line, 'out.1.exr',
-                  '--overwrite', 'skip', hint='remove it')
+                  '--overwrite', 'skip', hint='remove it', timeout=20)
 
 
 @case

@@ -4,12 +4,15 @@
 #include "atomic_file.h"
 #include "text.h"
 
+#include <fcntl.h>
 #include <math.h>
 #include <png.h>
 #include <setjmp.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 uint8_t byte_of(double value)
 {
@@ -142,11 +145,23 @@ static void read_info(png_structp png, png_infop info, FILE *file, const char *k
             *found = text_copy(texts[i].text, strlen(texts[i].text));
 }
 
+/* A pipe would be waited for. */
+static FILE *open_regular(const char *path)
+{
+    struct stat status;
+    const int fd = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    FILE *file =
+        fd >= 0 && fstat(fd, &status) == 0 && S_ISREG(status.st_mode) ? fdopen(fd, "rb") : NULL;
+    if (fd >= 0 && !file)
+        close(fd);
+    return file;
+}
+
 char *png_file_read_text(const char *path, const char *key)
 {
     png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, NULL, leave, on_warning);
     png_infop info = png ? png_create_info_struct(png) : NULL;
-    FILE *file = info ? fopen(path, "rb") : NULL;
+    FILE *file = info ? open_regular(path) : NULL;
     char *found = NULL;
     if (file)
         read_info(png, info, file, key, &found);
