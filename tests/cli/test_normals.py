@@ -237,6 +237,66 @@ def lengths_of_normals_do_not_matter(scratch, name):
         check_same(ao, wanted, f'{name}, header with {len(attributes)} matrices')
 
 
+SIGNS = [(x, y, z) for x in (1, -1) for y in (1, -1) for z in (1, -1)]
+
+
+@cases([(f'{slope}, {"".join("-+"[s > 0] for s in signs)}', slope, signs)
+        for slope in (0.0, 1.2) for signs in SIGNS])
+def a_floor_does_not_hide_a_mirror(scratch, _, slope, signs):
+    # Without perspective: a floor and balls on it, of which hardly a normal faces away mirrored.
+    y, x = np.mgrid[:120, :200] / 50 - np.array([1.2, 2])[:, None, None]
+    up = np.array([0, slope, 1]) / np.hypot(slope, 1)
+    z, normal = 9 + slope * y, np.broadcast_to(up, (120, 200, 3))
+    for u, v, radius in ((-0.9, 0.3, 0.15), (0.6, -0.4, 0.2), (1.2, 0.6, 0.1)):
+        square = radius ** 2 - (x - u) ** 2 - (y - v) ** 2
+        rise = np.sqrt(np.maximum(square, 0))
+        ball = 9 + slope * v - radius * np.hypot(slope, 1) - rise
+        is_ball = square > 0
+        side = np.stack([x - u, y - v, rise], axis=-1) / radius
+        z, normal = np.where(is_ball, ball, z), np.where(is_ball[..., None], side, normal)
+    channels = {'Z': z[::-1].astype(np.float32), **{
+        f'N.{c}': normal[::-1, :, i].astype(np.float32) for i, c in enumerate('XYZ')}}
+    wanted, said = run(scratch, channels, '--ortho', 4)
+    check('mirrored' not in said, said)
+    mirrored = {f'N.{c}': channels[f'N.{c}'] * np.float32(s) for c, s in zip('XYZ', signs)}
+    ao, said = run(scratch, {**channels, **mirrored}, '--ortho', 4)
+    check_same(ao, wanted, f'signs {signs}')
+
+
+def leaves():
+    """Discs any way round before a wall, without perspective, and whose backs are seen."""
+    random = np.random.default_rng(3)
+    y, x = np.mgrid[:120, :200] / 50 - np.array([1.2, 2])[:, None, None]
+    z, normal, is_back = 5 + 0 * x, np.broadcast_to([0.0, 0, 1], (120, 200, 3)), x > 9
+    for _ in range(600):
+        u, v, depth = random.uniform([-2, -1.2, 4.6], [2, 1.2, 4.95])
+        n = random.normal(size=3)
+        n /= np.linalg.norm(n) * (-1 if n[2] < 0 else 1)
+        back = random.random() < 0.5
+        rise = -((x - u) * n[0] + (y - v) * n[1]) / n[2]
+        square = (x - u) ** 2 + (y - v) ** 2 + rise ** 2
+        is_leaf = (square < 0.08 ** 2) & (depth - rise < z)
+        z = np.where(is_leaf, depth - rise, z)
+        normal = np.where(is_leaf[..., None], n, normal)
+        is_back = np.where(is_leaf, back, is_back)
+    channels = {'Z': z[::-1].astype(np.float32), **{
+        f'N.{c}': normal[::-1, :, i].astype(np.float32) for i, c in enumerate('XYZ')}}
+    return channels, is_back[::-1]
+
+
+@case
+def leaves_seen_from_behind_are_turned(scratch):
+    # Mitsuba writes normals of two-sided surfaces as they are.
+    channels, is_back = leaves()
+    wanted, said = run(scratch, channels, '--ortho', 4)
+    check('away' not in said, said)
+    turned = {n: np.where(is_back, -v, v) if n != 'Z' else v for n, v in channels.items()}
+    ao, said = run(scratch, turned, '--ortho', 4)
+    check_same(ao, wanted, 'some turned')
+    matches(r"\d+ % of the normals 'N' face away from the camera, as those of leaves .* turned",
+            said, 'stderr')
+
+
 @cases([('96 x 64', (96, 64)), ('128 x 72', (128, 72))])
 def few_texels_tell_a_mirror(scratch, _, size):
     # Ceiling and wall fit either hand; of small things alone some sides would face away.

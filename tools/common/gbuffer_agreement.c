@@ -30,13 +30,31 @@ static double linear_depth(const struct gbuffer *g, size_t texel)
     return g->camera.type == CAMERA_ORTHOGRAPHIC ? z : 1.0 / z;
 }
 
-/* In view space, facing the eye. False where depth has an edge or bends. */
-static bool normal_of_depth(const struct gbuffer *g, size_t texel, size_t reach, double n[3])
+/* By how much linear depth changes over so many texels to the right and down. */
+static bool normal_of_slopes(const struct gbuffer *g, size_t texel, size_t reach, double w,
+                             const double slopes[2], double n[3])
+{
+    const double column = (double)(texel % g->width), row = (double)(texel / g->width);
+    const bool is_parallel = g->camera.type == CAMERA_ORTHOGRAPHIC;
+    double x[2], y[2];
+    camera_ray(&g->camera, &g->display_window, &g->data_window, column, row, &x[0], &y[0]);
+    camera_ray(&g->camera, &g->display_window, &g->data_window, column + (double)reach,
+               row + (double)reach, &x[1], &y[1]);
+    const double by_x = slopes[0] / (x[1] - x[0]), by_y = slopes[1] / (y[1] - y[0]);
+    n[0] = is_parallel ? by_x : -by_x;
+    n[1] = is_parallel ? by_y : -by_y;
+    n[2] = is_parallel ? 1.0 : w - x[0] * by_x - y[0] * by_y;
+    return normalize(n);
+}
+
+/* In view space, facing the eye. False where depth has an edge or bends by more than this share of
+ * its slope. */
+static bool normal_of_depth(const struct gbuffer *g, size_t texel, size_t reach, double most_bend,
+                            double n[3])
 {
     const size_t at[5] = {texel, texel - reach, texel + reach, texel - reach * g->width,
                           texel + reach * g->width};
-    const double column = (double)(texel % g->width), row = (double)(texel / g->width);
-    double w[5], x[2], y[2];
+    double w[5];
     for (int i = 0; i < 5; i++) {
         if (!gbuffer_is_foreground(g, at[i]))
             return false;
@@ -44,18 +62,37 @@ static bool normal_of_depth(const struct gbuffer *g, size_t texel, size_t reach,
     }
     const double bend = fabs(w[1] + w[2] - 2 * w[0]) + fabs(w[3] + w[4] - 2 * w[0]);
     const double slope = fabs(w[2] - w[1]) + fabs(w[4] - w[3]);
-    if (!(bend < 0.15 * slope + (g->depth_is_half ? 1e-3 : 1e-6) * w[0]))
+    if (!(bend < most_bend * slope + (g->depth_is_half ? 1e-3 : 1e-6) * w[0]))
         return false;
-    camera_ray(&g->camera, &g->display_window, &g->data_window, column, row, &x[0], &y[0]);
-    camera_ray(&g->camera, &g->display_window, &g->data_window, column + (double)reach,
-               row + (double)reach, &x[1], &y[1]);
-    const double by_x = (w[2] - w[1]) / 2.0 / (x[1] - x[0]);
-    const double by_y = (w[4] - w[3]) / 2.0 / (y[1] - y[0]);
-    const bool is_parallel = g->camera.type == CAMERA_ORTHOGRAPHIC;
-    n[0] = is_parallel ? by_x : -by_x;
-    n[1] = is_parallel ? by_y : -by_y;
-    n[2] = is_parallel ? 1.0 : w[0] - x[0] * by_x - y[0] * by_y;
-    return normalize(n);
+    return normal_of_slopes(g, texel, reach, w[0],
+                            (const double[2]){(w[2] - w[1]) / 2.0, (w[4] - w[3]) / 2.0}, n);
+}
+
+/* Nearer to 0: the other may be across an edge. */
+static double smaller(double a, double b)
+{
+    return fabs(a) < fabs(b) ? a : b;
+}
+
+bool gbuffer_rough_normal(const struct gbuffer *g, size_t texel, double n[3])
+{
+    const size_t x = texel % g->width, y = texel / g->width;
+    double slopes[2];
+    if (x == 0 || x + 1 == g->width || y == 0 || y + 1 == g->height ||
+        !gbuffer_is_foreground(g, texel))
+        return false;
+    const double w = linear_depth(g, texel);
+    for (int k = 0; k < 2; k++) {
+        const size_t step = k ? g->width : 1;
+        const double before =
+            gbuffer_is_foreground(g, texel - step) ? w - linear_depth(g, texel - step) : INFINITY;
+        const double after =
+            gbuffer_is_foreground(g, texel + step) ? linear_depth(g, texel + step) - w : INFINITY;
+        slopes[k] = smaller(before, after);
+        if (!isfinite(slopes[k]))
+            return false;
+    }
+    return normal_of_slopes(g, texel, 1, w, slopes, n);
 }
 
 /* Normals of large flat things are many, and all say the same. */
@@ -78,7 +115,8 @@ static void weigh(struct normal_pairs *pairs)
         pairs->pair[i].weight = 1.0 / sqrt((double)counts[cell_of(pairs->pair[i].stored)]);
 }
 
-bool gbuffer_pair_normals(const struct gbuffer *g, size_t most, struct normal_pairs *pairs)
+static bool pair_normals(const struct gbuffer *g, size_t most, double most_bend,
+                         struct normal_pairs *pairs)
 {
     /* Steps of half values are slopes where differences are small. */
     const size_t reach = g->depth_is_half ? 4 : 1, step = gbuffer_texels(g) / most + 1;
@@ -97,11 +135,21 @@ bool gbuffer_pair_normals(const struct gbuffer *g, size_t most, struct normal_pa
             pair->stored[c] = (double)n[c];
         const double *s = pair->stored;
         if (s[0] * s[0] + s[1] * s[1] + s[2] * s[2] > 0.25 && normalize(pair->stored) &&
-            normal_of_depth(g, i, reach, pair->depth))
+            normal_of_depth(g, i, reach, most_bend, pair->depth))
             pairs->count++;
     }
     weigh(pairs);
     return true;
+}
+
+bool gbuffer_pair_normals(const struct gbuffer *g, size_t most, struct normal_pairs *pairs)
+{
+    return pair_normals(g, most, 0.15, pairs);
+}
+
+bool gbuffer_pair_round_normals(const struct gbuffer *g, size_t most, struct normal_pairs *pairs)
+{
+    return pair_normals(g, most, 0.5, pairs);
 }
 
 void gbuffer_free_pairs(struct normal_pairs *pairs)

@@ -260,6 +260,11 @@ enum { GBUFFER_MOST_PAIRS = 1 << 16 };
 /* At most so many, spread evenly. Needs the depth as prepared, and decoded normals. False if memory
  * ran out. */
 bool gbuffer_pair_normals(const struct gbuffer *g, size_t most, struct normal_pairs *pairs);
+/* The same, and of what is round, which is less sure. */
+bool gbuffer_pair_round_normals(const struct gbuffer *g, size_t most, struct normal_pairs *pairs);
+/* Of depth as prepared, from the neighbours that are most alike, in view space; nearly right on
+ * narrow things too. False where there are none. */
+bool gbuffer_rough_normal(const struct gbuffer *g, size_t texel, double n[3]);
 void gbuffer_free_pairs(struct normal_pairs *pairs);
 /* Of stored normals, times the matrix (of columns), with those of depth. 0 without pairs. */
 struct agreement {
@@ -289,6 +294,8 @@ bool gbuffer_ask_mirrors(struct gbuffer *g, const struct normal_pairs *pairs, co
                          struct report *report);
 bool gbuffer_ask_whether_inside_out(struct gbuffer *g, const struct normal_pairs *pairs,
                                     const char *path, struct report *report);
+/* Single normals that face away, where depth faces the other way; and says so if they are many. */
+bool gbuffer_turn_to_eye(struct gbuffer *g, const char *path, struct report *report);
 
 /* Normals are those of depth from now on. */
 void gbuffer_drop_normals(struct gbuffer *g);

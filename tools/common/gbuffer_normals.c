@@ -228,6 +228,7 @@ static void check_values(struct gbuffer *g, bool alike, size_t lost_signs, const
 static bool check_normals(struct gbuffer *g, enum normal_space wanted, size_t pairs,
                           const char *path, struct report *report, struct tool_error *err)
 {
+    static const double half = 0.5;
     const char *label = g->roles.kind[ROLE_NORMAL].label;
     struct normal_facing facing;
     if (g->normal_space == NORMAL_SPACE_AUTO) {
@@ -262,6 +263,8 @@ static bool check_normals(struct gbuffer *g, enum normal_space wanted, size_t pa
                     path, label, g->normal_agreement * 100.0,
                     g->camera.source[0] ? g->camera.source : "assumed");
     }
+    if (pairs >= FEW_PAIRS && g->normal_agreement > half && !gbuffer_turn_to_eye(g, path, report))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     if (!gbuffer_measure_facing(g, g->view.normal_to_view, &facing))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     if (facing.share < 0.6)
