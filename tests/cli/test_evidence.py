@@ -264,7 +264,8 @@ def what_nothing_tells_is_said(scratch):
     check('nothing shows' not in said, said)
 
 
-@cases([('-1e30', -1e30), ('-inf', -np.inf), ('1e10', 1e10), ('0', 0)])
+@cases([('-1e30', -1e30), ('-inf', -np.inf), ('1e10', 1e10), ('0', 0), ('65504', 65504),
+        ('-65504', -65504), ('far plane', 40)])
 def negative_z_is_turned(scratch, _, background):
     scene = Scene()
     wanted, _ = clean(scratch, scene)
@@ -298,6 +299,15 @@ def normalised_depth_needs_its_range(scratch, _, near, far, inverted):
     # The record holds the range.
     scratch.render('in.exr', '-o', 'again.exr', '--like', 'ao.exr')
     check((read_ao(scratch.path('again.exr')) == ao).all(), '--like gives other AO')
+
+
+@case
+def another_depth_is_named_where_one_is_refused(scratch):
+    scene = Scene()
+    grey = np.where(scene.sky, 1, (scene.z - 1.5) / 7.5).astype(np.float32)
+    write_exr(scratch.path('in.exr'), {'depth.R': grey, 'Z': scene.depth()})
+    scratch.fails(CHANNELS, "in.exr: depth 'depth.R' is from .* normalised", 'in.exr', '-o',
+                  'x.exr', '--fov', FOV, hint="--depth 'Z', which is called depth too")
 
 
 @case

@@ -107,6 +107,22 @@ def cards(width=320, height=180):
                                   for i, c in enumerate('XYZ')}
 
 
+@cases([('with normals', True), ('without', False)])
+def rubbish_where_alpha_is_0_is_not_filtered(scratch, _, has_normals):
+    scene = Scene(400, 225)
+    alpha = np.where(scene.sky, 0, 1).astype(np.float32)
+    # Every fifth texel happens to lie between two runs of its row.
+    runs = np.random.default_rng(2).uniform(0.1, 90, (225, 81)).repeat(5, axis=1)
+    noise, place = runs[:, 3:403], np.arange(400) % 5
+    noise = np.where(place == 2, (np.roll(noise, 1, 1) + np.roll(noise, -1, 1)) / 2, noise)
+    depth = np.where(scene.sky, noise, scene.z).astype(np.float32)
+    channels = {'Z': depth, **{c: alpha for c in 'RGBA'},
+                **(scene.normals() if has_normals else {})}
+    write_exr(scratch.path('in.exr'), channels)
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    check('filtered' not in said, said)
+
+
 @case
 def depth_of_a_corridor_is_not_filtered(scratch):
     for fov in (100, 70, 50):

@@ -85,10 +85,11 @@ def what_may_be_normals_is_named(scratch, _, names, wanted):
 
 
 @cases([('world', 'P.world', 'N.world'), ('camera', 'P.camera', 'N.camera'),
-        ('any layer', 'where', 'N'), ('in a layer', 'a.where', 'N')])
+        ('any layer', 'where', 'N'), ('in a layer', 'a.where', 'N'),
+        ('Maya, world', 'pointWorld', 'N.world'), ('Maya, camera', 'pointCamera', 'N.camera')])
 def layers_of_positions_are_positions(scratch, _, layer, normal):
     scene = Scene()
-    space = 'world' if 'world' in layer else 'camera'
+    space = 'world' if 'world' in layer.lower() else 'camera'
     wanted, _ = clean(scratch, scene)
     finite = np.where(scene.sky, 0, scene.z)
     points = np.stack([scene.x * finite, scene.y * finite, -finite], axis=-1)

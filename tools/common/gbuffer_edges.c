@@ -6,6 +6,7 @@
 #include "gbuffer_internal.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* A ramp is looked for so far to either side of where it is steepest. */
 enum { FEW_EDGES = 20, REACH = 24, SHORTEST_RAMP = 4, LONGEST_RAMP = 64 };
@@ -27,6 +28,22 @@ static bool is_third(const struct gbuffer *g, size_t left, size_t middle, size_t
     const float *m = g->normals + middle * 4;
     return cosine(m, m) > 0.9 && cosine(g->normals + left * 4, m) < 0.9 &&
            cosine(g->normals + right * 4, m) < 0.9;
+}
+
+/* Whatever was left in memory where nothing was drawn. Where alpha is 0 most renderers write one
+ * value, and shadow catchers are surfaces. */
+static bool has_rubbish(const struct gbuffer *g)
+{
+    static const double calm = 0.02;
+    size_t pairs = 0, wild = 0;
+    for (size_t i = 1; g->alpha && i < gbuffer_texels(g); i++) {
+        if (g->alpha[i] > 0 || g->alpha[i - 1] > 0 || i % g->width == 0)
+            continue;
+        const double a = (double)g->depth[i - 1], b = (double)g->depth[i];
+        pairs++;
+        wild += a < b || a > b ? !(fabs(a - b) < calm * fmin(fabs(a), fabs(b))) : 0;
+    }
+    return 4 * wild > pairs;
 }
 
 /* Of five texels in a row, with something flat on either side of the one in the middle, where that
@@ -172,7 +189,7 @@ static double share_of_ramps(const struct gbuffer *g, size_t axis, size_t sharp)
     return share_of(&ramps, (double)ramps.sharp);
 }
 
-double gbuffer_filtered_share(const struct gbuffer *g)
+static double filtered_share(const struct gbuffer *g)
 {
     struct edges narrow = {0}, once = {0}, wide[2] = {{0}};
     const size_t step[2] = {1, g->width}, size[2] = {g->width, g->height};
@@ -192,5 +209,20 @@ double gbuffer_filtered_share(const struct gbuffer *g)
         share = fmax(share, share_of(&wide[axis], (double)wide[axis].sharp));
         share = fmax(share, share_of_ramps(g, step[axis], wide[axis].sharp));
     }
+    return share;
+}
+
+double gbuffer_filtered_share(const struct gbuffer *g)
+{
+    struct gbuffer other = *g;
+    if (!has_rubbish(g))
+        return filtered_share(g);
+    other.depth = malloc(gbuffer_texels(g) * sizeof *other.depth);
+    if (!other.depth)
+        return 0;
+    for (size_t i = 0; i < gbuffer_texels(g); i++)
+        other.depth[i] = g->alpha[i] > 0 ? g->depth[i] : NAN;
+    const double share = filtered_share(&other);
+    free(other.depth);
     return share;
 }

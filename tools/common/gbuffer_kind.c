@@ -11,13 +11,15 @@
 /* Of the finite values. */
 struct value_facts {
     size_t count, negative, zero, one;
-    double low, high, below_one; /* the largest below 1 */
-    bool is_endless;             /* with infinities, or with numbers that stand for them */
+    double low, high, below_one;        /* the largest below 1 */
+    double high_negative, low_positive; /* of either sign, those nearest to 0 */
+    bool is_endless;                    /* with infinities, or with numbers that stand for them */
 };
 
 static struct value_facts look_at_values(const struct gbuffer *g)
 {
-    struct value_facts f = {.low = INFINITY, .high = -INFINITY};
+    struct value_facts f = {
+        .low = INFINITY, .high = -INFINITY, .high_negative = -INFINITY, .low_positive = INFINITY};
     for (size_t i = 0; i < gbuffer_texels(g); i++) {
         const double d = (double)g->depth[i];
         const bool is_zero = !(d < 0) && !(d > 0) && !isnan(d);
@@ -31,15 +33,21 @@ static struct value_facts look_at_values(const struct gbuffer *g)
         f.negative += d < 0;
         f.low = fmin(f.low, d);
         f.high = fmax(f.high, d);
+        f.high_negative = d < 0 ? fmax(f.high_negative, d) : f.high_negative;
+        f.low_positive = d > 0 ? fmin(f.low_positive, d) : f.low_positive;
         f.below_one = d < 1 ? fmax(f.below_one, d) : f.below_one;
     }
     return f;
 }
 
-/* View space looks along -z: its z is negative wherever there is something. */
+/* View space looks along -z: its z is negative wherever there is something. Where there is nothing
+ * some programs write one number all the same, the largest half or the far plane. */
 static bool is_view_z(const struct value_facts *f)
 {
-    return f->negative > 0 && f->negative + f->zero == f->count;
+    static const double same_value = 0.99;
+    const bool is_varied = f->low < f->high_negative;
+    const bool is_sky = f->low_positive >= f->high * same_value && f->high >= -f->low;
+    return f->negative > 0 && (f->negative + f->zero == f->count || (is_varied && is_sky));
 }
 
 static bool is_constant(const struct value_facts *f)
@@ -118,13 +126,20 @@ static void take_from_nuke(struct gbuffer *g, const struct value_facts *f, enum 
 
 /* --- Deciding --- */
 
-static bool fail_unknown(const struct gbuffer *g, const struct value_facts *f, enum planes_say say,
-                         const char *path, struct tool_error *err)
+static bool fail_unknown(const struct gbuffer *g, const struct gbuffer_options *options,
+                         const struct value_facts *f, enum planes_say say, const char *path,
+                         struct tool_error *err)
 {
     const char *label = g->roles.kind[ROLE_DEPTH].label;
+    struct role other;
+    const bool has_other = roles_other_depth(&options->roles, &g->roles, &other);
+    const char *before = has_other ? "; or --depth '" : "", *name = has_other ? other.label : "",
+               *after = has_other ? "', which is called depth too" : "";
     if (say == SAY_LINEAR) {
-        fail_hint(err, "--depth-type device with --near and --far (near > far if it is reversed), "
-                       "or --depth-type inverse");
+        fail_hint(err,
+                  "--depth-type device with --near and --far (near > far if it is reversed), "
+                  "or --depth-type inverse%s%s%s",
+                  before, name, after);
         return fail(err, EXIT_CHANNELS,
                     "%s: depth '%s' is from %.4g to %.4g and no distance: a depth buffer or 1/z",
                     path, label, f->low, f->high);
@@ -132,9 +147,9 @@ static bool fail_unknown(const struct gbuffer *g, const struct value_facts *f, e
     const struct role *position = &g->roles.kind[ROLE_POSITION];
     fail_hint(err,
               "--depth-type normalized --depth-range NEAR,FAR[,inverted]; device with --near and "
-              "--far; inverse; or planar or radial if these are scene units%s%s%s",
+              "--far; inverse; or planar or radial if these are scene units%s%s%s%s%s%s",
               position->found ? "; or --depth '" : "", position->found ? position->label : "",
-              position->found ? "', which are positions" : "");
+              position->found ? "', which are positions" : "", before, name, after);
     return fail(err, EXIT_CHANNELS,
                 "%s: depth '%s' is from %.4g to %.4g: normalised%s, not in scene units?", path,
                 label, f->low, f->high, say == SAY_OFFSET ? " by its looks" : "");
@@ -214,7 +229,8 @@ static void warn_small(const struct gbuffer *g, const struct value_facts *f, con
 /* Normals tell what depth measures but not in which unit: parts of a far plane and buffers of
  * reversed depth have the same shape as distances and 1/z, and so has k/z. */
 static bool check_scale(const struct gbuffer *g, const struct exr_info *info,
-                        const struct value_facts *f, struct report *report, struct tool_error *err)
+                        const struct gbuffer_options *options, const struct value_facts *f,
+                        struct report *report, struct tool_error *err)
 {
     const struct role *role = &g->roles.kind[ROLE_DEPTH];
     const bool is_inverse = g->depth_type == DEPTH_INVERSE;
@@ -231,7 +247,7 @@ static bool check_scale(const struct gbuffer *g, const struct exr_info *info,
                     "differs in scale alone (--depth-type device with --near and --far)",
                     info->path, role->label, f->low, f->high);
     else if (is_clamped(f))
-        return fail_unknown(g, f, SAY_NOTHING, info->path, err);
+        return fail_unknown(g, options, f, SAY_NOTHING, info->path, err);
     else
         warn_small(g, f, info->path, report);
     return true;
@@ -367,7 +383,7 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
     }
     if (g->depth_source == DEPTH_BY_NORMALS) {
         warn_about_whole(g, &seen, report);
-        return check_scale(g, info, &seen, report, err);
+        return check_scale(g, info, options, &seen, report, err);
     }
     if (!gbuffer_read_planes(g, &g->planes))
         return fail(err, EXIT_MEMORY, "%s: out of memory", info->path);
@@ -381,7 +397,7 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
     }
     const bool is_seen = (say == SAY_PLANAR || say == SAY_RADIAL) && !is_clamped(&seen);
     if (is_within_one(&seen) && !is_seen && say != SAY_INVERSE && !is_constant(&seen))
-        return fail_unknown(g, &seen, say, info->path, err);
+        return fail_unknown(g, options, &seen, say, info->path, err);
     if (is_within_one(&seen) && is_seen)
         warn_small(g, &seen, info->path, report);
     take_seen(g, &seen, say, info->path, report);

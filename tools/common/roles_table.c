@@ -134,13 +134,15 @@ const struct role_row role_table[] = {
 
     {.kind = ROLE_POSITION,
      .layers = "P|Pworld|__Pworld|position|pos|worldPosition|posW|VRayWorldPosition|"
-               "CGeometry_WorldPosition|PositionWS|hitP",
+               "CGeometry_WorldPosition|PositionWS|hitP|pointWorld",
      .sets = VECTOR_COMPONENTS},
     /* 3Delight; that of the world tells the rotation of the camera */
     {.kind = ROLE_POSITION, .outer = "P|position|pos", .layers = "world|ws|worldspace",
      .sets = VECTOR_COMPONENTS},
     {.kind = ROLE_POSITION, .outer = "P|position|pos", .layers = "camera|cam|view|cameraspace",
      .sets = VECTOR_COMPONENTS},
+    /* Maya */
+    {.kind = ROLE_POSITION, .layers = "pointCamera|pointCam", .sets = VECTOR_COMPONENTS},
     /* Unreal, by a material; worldPositions of V-Ray */
     {.kind = ROLE_POSITION, .layers = "~worldpos", .sets = VECTOR_COMPONENTS},
 
