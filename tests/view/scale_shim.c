@@ -2,7 +2,8 @@
  *
  * Preloaded, it stands between the viewer and GLFW: the content scale is what the file VKAO_SCALE
  * says, and when that changes, the window is told, as when it moves to another monitor. An X server
- * in memory has monitors of one scale only. */
+ * in memory has monitors of one scale only. If VKAO_SIZE_LAGS is set, the window's size is one of a
+ * moment ago in one call of four, as that of a window that grows while its sizes are asked for. */
 #include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -56,4 +57,14 @@ GLFWAPI void glfwWaitEvents(void)
         last = now;
         told(window, now, now);
     }
+}
+
+GLFWAPI void glfwGetWindowSize(GLFWwindow *handle, int *width, int *height)
+{
+    static unsigned calls;
+    void (*get)(GLFWwindow *, int *, int *);
+    *(void **)&get = dlsym(RTLD_NEXT, "glfwGetWindowSize");
+    get(handle, width, height);
+    if (getenv("VKAO_SIZE_LAGS") && ++calls % 4 == 0)
+        *width = *height = 1;
 }

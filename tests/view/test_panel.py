@@ -14,11 +14,12 @@ from view import BACKGROUND, PANEL_WIDTH, READ, opened, preview, same_picture
 SHIM = os.path.abspath(sys.argv.pop(3))
 
 
-def on_monitor(scratch, scale, *arguments, **more):
+def on_monitor(scratch, scale, *arguments, lags=False, **more):
     if is_sanitized(view.VIEWER):
         skip('sanitizers want to be loaded first')
     scratch.write('scale', str(scale))
-    env = {'LD_PRELOAD': SHIM, 'VKAO_SCALE': scratch.path('scale')}
+    env = {'LD_PRELOAD': SHIM, 'VKAO_SCALE': scratch.path('scale'),
+           **({'VKAO_SIZE_LAGS': '1'} if lags else {})}
     return opened(scratch, *arguments, env=env, **more)
 
 
@@ -52,6 +53,14 @@ def window_on_a_dense_monitor_is_as_large_as_its_panel(scratch):
 def panel_grows_in_a_large_window(scratch):
     with opened(scratch, size=(3200, 2000)) as viewer:
         viewer.wait_title('- 1500 % -')  # (3200 - 660) / 160
+        viewer.finish()
+
+
+@case
+def window_that_grows_while_it_is_asked_for_its_sizes_survives(scratch):
+    with on_monitor(scratch, 1, lags=True) as viewer:
+        viewer.key('2', '1', 'z')
+        viewer.wait_title('- 100 % -')
         viewer.finish()
 
 

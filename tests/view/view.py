@@ -133,10 +133,13 @@ class Viewer:
                 self.move(5, 5)  # over the window, so that every case probes
                 return found[-1]
             if self.process.poll() is not None:
-                out, err = self.process.communicate()
-                raise Failed(f'{" ".join(self.command)}: exit {self.process.returncode}\n{err}')
+                raise self.ended()
             time.sleep(0.05)
         raise Failed('no window appeared')
+
+    def ended(self):
+        _, err = self.process.communicate()
+        return Failed(f'{" ".join(self.command)}: exit {self.process.returncode}\n{err}')
 
     def title(self):
         return self.display.xdotool('getwindowname', self.window)
@@ -148,7 +151,7 @@ class Viewer:
             if re.search(pattern, self.title()):
                 return
             if self.process.poll() is not None:
-                break
+                raise self.ended()
             time.sleep(0.05)
         raise Failed(f'the title is {self.title()!r}, want /{pattern}/')
 

@@ -172,13 +172,23 @@ double widgets_scale(double scale)
     return font_sizes[nearest_font(scale)] / font_sizes[0];
 }
 
+/* Texels of the framebuffer per coordinate. The sizes of window and framebuffer are asked for one
+ * after the other: while a window is resized they differ by any factor, and of a style scaled by
+ * that Dear ImGui aborts. No monitor has more. */
+static float density()
+{
+    static const float most = 8.0f;
+    const float seen = ImGui::GetIO().DisplayFramebufferScale.y;
+    return seen >= 1.0f / most && seen <= most ? seen : 1.0f;
+}
+
 void widgets_begin_frame(double scale)
 {
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGuiIO &io = ImGui::GetIO();
     const int font = nearest_font(scale);
-    const float dense = io.DisplayFramebufferScale.y > 0.0f ? io.DisplayFramebufferScale.y : 1.0f;
+    const float dense = density();
     const float wanted = font_sizes[font] / font_sizes[0] / dense;
     io.FontDefault = fonts[font];
     io.FontGlobalScale = 1.0f / dense;
