@@ -115,6 +115,10 @@ static void weigh(struct normal_pairs *pairs)
         pairs->pair[i].weight = 1.0 / sqrt((double)counts[cell_of(pairs->pair[i].stored)]);
 }
 
+/* Shares of the slope by which depth bends from one texel to the next: of what is flat, or nearly,
+ * and of what is round but for its rim. */
+static const double flat_bend = 0.15, round_bend = 0.5;
+
 static bool pair_normals(const struct gbuffer *g, size_t most, double most_bend,
                          struct normal_pairs *pairs)
 {
@@ -144,12 +148,12 @@ static bool pair_normals(const struct gbuffer *g, size_t most, double most_bend,
 
 bool gbuffer_pair_normals(const struct gbuffer *g, size_t most, struct normal_pairs *pairs)
 {
-    return pair_normals(g, most, 0.15, pairs);
+    return pair_normals(g, most, flat_bend, pairs);
 }
 
 bool gbuffer_pair_round_normals(const struct gbuffer *g, size_t most, struct normal_pairs *pairs)
 {
-    return pair_normals(g, most, 0.5, pairs);
+    return pair_normals(g, most, round_bend, pairs);
 }
 
 void gbuffer_free_pairs(struct normal_pairs *pairs)

@@ -198,7 +198,9 @@ static double cosine_of(const struct normal_pair *p, const float m[9])
 
 /* How many more places the mirror turns as depth has them, and not merely parallel to that; 0 if
  * that is no clear answer. Most of an image may be a floor that any mirror leaves as it is: then
- * the few other places tell. Of leaves that point anywhere as many are lost. */
+ * the few other places tell. Of leaves that point anywhere as many are lost. Chosen by hand: of 129
+ * right renders of Blender, Mitsuba and others at most 15 places are gained, and a thousand and
+ * more lost; of 60 bumpy floors none is gained. */
 static size_t clear_gain(const struct normal_pairs *pairs, const float told[9],
                          const float mirrored[9])
 {
@@ -235,14 +237,15 @@ static bool find_best_mirror(const struct gbuffer *g, const struct normal_pairs 
         struct mirror other = {.which = which};
         if (!find_mirror(g, round_pairs, which, other.m))
             continue;
-        if (!gbuffer_measure_facing(g, other.m, &other.facing))
-            return false;
         const double share = gbuffer_agreement(pairs, other.m).share;
         const size_t gain = share > half ? clear_gain(round_pairs, told, other.m) : 0;
-        const bool faces = agrees && share >= g->normal_agreement - less &&
-                           all_face(as_told, &other.facing) &&
-                           other.facing.share > best->facing.share;
-        if (gain > most || (most == 0 && faces)) {
+        const bool may_face = most == 0 && agrees && share >= g->normal_agreement - less;
+        if (!(gain > most || may_face))
+            continue;
+        if (!gbuffer_measure_facing(g, other.m, &other.facing))
+            return false;
+        if (gain > most ||
+            (all_face(as_told, &other.facing) && other.facing.share > best->facing.share)) {
             most = gain;
             *best = other;
         }
