@@ -32,6 +32,19 @@ ImVec2 place(float x, float y)
     return ImVec2(scale.x > 0.0f ? x / scale.x : x, scale.y > 0.0f ? y / scale.y : y);
 }
 
+/* Texels of the framebuffer per coordinate. The sizes of window and framebuffer are asked for one
+ * after the other: while a window is resized they differ by any factor for a frame, and of a style
+ * scaled by that Dear ImGui aborts. What no monitor has is not believed. */
+float density()
+{
+    static const float most = 8.0f;
+    static float last = 1.0f;
+    const float seen = ImGui::GetIO().DisplayFramebufferScale.y;
+    if (seen >= 1.0f / most && seen <= most)
+        last = seen;
+    return last;
+}
+
 int nearest_font(double scale)
 {
     int nearest = 0;
@@ -170,16 +183,6 @@ void widgets_destroy(void)
 double widgets_scale(double scale)
 {
     return font_sizes[nearest_font(scale)] / font_sizes[0];
-}
-
-/* Texels of the framebuffer per coordinate. The sizes of window and framebuffer are asked for one
- * after the other: while a window is resized they differ by any factor, and of a style scaled by
- * that Dear ImGui aborts. No monitor has more. */
-static float density()
-{
-    static const float most = 8.0f;
-    const float seen = ImGui::GetIO().DisplayFramebufferScale.y;
-    return seen >= 1.0f / most && seen <= most ? seen : 1.0f;
 }
 
 void widgets_begin_frame(double scale)
