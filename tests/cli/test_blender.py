@@ -10,7 +10,7 @@ import sys
 
 import numpy as np
 
-from cli import case, cases, check, equal, main, matches, skip
+from cli import cases, check, equal, main, matches, skip
 
 ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), '..', '..')
 

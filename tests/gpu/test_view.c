@@ -181,8 +181,8 @@ static const struct convention conventions[] = {
     {"reversed in [1,.6]", true, 100.0, 1.0, VKAO_DEPTH_PROJECTED, D32, 1.0, 0.6},
     {"reversed infinite in [.5,1]", true, (double)INFINITY, -1.0, VKAO_DEPTH_PROJECTED, D32, 0.5,
      1.0},
-    {"reversed infinite in [0,.6]", true, (double)INFINITY, -1.0, VKAO_DEPTH_PROJECTED, D32, 0.0,
-     0.6},
+    {"reversed infinite in [0,.3]", true, (double)INFINITY, -1.0, VKAO_DEPTH_PROJECTED, D32, 0.0,
+     0.3},
     {"view z, matrix in [.6,1]", true, (double)INFINITY, -1.0, VKAO_DEPTH_VIEW_Z,
      VK_FORMAT_R32_SFLOAT, 0.6, 1.0},
 };
@@ -229,10 +229,13 @@ static void check_conventions(const struct lens *lens)
             render(&p, lens, &conventions[c], &methods[i % METHODS], given_normals);
             snprintf(what, sizeof what, "%s %s, %s", methods[i % METHODS].name,
                      given_normals ? "normals" : "depth only", conventions[c].name);
-            /* A part of [0,1] has fewer steps. */
-            const bool is_part = conventions[c].depth_min != conventions[c].depth_max;
+            /* Depth 0 or 1 is behind the eye of a parallel camera then, so that the library moves
+             * the eye back: the literal form takes points in that were behind it. */
+            const bool sees_more = lens->orthographic &&
+                                   conventions[c].depth_min != conventions[c].depth_max &&
+                                   strcmp(methods[i % METHODS].name, "literal") == 0;
             check_close(what, p.values[SLOT_AO], first.values[SLOT_AO], picture_texels(&p), 1e-4,
-                        is_part ? 5e-4 : 1e-4,
+                        sees_more ? 5e-4 : 1e-4,
                         0.0626); /* two sectors of 32: a sample on another texel */
             picture_free(&p);
         }

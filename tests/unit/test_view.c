@@ -339,8 +339,10 @@ static void depth_error_covers_one_step_of_the_format(void **state)
     (void)state;
     static const struct {
         VkFormat format;
-        double levels;
-    } formats[] = {{VK_FORMAT_D16_UNORM, 65535.0}, {VK_FORMAT_X8_D24_UNORM_PACK32, 16777215.0}};
+        double levels; /* 0: of floats */
+    } formats[] = {{VK_FORMAT_D16_UNORM, 65535.0},
+                   {VK_FORMAT_X8_D24_UNORM_PACK32, 16777215.0},
+                   {VK_FORMAT_D32_SFLOAT, 0.0}};
     for (size_t f = 0; f < COUNT(formats); ++f) {
         for (unsigned i = 0; i < CAMERAS; ++i) {
             const struct camera c = camera_of(i);
@@ -354,8 +356,10 @@ static void depth_error_covers_one_step_of_the_format(void **state)
                 double a, b;
                 depth_terms(&c, &a, &b);
                 double depth = c.orthographic ? a + b * z : a + b / z;
-                double moved =
-                    linearize(&k, depth + 0.5 / formats[f].levels) - linearize(&k, depth);
+                double step = formats[f].levels > 0.0
+                                  ? 1.0 / formats[f].levels
+                                  : nextafterf((float)depth, 2.0f) - (float)depth;
+                double moved = linearize(&k, depth + 0.5 * step) - linearize(&k, depth);
                 double bound = z * (k.depth_error[0] + k.depth_error[1] * z);
                 /* An orthographic view states one bound, relative to the far plane. */
                 if (c.orthographic)
