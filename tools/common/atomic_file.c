@@ -248,7 +248,7 @@ bool atomic_file_check(const char *path, struct tool_error *err)
 bool atomic_file_open(struct atomic_file *file, const char *path, bool replace,
                       struct tool_error *err)
 {
-    mode_t mode;
+    mode_t mode = 0;
     if (!settle_target(file, path, replace, &mode, err) || !create_temp(file, err))
         return false;
     if (mode)

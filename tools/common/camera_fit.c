@@ -92,8 +92,7 @@ static void search_turns(const struct fit_samples *s, const struct fit_solution 
         const struct vec3 y = scale(axes[second], turn & 4 ? -1.0 : 1.0);
         struct fit_solution at = *from;
         at.rotation = (struct mat3){x, y, cross(x, y)};
-        for (size_t i = 0; i < sizeof sigmas / sizeof *sigmas; i++)
-            at.rotation = fit_improve_rotation(s, &at, sigmas[i], 2);
+        at.rotation = fit_improve_rotation(s, &at, sigmas, sizeof sigmas / sizeof *sigmas);
         at.cost = fit_cost(s, &at, 0.1);
         if (at.cost < best.cost)
             best = at;
@@ -209,9 +208,10 @@ static bool search(const struct fit_samples *s, const struct fit_input *input, s
 static double robust_scale(const struct fit_samples *s, const struct fit_solution *at)
 {
     enum { BINS = 512 };
-    double histogram[BINS] = {0}, sum = 0, cosine;
+    const struct fit_residual *residuals = fit_find_residuals(s, at);
+    double histogram[BINS] = {0}, sum = 0;
     for (size_t i = 0; i < s->count; i++) {
-        const double e = sqrt(fit_error(s, &s->list[i], at, &cosine));
+        const double e = sqrt(residuals[i].e2);
         const int bin = (int)(e * 2.0 / most_sigma * BINS); /* nothing beyond matters */
         histogram[bin < BINS ? bin : BINS - 1] += s->list[i].weight;
     }
@@ -370,12 +370,11 @@ static void settle_offset(const struct fit_samples *s, const struct fit_input *i
  * mirrored world must be in the data. */
 static void settle_sign(const struct fit_samples *s, struct fit_solution *best)
 {
-    double balance = 0, values[3], cosine;
+    const struct fit_residual *residuals = fit_find_residuals(s, best);
+    double balance = 0, values[3];
     struct vec3 weakest;
-    for (size_t i = 0; i < s->count; i++) {
-        fit_error(s, &s->list[i], best, &cosine);
-        balance += cosine < 0 ? -s->list[i].weight : s->list[i].weight;
-    }
+    for (size_t i = 0; i < s->count; i++)
+        balance += residuals[i].cosine < 0 ? -s->list[i].weight : s->list[i].weight;
     balance /= s->total_weight;
     struct mat3 *r = &best->rotation;
     if (balance < -0.5 || (fabs(balance) <= 0.5 && dot(cross(r->x, r->y), r->z) < 0))

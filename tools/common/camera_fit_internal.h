@@ -28,9 +28,25 @@ struct fit_sample {
     uint8_t tile, cell;
 };
 
+/* The same, so many samples at a time, by columns; what there are fewer at the end is made up. */
+enum { FIT_CHUNK = 32 };
+struct fit_columns {
+    double x[FIT_CHUNK], y[FIT_CHUNK], d[5][FIT_CHUNK];
+};
+
+struct fit_residual {
+    double e2;     /* the square of the sine between model and stored normal, either way round */
+    double cosine; /* below 0: the other way round */
+};
+
 struct fit_samples {
     struct fit_sample *list;
+    struct fit_columns *columns;
     size_t count;
+    /* Scratch, of the solution that was last asked about: its normals, and rows of those with one
+     * of FIT_SHAPE parameters changed. */
+    struct vec3 *normals;
+    struct fit_residual *residuals;
     double step_x, step_y; /* baseline, in the unit of x and y */
     double median;         /* of depth: the unit of c */
     double least, most;    /* of depth */
@@ -79,16 +95,19 @@ bool fit_model_is_ortho(enum fit_model model);
 /* The one of which this has a near plane more, or itself. */
 enum fit_model fit_model_without_offset(enum fit_model model);
 const char *fit_model_name(enum fit_model model);
-/* Scene units across one unit of the image plane at a sample. */
-double fit_model_scale(const struct fit_samples *s, const struct fit_sample *sample,
-                       enum fit_model model, const double p[FIT_SHAPE]);
+/* Unit normals of all samples by the depth alone. */
+void fit_find_normals(const struct fit_samples *s, const struct fit_solution *at,
+                      struct vec3 *normals);
+/* Scene units across one unit of the image plane at all samples. */
+void fit_find_scales(const struct fit_samples *s, const struct fit_solution *at, double *scales);
 /* ln k may lie between these. */
 void fit_model_range(const struct fit_samples *s, enum fit_model model, double *low, double *high);
 
 /* The rotation that turns the stored normals into the model's best, from nothing. */
 struct mat3 fit_start_rotation(const struct fit_samples *s, const struct fit_solution *at);
+/* From the one that it has, at one robust scale after another. */
 struct mat3 fit_improve_rotation(const struct fit_samples *s, const struct fit_solution *at,
-                                 double sigma, int rounds);
+                                 const double *sigmas, size_t count);
 /* Singular values of the correlation of normals, shares of 1: whether the rotation is fixed by
  * them; and the direction that is fixed least. */
 void fit_directions(const struct fit_samples *s, const struct fit_solution *at, double values[3],
@@ -99,10 +118,9 @@ bool fit_has_directions(const struct fit_samples *s, const struct fit_solution *
                         struct vec3 *weakest);
 
 double fit_cost(const struct fit_samples *s, const struct fit_solution *at, double sigma);
-/* The square of the sine between model and stored normal, whichever way that points, and the
- * cosine. */
-double fit_error(const struct fit_samples *s, const struct fit_sample *sample,
-                 const struct fit_solution *at, double *cosine);
+/* Of all samples, and their normals with them: valid until another solution is asked about. */
+const struct fit_residual *fit_find_residuals(const struct fit_samples *s,
+                                              const struct fit_solution *at);
 /* Gauss-Newton at one robust scale; fills cost and p alone. */
 void fit_descend(const struct fit_samples *s, struct fit_solution *at, double sigma, int rounds);
 /* By how much the normals turn with ln k, as a sine, where the rotation and all that is free follow

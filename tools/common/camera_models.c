@@ -1,13 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * Models of depth held against the stored normals. The residual is e = n x q, n by the depth, q the
- * stored normal turned into view space, either way round: the sine of the angle between them. Its
- * weight is that of Geman and McClure, (sigma^2 / (e^2 + sigma^2))^2. */
+ * Models of depth: the normals that samples have by them. Most of the time of an estimate is spent
+ * here, so that samples are taken by chunks. */
 #include "camera_fit_internal.h"
 
 #include <string.h>
 
-/* --- Models --- */
+/* --- Kinds --- */
 
 bool fit_model_is_ortho(enum fit_model model)
 {
@@ -51,41 +50,39 @@ void fit_model_range(const struct fit_samples *s, enum fit_model model, double *
     *high = ortho ? s->log_slope + 4.0 : log(tan(80.0 * PI / 180.0));
 }
 
-/* z of what was squeezed; c: median of depth over the value that it nears far away. */
-static double unsqueezed(const struct fit_samples *s, enum fit_model model, double d, double c)
+/* --- Distances --- */
+
+/* What of a model's parameters all samples share. */
+struct shape {
+    enum fit_model model;
+    double k, height, step_y, c;
+};
+
+static struct shape shape_of(const struct fit_samples *s, const struct fit_solution *at)
 {
-    const double left = fmax(1.0 - c * d / s->median, 1e-3);
-    if (model == FIT_TONED || model == FIT_ORTHO_TONED)
-        return d / left;
-    return fabs(c) > 1e-9 ? -log(left) / c * s->median : d;
+    const double height = fabs(at->p[FIT_LN_A]) > 0 ? exp(at->p[FIT_LN_A]) : 1.0;
+    return (struct shape){.model = at->model,
+                          .k = exp(at->p[FIT_LN_K]),
+                          .height = height,
+                          .step_y = s->step_y * height,
+                          .c = at->p[FIT_C]};
 }
 
-/* 1/z of a stored value. stretch: length of the ray with z = 1. */
-static double inverse_z(const struct fit_samples *s, enum fit_model model, double d, double c,
-                        double stretch)
+/* As fmax, which is a call. */
+static double at_least(double x, double least)
 {
-    const double least = 1e-6 * s->median, offset = c * s->median;
-    switch (model) {
-    case FIT_RADIAL:
-        return stretch / d;
-    case FIT_RADIAL_NEAR:
-        return 1.0 / fmax(d / stretch + offset, least);
-    case FIT_INVERSE:
-        return d;
-    case FIT_DEVICE:
-        return s->median > c ? d - c : c - d;
-    case FIT_PLANAR_NORMALIZED:
-        return 1.0 / fmax(d + offset, least);
-    case FIT_PLANAR_REVERSED:
-        return 1.0 / fmax(c - d, 1e-6);
-    case FIT_RADIAL_NORMALIZED:
-        return 1.0 / fmax((d + offset) / stretch, least);
-    case FIT_TONED:
-        return fmax(1.0 / d - c / s->median, 1e-3 / s->median);
-    case FIT_EXPONENTIAL:
-        return 1.0 / unsqueezed(s, model, d, c);
-    default:
-        return 1.0 / d;
+    return x > least ? x : least;
+}
+
+/* z of what was squeezed; c: median of depth over the value that it nears far away. */
+static void unsqueeze(const struct fit_samples *s, const struct shape *shape,
+                      const double d[FIT_CHUNK], double z[FIT_CHUNK])
+{
+    const bool is_toned = shape->model == FIT_TONED || shape->model == FIT_ORTHO_TONED;
+    const double c = shape->c;
+    for (int i = 0; i < FIT_CHUNK; i++) {
+        const double left = at_least(1.0 - c * d[i] / s->median, 1e-3);
+        z[i] = is_toned ? d[i] / left : fabs(c) > 1e-9 ? -log(left) / c * s->median : d[i];
     }
 }
 
@@ -94,478 +91,162 @@ static bool is_radial(enum fit_model model)
     return model == FIT_RADIAL || model == FIT_RADIAL_NEAR || model == FIT_RADIAL_NORMALIZED;
 }
 
-static double stretch_at(enum fit_model model, double k, double x, double y)
+/* 1/z of stored values at x and y. Each loop is one that compilers turn into vectors. */
+static void invert(const struct fit_samples *s, const struct shape *shape,
+                   const double d[FIT_CHUNK], const double x[FIT_CHUNK], const double y[FIT_CHUNK],
+                   double w[FIT_CHUNK])
 {
-    return is_radial(model) ? sqrt(1.0 + k * k * (x * x + y * y)) : 1.0;
-}
-
-static double height_of(const double p[FIT_SHAPE])
-{
-    return fabs(p[FIT_LN_A]) > 0 ? exp(p[FIT_LN_A]) : 1.0;
-}
-
-static struct vec3 normal_with(const struct fit_samples *s, const struct fit_sample *p,
-                               enum fit_model model, double k, const double at[FIT_SHAPE])
-{
-    const double height = height_of(at), step_y = s->step_y * height;
-    const double dx = 2.0 * s->step_x, dy = 2.0 * step_y;
-    struct vec3 n;
-    if (fit_model_is_ortho(model)) {
-        const double sign = model == FIT_ORTHO_REVERSED ? -1.0 : 1.0;
-        double z[5];
-        for (int i = 1; i < 5; i++)
-            z[i] = model == FIT_ORTHO_TONED || model == FIT_ORTHO_EXPONENTIAL
-                       ? unsqueezed(s, model, p->d[i], at[FIT_C])
-                       : p->d[i];
-        n = vec3(sign * (z[2] - z[1]) / dx / k, sign * (z[4] - z[3]) / dy / k, 1.0);
-    } else {
-        const double x = p->x - at[FIT_CX], y = p->y * height - at[FIT_CY], c = at[FIT_C];
-        const double xs[5] = {x, x - s->step_x, x + s->step_x, x, x};
-        const double ys[5] = {y, y, y, y - step_y, y + step_y};
-        double w[5];
-        for (int i = 0; i < 5; i++)
-            w[i] = model == FIT_PLANAR
-                       ? 1.0 / p->d[i]
-                       : inverse_z(s, model, p->d[i], c, stretch_at(model, k, xs[i], ys[i]));
-        const double w_x = (w[2] - w[1]) / dx, w_y = (w[4] - w[3]) / dy;
-        n = vec3(-w_x / k, -w_y / k, w[0] - x * w_x - y * w_y);
-    }
-    return scale(n, 1.0 / fmax(length(n), 1e-30));
-}
-
-/* Unit normal of the surface at a sample, by the depth alone. */
-static struct vec3 normal_at(const struct fit_samples *s, const struct fit_sample *sample,
-                             enum fit_model model, const double p[FIT_SHAPE])
-{
-    return normal_with(s, sample, model, exp(p[FIT_LN_K]), p);
-}
-
-double fit_model_scale(const struct fit_samples *s, const struct fit_sample *sample,
-                       enum fit_model model, const double p[FIT_SHAPE])
-{
-    const double k = exp(p[FIT_LN_K]);
-    if (fit_model_is_ortho(model))
-        return k;
-    const double y = sample->y * height_of(p) - p[FIT_CY];
-    const double stretch = stretch_at(model, k, sample->x - p[FIT_CX], y);
-    const double w = inverse_z(s, model, sample->d[0], p[FIT_C], stretch);
-    return k / fmax(w, 1e-30);
-}
-
-/* --- Rotations --- */
-
-/* a = u diag(s) v^T of 3 x 3 by one-sided Jacobi rotations; s descends, u and v are orthogonal. */
-static void decompose(const double a[3][3], struct vec3 u[3], double s[3], struct vec3 v[3])
-{
-    struct vec3 column[3];
-    for (int i = 0; i < 3; i++) {
-        column[i] = vec3(a[0][i], a[1][i], a[2][i]);
-        v[i] = vec3(i == 0, i == 1, i == 2);
-    }
-    for (int sweep = 0; sweep < 30; sweep++) {
-        double off = 0;
-        for (int i = 0; i < 2; i++)
-            for (int j = i + 1; j < 3; j++) {
-                const double p = dot(column[i], column[i]), q = dot(column[j], column[j]);
-                const double r = dot(column[i], column[j]);
-                if (!(fabs(r) > 1e-15 * sqrt(p * q)))
-                    continue;
-                off = fmax(off, fabs(r) / sqrt(p * q));
-                const double tau = (q - p) / (2.0 * r);
-                const double t = copysign(1.0, tau) / (fabs(tau) + sqrt(1.0 + tau * tau));
-                const double c = 1.0 / sqrt(1.0 + t * t), sine = c * t;
-                struct vec3 *const pairs[2][2] = {{&column[i], &column[j]}, {&v[i], &v[j]}};
-                for (int k = 0; k < 2; k++) {
-                    const struct vec3 first = *pairs[k][0], second = *pairs[k][1];
-                    *pairs[k][0] = sub(scale(first, c), scale(second, sine));
-                    *pairs[k][1] = mad(second, c, scale(first, sine));
-                }
-            }
-        if (off < 1e-14)
-            break;
-    }
-    for (int i = 0; i < 3; i++)
-        s[i] = length(column[i]);
-    for (int i = 0; i < 2; i++)
-        for (int j = 0; j < 2 - i; j++)
-            if (s[j] < s[j + 1]) {
-                const struct vec3 x = column[j], y = v[j];
-                const double size = s[j];
-                column[j] = column[j + 1], v[j] = v[j + 1], s[j] = s[j + 1];
-                column[j + 1] = x, v[j + 1] = y, s[j + 1] = size;
-            }
-    u[0] = s[0] > 0 ? scale(column[0], 1.0 / s[0]) : vec3(1, 0, 0);
-    u[1] = s[1] > 1e-9 * s[0] ? scale(column[1], 1.0 / s[1]) : mat3_around(u[0]).x;
-    /* What the data leave open makes no mirror. */
-    const double side = dot(cross(v[0], v[1]), v[2]);
-    u[2] = s[2] > 1e-9 * s[0] ? scale(column[2], 1.0 / s[2]) : scale(cross(u[0], u[1]), side);
-}
-
-/* The orthogonal matrix nearest to b (Wahba's problem); mirrors too. */
-static struct mat3 nearest_rotation(const double b[3][3])
-{
-    struct vec3 u[3], v[3], row[3];
-    double s[3];
-    decompose(b, u, s, v);
-    for (int i = 0; i < 3; i++) {
-        row[i] = vec3(0, 0, 0);
-        for (int k = 0; k < 3; k++) {
-            const double component = i == 0 ? u[k].x : i == 1 ? u[k].y : u[k].z;
-            row[i] = mad(v[k], component, row[i]);
-        }
-    }
-    return (struct mat3){row[0], row[1], row[2]};
-}
-
-static void add_outer(double b[3][3], struct vec3 n, struct vec3 m, double weight)
-{
-    const double left[3] = {n.x * weight, n.y * weight, n.z * weight};
-    for (int i = 0; i < 3; i++) {
-        b[i][0] += left[i] * m.x;
-        b[i][1] += left[i] * m.y;
-        b[i][2] += left[i] * m.z;
+    const double least = 1e-6 * s->median, c = shape->c, offset = c * s->median;
+    const double k2 = shape->k * shape->k;
+    double stretch[FIT_CHUNK]; /* length of the ray with z = 1 */
+    if (is_radial(shape->model))
+        for (int i = 0; i < FIT_CHUNK; i++)
+            stretch[i] = sqrt(1.0 + k2 * (x[i] * x[i] + y[i] * y[i]));
+    switch (shape->model) {
+    case FIT_RADIAL:
+        for (int i = 0; i < FIT_CHUNK; i++)
+            w[i] = stretch[i] / d[i];
+        break;
+    case FIT_RADIAL_NEAR:
+        for (int i = 0; i < FIT_CHUNK; i++)
+            w[i] = stretch[i] / at_least(d[i] + offset * stretch[i], least * stretch[i]);
+        break;
+    case FIT_INVERSE:
+        memcpy(w, d, FIT_CHUNK * sizeof *w);
+        break;
+    case FIT_DEVICE:
+        for (int i = 0; i < FIT_CHUNK; i++)
+            w[i] = s->median > c ? d[i] - c : c - d[i];
+        break;
+    case FIT_PLANAR_NORMALIZED:
+        for (int i = 0; i < FIT_CHUNK; i++)
+            w[i] = 1.0 / at_least(d[i] + offset, least);
+        break;
+    case FIT_PLANAR_REVERSED:
+        for (int i = 0; i < FIT_CHUNK; i++)
+            w[i] = 1.0 / at_least(c - d[i], 1e-6);
+        break;
+    case FIT_RADIAL_NORMALIZED:
+        for (int i = 0; i < FIT_CHUNK; i++)
+            w[i] = stretch[i] / at_least(d[i] + offset, least * stretch[i]);
+        break;
+    case FIT_TONED:
+        for (int i = 0; i < FIT_CHUNK; i++)
+            w[i] = at_least(1.0 / d[i] - c / s->median, 1e-3 / s->median);
+        break;
+    case FIT_EXPONENTIAL:
+        unsqueeze(s, shape, d, w);
+        for (int i = 0; i < FIT_CHUNK; i++)
+            w[i] = 1.0 / w[i];
+        break;
+    default:
+        for (int i = 0; i < FIT_CHUNK; i++)
+            w[i] = 1.0 / d[i];
     }
 }
 
-static double robust_weight(double e2, double sigma)
-{
-    const double s2 = sigma * sigma, r = s2 / (e2 + s2);
-    return r * r;
-}
+/* --- Normals --- */
 
-double fit_error(const struct fit_samples *s, const struct fit_sample *sample,
-                 const struct fit_solution *at, double *cosine)
-{
-    const struct vec3 n = normal_at(s, sample, at->model, at->p);
-    /* 1 - cos^2 would lose all the digits of small angles. */
-    const struct vec3 q = mul_mat(at->rotation, sample->m), e = cross(n, q);
-    *cosine = dot(n, q);
-    return dot(e, e);
-}
-
-struct mat3 fit_improve_rotation(const struct fit_samples *s, const struct fit_solution *at,
-                                 double sigma, int rounds)
-{
-    struct fit_solution now = *at;
-    const double k = exp(at->p[FIT_LN_K]);
-    for (int round = 0; round < rounds; round++) {
-        double b[3][3] = {{0}};
-        for (size_t i = 0; i < s->count; i++) {
-            const struct fit_sample *p = &s->list[i];
-            const struct vec3 n = normal_with(s, p, at->model, k, at->p);
-            const struct vec3 q = mul_mat(now.rotation, p->m), e = cross(n, q);
-            const double sign = dot(n, q) < 0 ? -1.0 : 1.0;
-            add_outer(b, n, p->m, sign * p->weight * robust_weight(dot(e, e), sigma));
-        }
-        now.rotation = nearest_rotation((const double(*)[3])b);
-    }
-    return now.rotation;
-}
-
-struct mat3 fit_start_rotation(const struct fit_samples *s, const struct fit_solution *at)
-{
-    static const double sigmas[] = {0.5, 0.25, 0.12, 0.06};
-    struct fit_solution now = *at;
-    double b[3][3] = {{0}};
-    for (size_t i = 0; i < s->count; i++)
-        add_outer(b, normal_at(s, &s->list[i], at->model, at->p), s->list[i].m, s->list[i].weight);
-    now.rotation = nearest_rotation((const double(*)[3])b);
-    for (size_t i = 0; i < sizeof sigmas / sizeof *sigmas; i++)
-        now.rotation = fit_improve_rotation(s, &now, sigmas[i], 2);
-    return now.rotation;
-}
-
-void fit_directions(const struct fit_samples *s, const struct fit_solution *at, double values[3],
-                    struct vec3 *weakest)
-{
-    double b[3][3] = {{0}}, of_depth[3][3] = {{0}};
-    struct vec3 u[3], v[3];
-    for (size_t i = 0; i < s->count; i++) {
-        double cosine;
-        const double e2 = fit_error(s, &s->list[i], at, &cosine);
-        const double weight = s->list[i].weight * robust_weight(e2, at->sigma);
-        const struct vec3 n = normal_at(s, &s->list[i], at->model, at->p);
-        add_outer(b, n, s->list[i].m, cosine < 0 ? -weight : weight);
-        add_outer(of_depth, n, n, weight);
-    }
-    decompose((const double(*)[3])of_depth, u, values, v);
-    *weakest = u[2];
-    decompose((const double(*)[3])b, u, values, v);
-    const double sum = fmax(values[0] + values[1] + values[2], 1e-30);
-    for (int i = 0; i < 3; i++)
-        values[i] /= sum;
-}
-
-bool fit_has_directions(const struct fit_samples *s, const struct fit_solution *at,
-                        struct vec3 *weakest)
-{
-    static const double least_beside = 0.035; /* share of them: of fewer no rotation is told */
-    double values[3];
-    fit_directions(s, at, values, weakest);
-    return values[1] > least_beside;
-}
-
-/* --- Descent --- */
-
-double fit_cost(const struct fit_samples *s, const struct fit_solution *at, double sigma)
-{
-    double sum = 0, cosine;
-    for (size_t i = 0; i < s->count; i++) {
-        const double e2 = fit_error(s, &s->list[i], at, &cosine);
-        sum += s->list[i].weight * e2 / (e2 + sigma * sigma);
-    }
-    return sum / s->total_weight;
-}
-
-/* Normal equations at a solution, and the gradient by groups of samples, whose errors hang
- * together. */
-struct equations {
-    int count;                /* of unknowns: three of the rotation, and what is free of p */
-    int parameter[FIT_SHAPE]; /* which of p */
-    double matrix[FIT_PARAMETERS][FIT_PARAMETERS], gradient[FIT_PARAMETERS];
-    double by_tile[FIT_TILES][FIT_PARAMETERS], by_cell[FIT_CELLS][FIT_PARAMETERS];
-    double weight, error; /* of all samples: sums, the second of squares */
-    double curvature;     /* of the robust cost, against that of least squares: (0,1] */
+struct chunk {
+    double x[FIT_CHUNK], y[FIT_CHUNK], z[FIT_CHUNK];
 };
 
-/* de of one sample for each unknown. A turn by w: d(n x q) = n x (w x q) = w (n.q) - q (n.w). */
-static void differentiate(const struct fit_samples *s, const struct fit_sample *sample,
-                          const struct fit_solution *at, const struct equations *eq, struct vec3 n,
-                          struct vec3 q, struct vec3 *de)
+static void ortho_normals(const struct fit_samples *s, const struct shape *shape,
+                          const struct fit_columns *columns, struct chunk *n)
 {
-    static const double step = 1e-5;
-    const double nq = dot(n, q);
-    de[0] = sub(vec3(nq, 0, 0), scale(q, n.x));
-    de[1] = sub(vec3(0, nq, 0), scale(q, n.y));
-    de[2] = sub(vec3(0, 0, nq), scale(q, n.z));
-    for (int a = 3; a < eq->count; a++) {
-        double p[FIT_SHAPE];
-        memcpy(p, at->p, sizeof p);
-        p[eq->parameter[a - 3]] += step;
-        const struct vec3 moved = normal_at(s, sample, at->model, p);
-        de[a] = cross(scale(sub(moved, n), 1.0 / step), q);
+    const bool squeezed = shape->model == FIT_ORTHO_TONED || shape->model == FIT_ORTHO_EXPONENTIAL;
+    const double sign = shape->model == FIT_ORTHO_REVERSED ? -1.0 : 1.0;
+    const double per_x = sign * 0.5 / s->step_x, per_y = sign * 0.5 / shape->step_y;
+    double z[5][FIT_CHUNK];
+    for (int k = 1; k < 5; k++) {
+        memcpy(z[k], columns->d[k], sizeof z[k]);
+        if (squeezed)
+            unsqueeze(s, shape, columns->d[k], z[k]);
+    }
+    for (int i = 0; i < FIT_CHUNK; i++) {
+        n->x[i] = (z[2][i] - z[1][i]) * per_x;
+        n->y[i] = (z[4][i] - z[3][i]) * per_y;
+        n->z[i] = shape->k;
     }
 }
 
-static void linearise(const struct fit_samples *s, const struct fit_solution *at, double sigma,
-                      struct equations *eq)
+/* Places of a chunk, from the principal point. */
+static void place(const struct fit_columns *columns, const struct shape *shape,
+                  const double p[FIT_SHAPE], double x[FIT_CHUNK], double y[FIT_CHUNK])
 {
-    const double s2 = sigma * sigma;
-    double slope = 0, bend = 0;
-    memset(eq, 0, sizeof *eq);
-    eq->count = 3;
-    for (int i = 0; i < FIT_SHAPE; i++)
-        if (at->free[i])
-            eq->parameter[eq->count++ - 3] = i;
-    for (size_t i = 0; i < s->count; i++) {
-        const struct fit_sample *sample = &s->list[i];
-        const struct vec3 n = normal_at(s, sample, at->model, at->p);
-        struct vec3 q = mul_mat(at->rotation, sample->m), de[FIT_PARAMETERS];
-        if (dot(n, q) < 0)
-            q = scale(q, -1.0);
-        const struct vec3 e = cross(n, q);
-        const double e2 = dot(e, e), weight = sample->weight * robust_weight(e2, sigma);
-        slope += weight;
-        eq->error += weight * e2;
-        bend += weight * (s2 - 3.0 * e2) / (e2 + s2);
-        differentiate(s, sample, at, eq, n, q, de);
-        for (int a = 0; a < eq->count; a++) {
-            const double score = weight * dot(de[a], e);
-            eq->gradient[a] += score;
-            eq->by_tile[sample->tile][a] += score;
-            eq->by_cell[sample->cell][a] += score;
-            for (int b = 0; b <= a; b++)
-                eq->matrix[a][b] += weight * dot(de[a], de[b]);
+    for (int i = 0; i < FIT_CHUNK; i++) {
+        x[i] = columns->x[i] - p[FIT_CX];
+        y[i] = columns->y[i] * shape->height - p[FIT_CY];
+    }
+}
+
+static void perspective_normals(const struct fit_samples *s, const struct shape *shape,
+                                const double p[FIT_SHAPE], const struct fit_columns *columns,
+                                struct chunk *n)
+{
+    const double per_x = 0.5 / s->step_x, per_y = 0.5 / shape->step_y;
+    const double step_x = s->step_x, step_y = shape->step_y;
+    double x[FIT_CHUNK], y[FIT_CHUNK], left[FIT_CHUNK], right[FIT_CHUNK], below[FIT_CHUNK],
+        above[FIT_CHUNK], w[5][FIT_CHUNK];
+    place(columns, shape, p, x, y);
+    for (int i = 0; i < FIT_CHUNK; i++) {
+        left[i] = x[i] - step_x;
+        right[i] = x[i] + step_x;
+        below[i] = y[i] - step_y;
+        above[i] = y[i] + step_y;
+    }
+    invert(s, shape, columns->d[0], x, y, w[0]);
+    invert(s, shape, columns->d[1], left, y, w[1]);
+    invert(s, shape, columns->d[2], right, y, w[2]);
+    invert(s, shape, columns->d[3], x, below, w[3]);
+    invert(s, shape, columns->d[4], x, above, w[4]);
+    for (int i = 0; i < FIT_CHUNK; i++) {
+        const double w_x = (w[2][i] - w[1][i]) * per_x, w_y = (w[4][i] - w[3][i]) * per_y;
+        n->x[i] = -w_x;
+        n->y[i] = -w_y;
+        n->z[i] = shape->k * (w[0][i] - x[i] * w_x - y[i] * w_y);
+    }
+}
+
+/* Samples of a chunk, which has fewer at the end. */
+static size_t chunk_size(const struct fit_samples *s, size_t first)
+{
+    return s->count - first < FIT_CHUNK ? s->count - first : FIT_CHUNK;
+}
+
+void fit_find_normals(const struct fit_samples *s, const struct fit_solution *at,
+                      struct vec3 *normals)
+{
+    const struct shape shape = shape_of(s, at);
+    for (size_t first = 0; first < s->count; first += FIT_CHUNK) {
+        const struct fit_columns *columns = &s->columns[first / FIT_CHUNK];
+        const size_t size = chunk_size(s, first);
+        struct chunk n;
+        double per_length[FIT_CHUNK];
+        if (fit_model_is_ortho(at->model))
+            ortho_normals(s, &shape, columns, &n);
+        else
+            perspective_normals(s, &shape, at->p, columns, &n);
+        for (int i = 0; i < FIT_CHUNK; i++) {
+            const double length2 = n.x[i] * n.x[i] + n.y[i] * n.y[i] + n.z[i] * n.z[i];
+            per_length[i] = 1.0 / at_least(sqrt(length2), 1e-30);
         }
-    }
-    for (int a = 0; a < eq->count; a++)
-        for (int b = 0; b < a; b++)
-            eq->matrix[b][a] = eq->matrix[a][b];
-    eq->weight = slope;
-    eq->curvature = fmin(fmax(bend / fmax(slope, 1e-300), 0.2), 1.0);
-}
-
-/* Cholesky, with a little on the diagonal so that there is a solution. */
-static void factorise(const struct equations *eq, double factor, double damping,
-                      double l[FIT_PARAMETERS][FIT_PARAMETERS])
-{
-    double trace = 0;
-    for (int i = 0; i < eq->count; i++)
-        trace += eq->matrix[i][i] * factor;
-    for (int i = 0; i < eq->count; i++)
-        for (int j = 0; j <= i; j++) {
-            double sum = eq->matrix[i][j] * factor;
-            if (i == j)
-                sum += damping * sum + 1e-12 * trace + 1e-300;
-            for (int k = 0; k < j; k++)
-                sum -= l[i][k] * l[j][k];
-            l[i][j] = i == j ? sqrt(fmax(sum, 1e-14 * trace + 1e-300)) : sum / l[j][j];
-        }
-}
-
-static void substitute(int count, double l[FIT_PARAMETERS][FIT_PARAMETERS], double *x)
-{
-    for (int i = 0; i < count; i++) {
-        for (int k = 0; k < i; k++)
-            x[i] -= l[i][k] * x[k];
-        x[i] /= l[i][i];
-    }
-    for (int i = count - 1; i >= 0; i--) {
-        for (int k = i + 1; k < count; k++)
-            x[i] -= l[k][i] * x[k];
-        x[i] /= l[i][i];
+        for (size_t i = 0; i < size; i++)
+            normals[first + i] = scale(vec3(n.x[i], n.y[i], n.z[i]), per_length[i]);
     }
 }
 
-/* Rodrigues: the turn by a rotation vector. */
-static struct mat3 turned(struct mat3 m, struct vec3 by)
+void fit_find_scales(const struct fit_samples *s, const struct fit_solution *at, double *scales)
 {
-    const double angle = length(by);
-    const double a = angle > 1e-9 ? sin(angle) / angle : 1.0;
-    const double b = angle > 1e-9 ? (1.0 - cos(angle)) / (angle * angle) : 0.5;
-    struct vec3 columns[3] = {vec3(m.x.x, m.y.x, m.z.x), vec3(m.x.y, m.y.y, m.z.y),
-                              vec3(m.x.z, m.y.z, m.z.z)};
-    for (int i = 0; i < 3; i++) {
-        const struct vec3 once = cross(by, columns[i]);
-        columns[i] = mad(once, a, mad(cross(by, once), b, columns[i]));
+    const struct shape shape = shape_of(s, at);
+    for (size_t first = 0; first < s->count; first += FIT_CHUNK) {
+        const struct fit_columns *columns = &s->columns[first / FIT_CHUNK];
+        const size_t size = chunk_size(s, first);
+        double x[FIT_CHUNK], y[FIT_CHUNK], w[FIT_CHUNK];
+        place(columns, &shape, at->p, x, y);
+        invert(s, &shape, columns->d[0], x, y, w);
+        for (size_t i = 0; i < size; i++)
+            scales[first + i] =
+                fit_model_is_ortho(at->model) ? shape.k : shape.k / at_least(w[i], 1e-30);
     }
-    return (struct mat3){vec3(columns[0].x, columns[1].x, columns[2].x),
-                         vec3(columns[0].y, columns[1].y, columns[2].y),
-                         vec3(columns[0].z, columns[1].z, columns[2].z)};
-}
-
-static struct fit_solution stepped(const struct fit_samples *s, const struct fit_solution *at,
-                                   const struct equations *eq, double damping)
-{
-    struct fit_solution next = *at;
-    double step[FIT_PARAMETERS], l[FIT_PARAMETERS][FIT_PARAMETERS], low, high;
-    for (int i = 0; i < eq->count; i++)
-        step[i] = -eq->gradient[i];
-    factorise(eq, 1.0, damping, l);
-    substitute(eq->count, l, step);
-    for (int i = 0; i < eq->count; i++)
-        step[i] = fmin(fmax(step[i], -0.5), 0.5);
-    next.rotation = turned(at->rotation, vec3(step[0], step[1], step[2]));
-    for (int i = 3; i < eq->count; i++)
-        next.p[eq->parameter[i - 3]] += step[i];
-    fit_model_range(s, at->model, &low, &high);
-    if (at->free[FIT_LN_K])
-        next.p[FIT_LN_K] = fmin(fmax(next.p[FIT_LN_K], low), high);
-    return next;
-}
-
-void fit_descend(const struct fit_samples *s, struct fit_solution *at, double sigma, int rounds)
-{
-    double damping = 1e-3;
-    at->cost = fit_cost(s, at, sigma);
-    for (int round = 0; round < rounds; round++) {
-        struct equations eq;
-        bool better = false, done = true;
-        linearise(s, at, sigma, &eq);
-        for (int attempt = 0; attempt < 6 && !better; attempt++) {
-            struct fit_solution next = stepped(s, at, &eq, damping);
-            next.cost = fit_cost(s, &next, sigma);
-            better = next.cost < at->cost;
-            done = !better || at->cost - next.cost < 1e-6 * fmax(at->cost, 1e-9);
-            damping = better ? fmax(damping * 0.2, 1e-9) : damping * 10.0;
-            if (better)
-                *at = next;
-        }
-        if (done)
-            break;
-    }
-}
-
-/* The variances of what the scores by groups would have moved: errors of a group are one. l: the
- * factor of the matrix. */
-static void sandwich(const struct equations *eq, double l[FIT_PARAMETERS][FIT_PARAMETERS],
-                     const double (*groups)[FIT_PARAMETERS], size_t group_count,
-                     double variance[FIT_PARAMETERS])
-{
-    size_t used = 0;
-    memset(variance, 0, FIT_PARAMETERS * sizeof *variance);
-    for (size_t g = 0; g < group_count; g++) {
-        double moved[FIT_PARAMETERS];
-        bool any = false;
-        memcpy(moved, groups[g], sizeof moved);
-        for (int i = 0; i < eq->count; i++)
-            any |= fabs(moved[i]) > 0;
-        if (!any)
-            continue;
-        used++;
-        substitute(eq->count, l, moved);
-        for (int i = 0; i < eq->count; i++)
-            variance[i] += moved[i] * moved[i];
-    }
-    for (int i = 0; i < eq->count; i++)
-        variance[i] *= (double)used / (double)(used > 1 ? used - 1 : 1);
-}
-
-static void find_deviations(const struct fit_samples *s, struct fit_solution *at)
-{
-    struct equations eq;
-    double l[FIT_PARAMETERS][FIT_PARAMETERS], tiles[FIT_PARAMETERS], cells[FIT_PARAMETERS];
-    linearise(s, at, at->sigma, &eq);
-    factorise(&eq, eq.curvature, 0, l);
-    sandwich(&eq, l, (const double(*)[FIT_PARAMETERS])eq.by_tile, FIT_TILES, tiles);
-    sandwich(&eq, l, (const double(*)[FIT_PARAMETERS])eq.by_cell, FIT_CELLS, cells);
-    const int decisive = eq.count > 3 ? 3 : 2;
-    const double *variance = tiles[decisive] > cells[decisive] ? tiles : cells;
-    memset(at->deviation, 0, sizeof at->deviation);
-    for (int i = 3; i < eq.count; i++)
-        at->deviation[eq.parameter[i - 3]] = sqrt(variance[i]);
-    at->rotation_deviation = sqrt(variance[0] + variance[1] + variance[2]) * 180.0 / PI;
-}
-
-double fit_sensitivity(const struct fit_samples *s, const struct fit_solution *at)
-{
-    enum { LN_K = 3 }; /* behind the rotation */
-    struct fit_solution t = *at;
-    struct equations eq;
-    double l[FIT_PARAMETERS][FIT_PARAMETERS], moved[FIT_PARAMETERS] = {0};
-    t.free[FIT_LN_K] = true;
-    linearise(s, &t, fmax(t.sigma, 1e-3), &eq);
-    factorise(&eq, 1.0, 0, l);
-    moved[LN_K] = 1.0;
-    substitute(eq.count, l, moved);
-    /* A normal of depth that is square to the view but for its error turns by as much. */
-    const double turn2 = 1.0 / fmax(moved[LN_K], 1e-30) - eq.error;
-    return sqrt(fmax(turn2 / fmax(eq.weight, 1e-300), 0));
-}
-
-void fit_refine(const struct fit_samples *s, struct fit_solution *at, double sigma)
-{
-    double inliers = 0;
-    fit_descend(s, at, sigma, 12);
-    at->sigma = sigma;
-    memset(at->tile_cost, 0, sizeof at->tile_cost);
-    for (size_t i = 0; i < s->count; i++) {
-        const struct fit_sample *sample = &s->list[i];
-        double cosine;
-        const double e2 = fit_error(s, sample, at, &cosine);
-        at->tile_cost[sample->tile] += sample->weight * e2 / (e2 + sigma * sigma) / s->total_weight;
-        inliers += sample->weight * robust_weight(e2, sigma);
-    }
-    at->inlier_weight = inliers / s->total_weight;
-    find_deviations(s, at);
-}
-
-struct fit_solution fit_refined(const struct fit_samples *s, const struct fit_solution *from,
-                                double sigma)
-{
-    struct fit_solution t = *from;
-    fit_refine(s, &t, sigma);
-    return t;
-}
-
-double fit_paired_z(const struct fit_solution *better, const struct fit_solution *worse)
-{
-    double sum = 0, squares = 0;
-    for (int i = 0; i < FIT_TILES; i++) {
-        const double d = worse->tile_cost[i] - better->tile_cost[i];
-        sum += d;
-        squares += d * d;
-    }
-    const double spread = (squares - sum * sum / FIT_TILES) * FIT_TILES / (FIT_TILES - 1.0);
-    return sum / sqrt(fmax(spread, 1e-24));
 }

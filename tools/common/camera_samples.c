@@ -359,6 +359,26 @@ static void balance_weights(struct fit_samples *s)
     s->total_weight = (double)s->count;
 }
 
+/* The columns of the list, and room for what is computed of it. */
+static bool arrange(struct fit_samples *s)
+{
+    const size_t chunks = (s->count + FIT_CHUNK - 1) / FIT_CHUNK;
+    s->columns = malloc((chunks + 1) * sizeof *s->columns);
+    s->normals = malloc((1 + FIT_SHAPE) * (s->count + 1) * sizeof *s->normals);
+    s->residuals = malloc((s->count + 1) * sizeof *s->residuals);
+    if (!s->columns || !s->normals || !s->residuals)
+        return false;
+    for (size_t i = 0; s->count > 0 && i < chunks * FIT_CHUNK; i++) {
+        const struct fit_sample *from = &s->list[i < s->count ? i : s->count - 1];
+        struct fit_columns *to = &s->columns[i / FIT_CHUNK];
+        to->x[i % FIT_CHUNK] = from->x;
+        to->y[i % FIT_CHUNK] = from->y;
+        for (int k = 0; k < 5; k++)
+            to->d[k][i % FIT_CHUNK] = from->d[k];
+    }
+    return true;
+}
+
 static bool measure(struct fit_samples *s)
 {
     double *values = malloc(s->count * sizeof *values);
@@ -394,7 +414,7 @@ static bool choose(const struct field *f, const struct candidate *list, size_t c
     }
     free(counts);
     balance_weights(s);
-    return measure(s);
+    return arrange(s) && measure(s);
 }
 
 bool fit_samples_take(const struct fit_input *input, unsigned blur, struct fit_samples *samples)
@@ -437,6 +457,9 @@ bool fit_samples_take(const struct fit_input *input, unsigned blur, struct fit_s
 bool fit_samples_thin(const struct fit_samples *all, size_t most, struct fit_samples *samples)
 {
     *samples = *all;
+    samples->columns = NULL;
+    samples->normals = NULL;
+    samples->residuals = NULL;
     samples->list = malloc((most + 1) * sizeof *samples->list);
     if (!samples->list)
         return false;
@@ -448,12 +471,17 @@ bool fit_samples_thin(const struct fit_samples *all, size_t most, struct fit_sam
         samples->list[samples->count++] = all->list[i];
         samples->total_weight += all->list[i].weight;
     }
-    return true;
+    if (arrange(samples))
+        return true;
+    fit_samples_free(samples);
+    return false;
 }
 
 void fit_samples_free(struct fit_samples *samples)
 {
     free(samples->list);
-    samples->list = NULL;
-    samples->count = 0;
+    free(samples->columns);
+    free(samples->normals);
+    free(samples->residuals);
+    *samples = (struct fit_samples){0};
 }

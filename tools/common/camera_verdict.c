@@ -24,12 +24,14 @@ static bool is_to_scale(enum fit_model model)
 static bool difference(const struct fit_samples *s, const struct fit_solution *a,
                        const struct fit_solution *b, double *most)
 {
-    double *logs = malloc(s->count * sizeof *logs), middle = 0;
+    double *logs = malloc(2 * s->count * sizeof *logs), middle = 0;
     if (!logs)
         return false;
+    double *others = logs + s->count;
+    fit_find_scales(s, a, logs);
+    fit_find_scales(s, b, others);
     for (size_t i = 0; i < s->count; i++)
-        logs[i] = log(fit_model_scale(s, &s->list[i], a->model, a->p) /
-                      fit_model_scale(s, &s->list[i], b->model, b->p));
+        logs[i] = log(logs[i] / others[i]);
     qsort(logs, s->count, sizeof *logs, compare);
     if (!is_to_scale(a->model) || !is_to_scale(b->model))
         middle = logs[s->count / 2];
@@ -87,10 +89,11 @@ struct shares {
 static struct shares find_shares(const struct fit_samples *s, const struct fit_solution *at)
 {
     struct shares shares = {0};
-    double flat = 0, cosine;
+    const struct fit_residual *residuals = fit_find_residuals(s, at);
+    double flat = 0;
     for (size_t i = 0; i < s->count; i++) {
         const struct fit_sample *p = &s->list[i];
-        const double e2 = fit_error(s, p, at, &cosine);
+        const double e2 = residuals[i].e2;
         shares.near += e2 < 0.03 ? p->weight : 0;
         flat += p->flat ? p->weight : 0;
         shares.flat_near += p->flat && e2 < 0.0027 ? p->weight : 0;
