@@ -148,6 +148,7 @@ vkao_result vkao_effect_create(const vkao_context *ctx, const vkao_effect_info *
                            "no host memory for the effect");
     vkao_program_plan(&effect->program, ctx, &settings, ctx->is_cpu && vkao_cpu_has(&settings));
     effect->frames = &effect->frame_count;
+    effect->passes = &effect->program;
     atomic_fetch_add(ctx->live, 1);
     result = vkao_program_compile(&effect->program);
     if (result != VKAO_SUCCESS) {

@@ -6,8 +6,10 @@
 
 struct vkao_effect {
     struct vkao_program program;
-    /* Frames that live; a pointer, so that effects can be const. */
+    /* Frames that live, and the passes that they may complete; pointers, so that effects can be
+     * const. */
     atomic_uint *frames, frame_count;
+    struct vkao_program *passes;
 };
 
 /* The rows for checked settings, not compiled. is_cpu: those of the CPU. */

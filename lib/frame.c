@@ -347,6 +347,8 @@ vkao_result vkao_frame_create(const vkao_effect *effect, const vkao_frame_info *
     VkMemoryRequirements need;
     if (frame->program == &own)
         result = compile_own(frame, &own);
+    else
+        result = vkao_program_complete(effect->passes, frame->copies);
     if (result == VKAO_SUCCESS)
         result = create_scratch(frame, &need);
     if (result == VKAO_SUCCESS)

@@ -200,6 +200,7 @@ static vkao_result create_form(const struct vkao_program *program, struct vkao_s
     /* Entries for constants that a shader does not have are ignored. */
     const VkSpecializationInfo specialization = {VKAO_SETTING_COUNT, entries, sizeof constants,
                                                  constants};
+    VkPipeline pipeline;
     VkResult result = ctx->vk.CreateComputePipelines(
         ctx->device, program->settings.pipeline_cache, 1,
         &(VkComputePipelineCreateInfo){
@@ -214,19 +215,35 @@ static vkao_result create_form(const struct vkao_program *program, struct vkao_s
                 },
             .layout = step->layout,
         },
-        ctx->allocator, &step->forms[form]);
-    if (result != VK_SUCCESS) {
-        step->forms[form] = VK_NULL_HANDLE;
+        ctx->allocator, &pipeline);
+    if (result != VK_SUCCESS) /* drivers may leave anything behind a failure */
         return vkao_vk_failed(&ctx->log, "vkCreateComputePipelines", result);
-    }
-    vkao_set_name(ctx, VK_OBJECT_TYPE_PIPELINE, (uint64_t)step->forms[form], step->row->name);
+    vkao_set_name(ctx, VK_OBJECT_TYPE_PIPELINE, (uint64_t)pipeline, step->row->name);
+    /* Another thread may have been faster. */
+    VkPipeline none = VK_NULL_HANDLE;
+    if (!atomic_compare_exchange_strong(&step->forms[form], &none, pipeline))
+        ctx->vk.DestroyPipeline(ctx->device, pipeline, ctx->allocator);
     return VKAO_SUCCESS;
 }
 
-static vkao_result create_forms(const struct vkao_program *program, struct vkao_step *step)
+/* Of the two kinds of frames, whose AO is copied or not, most effects see one. */
+static bool is_missing(const struct vkao_step *step, uint32_t form, bool copies)
+{
+    const bool is_other =
+        step->row->forms > VKAO_FORM_COPIED && !(form & VKAO_FORM_COPIED) == copies;
+    return !is_other && !atomic_load(&step->forms[form]);
+}
+
+static vkao_result create_forms(const struct vkao_program *program, struct vkao_step *step,
+                                bool copies)
 {
     const vkao_context *ctx = program->ctx;
     VkShaderModule module = VK_NULL_HANDLE;
+    uint32_t missing = 0;
+    for (uint32_t form = 0; form < step->row->forms; ++form)
+        missing += is_missing(step, form, copies);
+    if (!missing)
+        return VKAO_SUCCESS;
     VkResult created =
         ctx->vk.CreateShaderModule(ctx->device,
                                    &(VkShaderModuleCreateInfo){
@@ -238,9 +255,19 @@ static vkao_result create_forms(const struct vkao_program *program, struct vkao_
     if (created != VK_SUCCESS)
         return vkao_vk_failed(&ctx->log, "vkCreateShaderModule", created);
     vkao_result result = VKAO_SUCCESS;
-    for (uint32_t form = 0; result == VKAO_SUCCESS && form < step->row->forms; ++form)
-        result = create_form(program, step, module, form);
+    for (uint32_t form = 0; result == VKAO_SUCCESS && form < step->row->forms; ++form) {
+        if (is_missing(step, form, copies))
+            result = create_form(program, step, module, form);
+    }
     ctx->vk.DestroyShaderModule(ctx->device, module, ctx->allocator);
+    return result;
+}
+
+vkao_result vkao_program_complete(struct vkao_program *program, bool copies)
+{
+    vkao_result result = VKAO_SUCCESS;
+    for (uint32_t i = 0; result == VKAO_SUCCESS && i < program->count; ++i)
+        result = create_forms(program, &program->steps[i], copies);
     return result;
 }
 
@@ -256,7 +283,7 @@ static void compile_step(void *data, uint32_t i)
     struct vkao_step *step = &c->program->steps[i];
     c->results[i] = create_layouts(c->program, step);
     if (c->results[i] == VKAO_SUCCESS)
-        c->results[i] = create_forms(c->program, step);
+        c->results[i] = create_forms(c->program, step, true);
 }
 
 vkao_result vkao_program_compile(struct vkao_program *program)
@@ -288,8 +315,9 @@ void vkao_program_destroy(struct vkao_program *program)
     for (uint32_t i = 0; i < program->count; ++i) {
         const struct vkao_step *step = &program->steps[i];
         for (uint32_t form = 0; form < VKAO_MOST_FORMS; ++form) {
-            if (step->forms[form])
-                ctx->vk.DestroyPipeline(ctx->device, step->forms[form], ctx->allocator);
+            const VkPipeline pipeline = atomic_load(&step->forms[form]);
+            if (pipeline)
+                ctx->vk.DestroyPipeline(ctx->device, pipeline, ctx->allocator);
         }
         if (step->layout)
             ctx->vk.DestroyPipelineLayout(ctx->device, step->layout, ctx->allocator);

@@ -117,7 +117,7 @@ struct vkao_step {
     uint32_t use_count;
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
-    VkPipeline forms[VKAO_MOST_FORMS];
+    _Atomic(VkPipeline) forms[VKAO_MOST_FORMS]; /* those that some frame may need; others are 0 */
 };
 
 struct vkao_program {
@@ -155,6 +155,9 @@ VkDescriptorType vkao_use_type(const struct vkao_use *use);
 
 /* Sampler, layouts and pipelines of all rows. On failure the rest is for vkao_program_destroy. */
 vkao_result vkao_program_compile(struct vkao_program *program);
+/* Forms that are still missing for frames whose AO is copied, which vkao_program_compile begins
+ * with, or is not. Any number of threads at a time. */
+vkao_result vkao_program_complete(struct vkao_program *program, bool copies);
 void vkao_program_destroy(struct vkao_program *program);
 
 #endif

@@ -128,9 +128,10 @@ static vkao_result check_slot(const struct vkao_program *program, uint32_t i,
     const char *name = slots[i].name;
     char is[VKAO_NAME_BYTES], other[VKAO_NAME_BYTES];
     vkao_format_name(image->format, is);
-    if (!image->format && image->view)
+    if (!image->format && (image->view || image->image))
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
-                           "%s has a view but no format: set format to that of the view", name);
+                           "%s has %s but no format: set format to that of the view", name,
+                           image->view ? "a view" : "an image");
     if (!image->format && (reads || writes) && is_required(program, i))
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
                            "%s has no format, but is required by effect.%s (effect.stages is %s)",

@@ -344,19 +344,21 @@ static const struct vkao_pass packed_blur_x = {
     .record = record_rows,
 };
 
-static const struct vkao_pass packed_blur_y = {
-    .name = "vkao blur y",
-    .label = "blur",
-    .stage = VKAO_STAGE_BLUR,
-    VKAO_CODE(vkao_packed_blur_y_cpu),
-    .uses = {READS_Z4, READS_TEXELS(HALFWAY_READ2, HALFWAY, R32_UINT), READS_RING_NORMALS,
-             WRITES_WORDS(BLURRED_WORDS, BLURRED), WRITES_WORDS(STAGED_WORDS, COPIED),
-             VKAO_WRITES(AO_WRITE, AO)},
-    TEXELS(VKAO_BLUR_Y_WIDTH, VKAO_BLUR_Y_HEIGHT),
-    .vertical = true,
-    .forms = 4,
-    .record = record_nothing,
-};
+#define PACKED_BLUR_Y(is_half)                                                                     \
+    {                                                                                              \
+        .name = "vkao blur y", .label = "blur", .stage = VKAO_STAGE_BLUR,                          \
+        VKAO_CODE(vkao_packed_blur_y_cpu),                                                         \
+        .uses = {READS_Z4,                                                                         \
+                 READS_TEXELS(HALFWAY_READ2, HALFWAY, R32_UINT),                                   \
+                 READS_RING_NORMALS,                                                               \
+                 WRITES_WORDS(BLURRED_WORDS, BLURRED),                                             \
+                 WRITES_WORDS(STAGED_WORDS, COPIED),                                               \
+                 VKAO_WRITES(AO_WRITE, AO)},                                                       \
+        TEXELS(VKAO_BLUR_Y_WIDTH, VKAO_BLUR_Y_HEIGHT), .vertical = true,                           \
+        .forms = (is_half) ? 1 : 4, .record = record_nothing,                                      \
+    }
+/* By half resolution. */
+static const struct vkao_pass packed_blur_y[] = {PACKED_BLUR_Y(0), PACKED_BLUR_Y(1)};
 
 static const struct vkao_pass packed_upsample = {
     .name = "vkao upsample",
@@ -443,7 +445,7 @@ static void plan_blur(struct vkao_program *program)
         vkao_program_add(program, &ring_normals);
     vkao_program_add(program, program->is_packed ? &packed_blur_x : &blur_x);
     if (program->is_packed)
-        vkao_program_add(program, &packed_blur_y);
+        vkao_program_add(program, &packed_blur_y[half]);
     else
         vkao_program_add(program, half ? &blur_y_at_half : &blur_y);
     if (half)

@@ -525,8 +525,9 @@ VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_scratch(const vkao_effect *effec
                                                         VkMemoryRequirements *out);
 
 /* Errors: INVALID_ARGUMENT, UNSUPPORTED (a slot's format, extent over the device's limit),
- * OUT_OF_*_MEMORY, VULKAN. On a CPU whose buffers cannot hold so large a frame it compiles passes
- * that use images. */
+ * OUT_OF_*_MEMORY, VULKAN. On a CPU it may compile: passes that use images, for a frame so large
+ * that buffers cannot hold it, and what ends with AO that is not copied, for the first frame of an
+ * effect without images.ao.image. */
 VKAO_API VKAO_MUST_CHECK vkao_result vkao_frame_create(const vkao_effect *effect,
                                                        const vkao_frame_info *info,
                                                        vkao_frame **out);

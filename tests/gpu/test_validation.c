@@ -40,6 +40,8 @@ static VkMemoryRequirements requirements_of(const struct picture *p)
             .format = p->formats[i],
         };
     }
+    if (p->staged && p->formats[SLOT_AO])
+        g.slots.ao.image = (VkImage)(uintptr_t)1; /* whether there is one matters */
     vkao_effect *effect = picture_effect(p, fixture.context);
     check_vkao(vkao_frame_scratch(effect, &info, &out));
     vkao_effect_destroy(effect);

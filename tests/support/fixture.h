@@ -84,7 +84,7 @@ struct picture {
     bool output_is_color;         /* composite in place */
     bool half_resolution;
     vkao_thickness_input thickness_input;
-    bool staged;                   /* ao.image is given */
+    bool staged;                   /* ao.image is given, as by default */
     VkDeviceMemory scratch_memory; /* null = the library's own */
     VkDeviceSize scratch_offset;
     struct ao_view view;

@@ -11,7 +11,7 @@ static const double canary = 0.6235;
 
 void picture_init(struct picture *p, uint32_t width, uint32_t height, vkao_stage_flags stages)
 {
-    *p = (struct picture){.width = width, .height = height, .stages = stages};
+    *p = (struct picture){.width = width, .height = height, .stages = stages, .staged = true};
     p->view = ao_view_default();
     p->ssao = ao_ssao_default();
     p->blur = ao_blur_default();

@@ -46,10 +46,19 @@ uint32_t pixels_components(VkFormat format)
     return f ? f->components : 0;
 }
 
+/* Of exponents that are those of normal numbers. As ldexp(1, exponent), which takes most of the time
+ * of a test that has many images. */
+static double power_of_two(int exponent)
+{
+    const uint64_t bits = (uint64_t)(exponent + 1023) << 52;
+    double power;
+    memcpy(&power, &bits, sizeof power);
+    return power;
+}
+
 static uint16_t to_half(double v)
 {
     uint16_t sign = signbit(v) ? 0x8000u : 0u;
-    int exponent;
     if (isnan(v))
         return (uint16_t)(sign | 0x7e00u);
     v = fabs(v);
@@ -57,10 +66,12 @@ static uint16_t to_half(double v)
         return sign;
     if (v >= 65520.0)
         return (uint16_t)(sign | 0x7c00u);
-    frexp(v, &exponent); /* v = 1.m * 2^(exponent - 1) */
-    int e = exponent - 1 < -14 ? -14 : exponent - 1;
+    uint64_t bits;
+    memcpy(&bits, &v, sizeof bits);
+    const int exponent = (int)(bits >> 52) - 1023; /* v = 1.m * 2^exponent */
+    const int e = exponent < -14 ? -14 : exponent;
     /* A mantissa that rounds up to 2048 carries into the exponent by itself. */
-    uint32_t mantissa = (uint32_t)nearbyint(ldexp(v, 10 - e));
+    uint32_t mantissa = (uint32_t)nearbyint(v * power_of_two(10 - e));
     return (uint16_t)(sign | (((uint32_t)(e + 14) << 10) + mantissa));
 }
 
@@ -70,7 +81,8 @@ static double from_half(uint16_t h)
     double mantissa = h & 1023, sign = h & 0x8000 ? -1.0 : 1.0;
     if (exponent == 31)
         return mantissa != 0.0 ? (double)NAN : sign * INFINITY;
-    return sign * (exponent ? ldexp(mantissa + 1024.0, exponent - 25) : ldexp(mantissa, -24));
+    return sign * (exponent ? (mantissa + 1024.0) * power_of_two(exponent - 25)
+                            : mantissa * power_of_two(-24));
 }
 
 static double clamp(double v, double low, double high)
@@ -94,8 +106,8 @@ static uint32_t get(const unsigned char *bytes, uint32_t count)
 
 static uint32_t encode_component(const struct pixel_format *f, double v)
 {
-    double unorm_max = ldexp(1.0, (int)f->bytes * 8) - 1.0,
-           snorm_max = ldexp(1.0, (int)f->bytes * 8 - 1) - 1.0;
+    double unorm_max = power_of_two((int)f->bytes * 8) - 1.0,
+           snorm_max = power_of_two((int)f->bytes * 8 - 1) - 1.0;
     float single = (float)v;
     uint32_t word;
     switch (f->kind) {
@@ -115,8 +127,8 @@ static uint32_t encode_component(const struct pixel_format *f, double v)
 
 static double decode_component(const struct pixel_format *f, uint32_t word)
 {
-    double unorm_max = ldexp(1.0, (int)f->bytes * 8) - 1.0,
-           snorm_max = ldexp(1.0, (int)f->bytes * 8 - 1) - 1.0;
+    double unorm_max = power_of_two((int)f->bytes * 8) - 1.0,
+           snorm_max = power_of_two((int)f->bytes * 8 - 1) - 1.0;
     float single;
     switch (f->kind) {
     case UNORM:

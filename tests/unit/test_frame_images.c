@@ -100,6 +100,17 @@ static void slots_are_required_as_the_stages_say(void **state)
                 required = true;
             expect_result(&w, required ? VKAO_ERROR_INVALID_ARGUMENT : VKAO_SUCCESS,
                           world_slot_names[slot], required ? "required" : "");
+            /* What has no format is not there, and then has nothing else either. */
+            const struct {
+                vkao_image image;
+                const char *has;
+            } halves[] = {{{.view = was.view}, "a view but no format"},
+                          {{.image = (VkImage)(uintptr_t)1}, "an image but no format"}};
+            for (size_t half = 0; half < COUNT(halves); ++half) {
+                *world_slot(&w.images, slot) = halves[half].image;
+                expect_result(&w, VKAO_ERROR_INVALID_ARGUMENT, world_slot_names[slot],
+                              halves[half].has);
+            }
             *world_slot(&w.images, slot) = was;
         }
         world_close(&w);
