@@ -241,6 +241,23 @@ def buttons_of_the_panel_change_the_setting(scratch):
 
 
 @case
+def click_between_two_frames_is_where_it_was_made(scratch):
+    """As on a slow machine: what happens while a frame is computed comes all at once."""
+    with opened(scratch, size=(WIDTH + PANEL_WIDTH, 700)) as viewer:
+        viewer.move(84, 56)  # '2 AO'
+        viewer.display.xdotool('mousedown', 1)
+        time.sleep(1)
+        with viewer.stopped():
+            viewer.display.xdotool('mouseup', 1, 'mousemove', 18, 56, 'click', 1)  # '1 raw'
+        viewer.wait_title('- AO before the blur -')
+        viewer.move(26, 129)  # 'fast'
+        with viewer.stopped():
+            viewer.display.xdotool('click', 1, 'mousemove', 80, 129)  # 'default'
+        viewer.wait_title('A vbao half')
+        viewer.finish()
+
+
+@case
 def slider_changes_the_picture(scratch):
     with opened(scratch, '--save', 'saved', size=(WIDTH + PANEL_WIDTH, 700)) as viewer:
         viewer.drag((85, 198), (110, 198), hold=1)  # radius

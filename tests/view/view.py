@@ -5,6 +5,7 @@ A test program is `test_NAME.py VKAO VKAO-VIEW [CASE...]`; the cases and the com
 are those of tests/cli. Every run has the validation layers on: one message makes the viewer fail,
 and with it the case.
 """
+import contextlib
 import os
 import re
 import shlex
@@ -169,6 +170,15 @@ class Viewer:
         self.display.xdotool('click', button)
         time.sleep(0.1)
 
+    @contextlib.contextmanager
+    def stopped(self):
+        """The program, while others go on."""
+        self.process.send_signal(signal.SIGSTOP)
+        try:
+            yield
+        finally:
+            self.process.send_signal(signal.SIGCONT)
+
     def drag(self, start, end, button=1, hold=0.1, until=None):
         """The panel sees the mouse once a frame only: hold it, or wait for what it brings about."""
         self.move(*start)
@@ -189,9 +199,8 @@ class Viewer:
     def finish(self, *before):
         """Quits; the picture that was shown last. What xdotool is to do before happens in the same
         moment, as the viewer sees it."""
-        self.process.send_signal(signal.SIGSTOP)
-        self.display.xdotool(*before, 'key', 'q')
-        self.process.send_signal(signal.SIGCONT)
+        with self.stopped():
+            self.display.xdotool(*before, 'key', 'q')
         try:
             self.out, self.err = self.process.communicate(timeout=TIMEOUT)
         except subprocess.TimeoutExpired:

@@ -304,7 +304,11 @@ bool viewer_draw(struct viewer *viewer, const char *capture, struct tool_error *
     if (!viewer_measure(v, err) || !collect(v, frame, err))
         return false;
     viewer_choose_scale(v);
-    widgets_begin_frame(v->scale);
+    struct button_event event;
+    const bool is_event = window_take_button_event(&v->window, &event);
+    if (v->window.button_event_count > 0)
+        viewer_draw_more(v);
+    widgets_begin_frame(v->scale, is_event ? &event : NULL);
     viewer_panel(v);
     const bool there = viewer_has_image(v) && prepare(v, frame);
     /* A live scene has the window's size from here on. */

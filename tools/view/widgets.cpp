@@ -185,11 +185,21 @@ double widgets_scale(double scale)
     return font_sizes[nearest_font(scale)] / font_sizes[0];
 }
 
-void widgets_begin_frame(double scale)
+void widgets_begin_frame(double scale, const struct button_event *event)
 {
     ImGui_ImplVulkan_NewFrame();
     ImGui_ImplGlfw_NewFrame();
     ImGuiIO &io = ImGui::GetIO();
+#if IMGUI_VERSION_NUM < 18700 /* later ones take events one by one themselves */
+    static bool is_down;
+    if (event) {
+        is_down = event->down;
+        io.MousePos = place(static_cast<float>(event->x), static_cast<float>(event->y));
+    }
+    io.MouseDown[0] = is_down;
+#else
+    (void)event;
+#endif
     const int font = nearest_font(scale);
     const float dense = density();
     const float wanted = font_sizes[font] / font_sizes[0] / dense;

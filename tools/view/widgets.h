@@ -5,7 +5,7 @@
 #ifndef VKAO_VIEW_WIDGETS_H_
 #define VKAO_VIEW_WIDGETS_H_
 
-#include "gpu.h"
+#include "window.h"
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -23,7 +23,9 @@ void widgets_destroy(void);
 /* Sizes that text can have: the nearest to `scale` texels of the framebuffer per unit, a unit being
  * a texel of a monitor of 96 dpi. */
 double widgets_scale(double scale);
-void widgets_begin_frame(double scale);
+/* A frame sees one press or release of the left button, and it where it happened: those that one
+ * frame kept it waiting for are then not one, and click on what was there. NULL if there is none. */
+void widgets_begin_frame(double scale, const struct button_event *event);
 /* Inside the render pass; ends the frame. cmd may be VK_NULL_HANDLE to drop what was drawn. */
 bool widgets_end_frame(VkCommandBuffer cmd, struct tool_error *err);
 /* Wherever the mouse is: whether a slider is being dragged, or a list is open. */

@@ -154,6 +154,13 @@ static void on_move(GLFWwindow *handle, double x, double y)
     w->input.changed = true;
 }
 
+/* Of more than anybody can make between two frames, the last counts. */
+static void add_button_event(struct window *w, bool down)
+{
+    w->button_event_count -= w->button_event_count == MAX_BUTTON_EVENTS;
+    w->button_events[w->button_event_count++] = (struct button_event){w->input.x, w->input.y, down};
+}
+
 static void on_button(GLFWwindow *handle, int button, int action, int mods)
 {
     struct window *w = window_of(handle);
@@ -165,8 +172,10 @@ static void on_button(GLFWwindow *handle, int button, int action, int mods)
     input->changed = true;
     if (button == GLFW_MOUSE_BUTTON_RIGHT)
         input->right = action == GLFW_PRESS;
-    if (button == GLFW_MOUSE_BUTTON_LEFT)
+    if (button == GLFW_MOUSE_BUTTON_LEFT) {
         input->left = action == GLFW_PRESS;
+        add_button_event(w, input->left);
+    }
     if (action == GLFW_PRESS &&
         (button == GLFW_MOUSE_BUTTON_LEFT || button == GLFW_MOUSE_BUTTON_RIGHT)) {
         input->left_pressed |= button == GLFW_MOUSE_BUTTON_LEFT;
@@ -366,6 +375,17 @@ void window_poll(struct window *window, bool wait, double seconds)
         glfwWaitEvents();
     else
         glfwPollEvents();
+}
+
+bool window_take_button_event(struct window *window, struct button_event *event)
+{
+    if (window->button_event_count == 0)
+        return false;
+    *event = window->button_events[0];
+    window->button_event_count--;
+    memmove(window->button_events, window->button_events + 1,
+            window->button_event_count * sizeof *window->button_events);
+    return true;
 }
 
 double window_time(void)

@@ -61,9 +61,20 @@ struct input {
     bool changed; /* anything at all happened */
 };
 
+/* A press or a release of the left button, and where the mouse was then. */
+struct button_event {
+    double x, y;
+    bool down;
+};
+
+enum { MAX_BUTTON_EVENTS = 64 };
+
 struct window {
     void *handle; /* GLFWwindow */
     struct input input;
+    /* Not taken yet, in order. */
+    struct button_event button_events[MAX_BUTTON_EVENTS];
+    size_t button_event_count;
     double scale_x, scale_y; /* framebuffer texels per screen coordinate */
     double content_scale;    /* framebuffer texels per texel of a monitor of 96 dpi, where it is */
 };
@@ -94,6 +105,8 @@ void window_set_clipboard(struct window *window, const char *text);
 /* Starts a new look at the input: waits for an event if wait is set, at most for `seconds` if that
  * is > 0. */
 void window_poll(struct window *window, bool wait, double seconds);
+/* The oldest of those that were not taken, of any look; false if there is none. */
+bool window_take_button_event(struct window *window, struct button_event *event);
 /* Seconds since some start. */
 double window_time(void);
 
