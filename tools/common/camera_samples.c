@@ -103,7 +103,8 @@ static void find_range(struct field *f)
 static int mantissa_bits(const struct field *f)
 {
     static const int bits[] = {7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 20};
-    size_t longer[sizeof bits / sizeof *bits] = {0}, count = 0;
+    enum { MANTISSA = 23 };
+    size_t counts[MANTISSA + 1] = {0}, count = 0; /* by the place of the last bit that is set */
     const int width = (int)f->input->width, height = (int)f->input->height;
     for (int y = 0; y < height; y += f->step)
         for (int x = 0; x < width; x += f->step) {
@@ -111,14 +112,20 @@ static int mantissa_bits(const struct field *f)
                 continue;
             uint32_t word;
             memcpy(&word, &f->input->depth[(size_t)y * f->input->width + (size_t)x], sizeof word);
-            for (size_t i = 0; i < sizeof bits / sizeof *bits; i++)
-                longer[i] += (word & ((1u << (23 - bits[i])) - 1u)) != 0;
+            int used = MANTISSA;
+            while (used > 0 && !(word >> (MANTISSA - used) & 1u))
+                used--;
+            counts[used]++;
             count++;
         }
-    for (size_t i = 0; i < sizeof bits / sizeof *bits; i++)
-        if (longer[i] * 1000 <= count)
+    for (size_t i = 0; i < sizeof bits / sizeof *bits; i++) {
+        size_t longer = 0;
+        for (int used = bits[i] + 1; used <= MANTISSA; used++)
+            longer += counts[used];
+        if (longer * 1000 <= count)
             return bits[i];
-    return 23;
+    }
+    return MANTISSA;
 }
 
 /* --- Candidates --- */

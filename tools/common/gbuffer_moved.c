@@ -24,7 +24,7 @@ static const double same = 0.03, other = 0.117;
 
 /* A normal of depth, turned to the space of the stored ones. */
 struct place {
-    size_t texel;
+    ptrdiff_t x, y;
     double normal[3];
 };
 
@@ -40,8 +40,7 @@ struct move {
 /* The square of the sine between the two, whichever way they point; 1 where nothing is stored. */
 static double disagreement(const struct gbuffer *g, const struct place *p, struct move by)
 {
-    const ptrdiff_t x = (ptrdiff_t)(p->texel % g->width) + by.x;
-    const ptrdiff_t y = (ptrdiff_t)(p->texel / g->width) + by.y;
+    const ptrdiff_t x = p->x + by.x, y = p->y + by.y;
     if (x < 0 || y < 0 || x >= (ptrdiff_t)g->width || y >= (ptrdiff_t)g->height)
         return NAN;
     const float *n = g->normals + (y * (ptrdiff_t)g->width + x) * 4;
@@ -82,6 +81,9 @@ static struct move find_best(const struct gbuffer *g, const struct places *place
                 best = at;
             }
         }
+        /* From here on the same rows and columns would be looked along again. */
+        if (round % 2 && best.y == from.y)
+            break;
     }
     return best;
 }
@@ -108,18 +110,20 @@ static bool find_places(const struct gbuffer *g, struct places *places)
     struct normal_pairs pairs;
     if (!gbuffer_pair_normals(g, GBUFFER_MOST_PAIRS, &pairs))
         return false;
-    const size_t x = pairs.reach, y = pairs.reach * g->width;
+    const ptrdiff_t reach = (ptrdiff_t)pairs.reach;
+    const struct move to[NEIGHBOURS] = {{-reach, 0}, {reach, 0}, {0, -reach}, {0, reach}};
     *places = (struct places){malloc((pairs.count * NEIGHBOURS + 1) * sizeof *places->list), 0};
     for (size_t i = 0; places->list && i < pairs.count; i++) {
         const double *depth = pairs.pair[i].depth;
-        const size_t texel = pairs.pair[i].texel;
-        const size_t at[NEIGHBOURS] = {texel - x, texel + x, texel - y, texel + y};
+        const ptrdiff_t x = (ptrdiff_t)(pairs.pair[i].texel % g->width);
+        const ptrdiff_t y = (ptrdiff_t)(pairs.pair[i].texel / g->width);
         double n[3];
         for (int c = 0; c < 3; c++)
             n[c] = depth[0] * (double)m[c * 3] + depth[1] * (double)m[c * 3 + 1] +
                    depth[2] * (double)m[c * 3 + 2];
         for (int k = 0; k < NEIGHBOURS; k++)
-            places->list[places->count++] = (struct place){at[k], {n[0], n[1], n[2]}};
+            places->list[places->count++] =
+                (struct place){x + to[k].x, y + to[k].y, {n[0], n[1], n[2]}};
     }
     gbuffer_free_pairs(&pairs);
     return places->list != NULL;

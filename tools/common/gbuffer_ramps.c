@@ -12,16 +12,18 @@
 
 enum { AXES = 2, MOST = 1 << 20, FEW = 20 };
 
-/* A texel as a place, and its normal, both in view space. */
+/* A texel as a place in view space. */
 struct point {
-    double place[3], normal[3];
-    bool is_known; /* there is something, and it has a normal */
+    size_t texel;
+    double place[3];
+    bool is_there;
 };
 
 /* How depth goes on from one texel to the next. */
 struct stride {
-    double rise, sine;      /* the least between it and the surfaces that it joins */
-    bool is_known, is_step; /* that normals do not explain */
+    double rise, sine; /* the least between it and the surfaces that it joins */
+    bool is_step;      /* that normals do not explain */
+    double normals[2][3];
 };
 
 struct borders {
@@ -31,23 +33,29 @@ struct borders {
 
 static struct point point_at(const struct gbuffer *g, size_t texel)
 {
-    struct point p = {.is_known = gbuffer_is_foreground(g, texel)};
+    struct point p = {.texel = texel, .is_there = gbuffer_is_foreground(g, texel)};
     const double z = gbuffer_view_z(g, g->depth[texel], texel);
     const double scale = g->camera.type == CAMERA_ORTHOGRAPHIC ? 1.0 : z;
-    double square = 0, x, y;
+    double x, y;
     camera_ray(&g->camera, &g->display_window, &g->data_window, (double)(texel % g->width),
                (double)(texel / g->width), &x, &y);
     p.place[0] = x * scale;
     p.place[1] = y * scale;
     p.place[2] = -z;
-    gbuffer_view_normal(g, texel, p.normal);
-    for (int c = 0; c < 3; c++)
-        square += p.normal[c] * p.normal[c];
-    for (int c = 0; c < 3; c++)
-        p.normal[c] /= sqrt(square);
-    /* Means of both sides of an edge are shorter than 1, and less than this points nowhere. */
-    p.is_known = p.is_known && square > 0.04;
     return p;
+}
+
+/* False if there is nothing, or if it has no normal: means of both sides of an edge are shorter than
+ * 1, and less than this points nowhere. */
+static bool find_normal(const struct gbuffer *g, const struct point *p, double normal[3])
+{
+    double square = 0;
+    gbuffer_view_normal(g, p->texel, normal);
+    for (int c = 0; c < 3; c++)
+        square += normal[c] * normal[c];
+    for (int c = 0; c < 3; c++)
+        normal[c] /= sqrt(square);
+    return p->is_there && square > 0.04;
 }
 
 /* The sine of the angle between a way and a surface. */
@@ -61,24 +69,37 @@ static double leaves(const double way[3], const double normal[3])
     return fabs(dot) / sqrt(square);
 }
 
-static struct stride stride_between(const struct point *a, const struct point *b)
+/* Most rise so little that normals need not be asked. */
+static struct stride stride_between(const struct gbuffer *g, const struct point *a,
+                                    const struct point *b)
 {
     static const double least_sine = 0.2; /* 12 degrees: bumps and round things turn less */
     static const double least_rise = 0.01;
-    struct stride s = {.rise = a->place[2] - b->place[2], .is_known = a->is_known && b->is_known};
+    struct stride s = {.rise = a->place[2] - b->place[2]};
     double way[3];
+    if (!(fabs(s.rise) > least_rise * fmin(-a->place[2], -b->place[2])) ||
+        !find_normal(g, a, s.normals[0]) || !find_normal(g, b, s.normals[1]))
+        return s;
     for (int c = 0; c < 3; c++)
         way[c] = b->place[c] - a->place[c];
-    s.sine = fmin(leaves(way, a->normal), leaves(way, b->normal));
-    s.is_step = s.is_known && s.sine > least_sine &&
-                fabs(s.rise) > least_rise * fmin(-a->place[2], -b->place[2]);
+    s.sine = fmin(leaves(way, s.normals[0]), leaves(way, s.normals[1]));
+    s.is_step = s.sine > least_sine;
     return s;
 }
 
-/* Steps of one sign, one after the other, and the normals where they begin and after the first. */
+/* What is not known rises without end. */
+static double known_rise(const struct gbuffer *g, const struct point *a, const struct point *b)
+{
+    double normal[3];
+    return find_normal(g, a, normal) && find_normal(g, b, normal) ? a->place[2] - b->place[2]
+                                                                  : INFINITY;
+}
+
+/* Steps of one sign, one after the other, and the normals where they begin, after the first and at
+ * the end. */
 struct run {
     double sum, most, before, nearest, sines;
-    double first[3], second[3];
+    double first[3], second[3], last[3];
     size_t length;
 };
 
@@ -89,24 +110,23 @@ static double angle(const double a[3], const double b[3])
 
 /* A mean of two normals lies on the way from one to the other. What does not is a thing of its
  * own, of a texel. */
-static bool is_third(const struct run *run, const struct point *last)
+static bool is_third(const struct run *run, const double last[3])
 {
     static const double most_detour = 0.3; /* 17 degrees */
-    const double by_way = angle(run->first, run->second) + angle(run->second, last->normal);
-    return run->length == 2 && by_way > angle(run->first, last->normal) + most_detour;
+    const double by_way = angle(run->first, run->second) + angle(run->second, last);
+    return run->length == 2 && by_way > angle(run->first, last) + most_detour;
 }
 
 /* Of a run that lies between two surfaces, whether one step is nearly all of it. */
-static void end_run(struct borders *borders, const struct run *run, const struct point *last,
-                    const struct stride *after)
+static void end_run(struct borders *borders, const struct run *run, double after)
 {
     static const double least_sum = 0.1, upright = 0.5;
     const double sum = fabs(run->sum), mean = sum / (double)run->length;
     const bool is_slanted = run->sines < upright * (double)run->length;
-    if (run->length == 0 || !(sum > least_sum * run->nearest) || !after->is_known ||
-        !(fabs(run->before) < 0.5 * mean) || !(fabs(after->rise) < 0.5 * mean))
+    if (!(sum > least_sum * run->nearest) || !(fabs(run->before) < 0.5 * mean) ||
+        !(fabs(after) < 0.5 * mean))
         return;
-    if (run->most > 0.85 * sum || is_third(run, last))
+    if (run->most > 0.85 * sum || is_third(run, run->last))
         borders->steps++;
     else if (run->length >= 3 && run->most < 0.6 * sum)
         *(is_slanted ? &borders->slanted : &borders->ramps) += 1;
@@ -117,29 +137,30 @@ static void end_run(struct borders *borders, const struct run *run, const struct
 static void look_along(struct borders *borders, const struct gbuffer *g, size_t first, size_t axis,
                        size_t count)
 {
-    struct point here = point_at(g, first);
-    struct stride before = {0};
-    struct run run = {0};
+    struct point before = {0}, here = point_at(g, first);
+    struct run run = {.length = 0};
     for (size_t i = 1; i < count; i++) {
         const struct point next = point_at(g, first + i * axis);
-        const struct stride s = stride_between(&here, &next);
-        const bool goes_on = s.is_step && run.length > 0 && (s.rise > 0) == (run.sum > 0);
-        if (!goes_on) {
-            end_run(borders, &run, &here, &s);
-            run = (struct run){.before = before.is_known ? before.rise : INFINITY,
+        const struct stride s = stride_between(g, &here, &next);
+        if (run.length > 0 && !(s.is_step && (s.rise > 0) == (run.sum > 0))) {
+            end_run(borders, &run, known_rise(g, &here, &next));
+            run.length = 0;
+        }
+        if (s.is_step && run.length == 0) {
+            run = (struct run){.before = i > 1 ? known_rise(g, &before, &here) : INFINITY,
                                .nearest = INFINITY};
+            memcpy(run.first, s.normals[0], sizeof run.first);
+            memcpy(run.second, s.normals[1], sizeof run.second);
         }
         if (s.is_step) {
             run.sum += s.rise;
             run.sines += s.sine;
             run.most = fmax(run.most, fabs(s.rise));
             run.nearest = fmin(run.nearest, fmin(-here.place[2], -next.place[2]));
-            if (run.length++ == 0) {
-                memcpy(run.first, here.normal, sizeof run.first);
-                memcpy(run.second, next.normal, sizeof run.second);
-            }
+            run.length++;
+            memcpy(run.last, s.normals[1], sizeof run.last);
         }
-        before = s;
+        before = here;
         here = next;
     }
 }
