@@ -315,7 +315,7 @@ void vkao_program_destroy(struct vkao_program *program)
     for (uint32_t i = 0; i < program->count; ++i) {
         const struct vkao_step *step = &program->steps[i];
         for (uint32_t form = 0; form < VKAO_MOST_FORMS; ++form) {
-            const VkPipeline pipeline = atomic_load(&step->forms[form]);
+            VkPipeline pipeline = atomic_load(&step->forms[form]);
             if (pipeline)
                 ctx->vk.DestroyPipeline(ctx->device, pipeline, ctx->allocator);
         }

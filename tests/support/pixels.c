@@ -46,8 +46,8 @@ uint32_t pixels_components(VkFormat format)
     return f ? f->components : 0;
 }
 
-/* Of exponents that are those of normal numbers. As ldexp(1, exponent), which takes most of the time
- * of a test that has many images. */
+/* Of exponents that are those of normal numbers. ldexp(1, exponent) is the same, and takes most of
+ * the time of a test that has many images. */
 static double power_of_two(int exponent)
 {
     const uint64_t bits = (uint64_t)(exponent + 1023) << 52;

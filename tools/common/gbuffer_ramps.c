@@ -45,8 +45,8 @@ static struct point point_at(const struct gbuffer *g, size_t texel)
     return p;
 }
 
-/* False if there is nothing, or if it has no normal: means of both sides of an edge are shorter than
- * 1, and less than this points nowhere. */
+/* False if there is nothing, or if it has no normal: means of both sides of an edge are shorter
+ * than 1, and less than this points nowhere. */
 static bool find_normal(const struct gbuffer *g, const struct point *p, double normal[3])
 {
     double square = 0;

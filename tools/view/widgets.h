@@ -23,8 +23,8 @@ void widgets_destroy(void);
 /* Sizes that text can have: the nearest to `scale` texels of the framebuffer per unit, a unit being
  * a texel of a monitor of 96 dpi. */
 double widgets_scale(double scale);
-/* A frame sees one press or release of the left button, and it where it happened: those that one
- * frame kept it waiting for are then not one, and click on what was there. NULL if there is none. */
+/* A frame sees one press or release of the left button, where it happened: what came while the
+ * frame before was computed is then not lost, and clicks on what was there. NULL: there is none. */
 void widgets_begin_frame(double scale, const struct button_event *event);
 /* Inside the render pass; ends the frame. cmd may be VK_NULL_HANDLE to drop what was drawn. */
 bool widgets_end_frame(VkCommandBuffer cmd, struct tool_error *err);
