@@ -296,6 +296,26 @@ def enlarged_normals_are_said(scratch, _, times, is_said):
         equal(f"normals 'N' are enlarged {times} times" in said, is_said, f'whether in {said}')
 
 
+def nearest_of(plane, rows, columns):
+    """Of an image of so many rows and columns, enlarged to the size that it had."""
+    for axis, count in enumerate((rows, columns)):
+        size = plane.shape[axis]
+        small = ((np.arange(count) + 0.5) * size / count).astype(int)
+        plane = np.take(plane, small[np.arange(size) * count // size], axis)
+    return plane
+
+
+@cases([('two thirds', 2 / 3), ('three quarters', 3 / 4), ('two fifths', 2 / 5), ('all', 1)])
+def normals_enlarged_by_no_whole_number_are_said(scratch, _, part):
+    depth, normals = cards()
+    depth, normals = depth[:-1, :-1], {n: p[:-1, :-1] for n, p in normals.items()}
+    rows, columns = (int(size * part) for size in depth.shape)
+    normals = {n: nearest_of(p, rows, columns) for n, p in normals.items()}
+    write_exr(scratch.path('in.exr'), {'Z': depth, **normals})
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    equal('times without interpolation' in said, part < 1, f'whether it is in {said}')
+
+
 @cases([('much', 1e-3, True), ('less than AO shows', 3e-5, False), ('none', 0, False)])
 def noisy_depth_is_said(scratch, _, amount, is_said):
     scene = Scene()

@@ -259,15 +259,15 @@ void gbuffer_warn_of_borders(const struct gbuffer *g, const char *path, struct r
     const char *normals = g->roles.kind[ROLE_NORMAL].label;
     if (!g->normals || g->block_size > 1)
         return;
-    const unsigned block = gbuffer_block_size_of_normals(g);
+    const double enlargement = gbuffer_enlargement_of_normals(g);
     const struct borders b = look(g);
     const int nearest = nearest_or_farthest(&b);
-    if (block > 1)
+    if (enlargement > 1.0)
         report_warn(report, "enlarged normals",
-                    "%s: normals '%s' are enlarged %u times without interpolation: their borders "
+                    "%s: normals '%s' are enlarged %.3g times without interpolation: their borders "
                     "lie beside those of depth, where AO is wrong; write them at full size, or "
                     "derive them from depth by --normal none",
-                    path, normals, block);
+                    path, normals, enlargement);
     else if (slow_share(&b.turns) > slower)
         report_warn(report, "blurred normals",
                     "%s: normals '%s' are blurred (denoised, or enlarged): they turn little by "

@@ -163,13 +163,91 @@ static bool has_free_edges(const struct gbuffer *g, unsigned block)
 }
 
 /* Things without bends have edges alone, which lie in a pattern if those of depth do. */
-unsigned gbuffer_block_size_of_normals(const struct gbuffer *g)
+static unsigned block_size_of_normals(const struct gbuffer *g)
 {
     for (unsigned block = MOST_BLOCK; block > 1; block--)
         if (has_blocks(g, do_normals_bend, block) ||
             (has_blocks(g, do_normals_change, block) && has_free_edges(g, block)))
             return block;
     return 1;
+}
+
+/* Whether any normal of a column, or of a row, is another than its neighbour's in the next line,
+ * whichever way both point. */
+static bool do_lines_differ(const struct gbuffer *g, int axis, size_t at)
+{
+    const size_t along = axis ? 1 : g->width, across = axis ? g->width : 1;
+    const size_t count = axis ? g->width : g->height;
+    for (size_t i = 0; i < count; i++) {
+        const float *a = g->normals + (at * across + i * along) * 4, *b = a + across * 4;
+        const float opposite[3] = {-b[0], -b[1], -b[2]};
+        if (gbuffer_apart(a, b) > least_bend && gbuffer_apart(a, opposite) > least_bend)
+            return true;
+    }
+    return false;
+}
+
+/* Of one thing before another. */
+static size_t count_line_steps(const struct gbuffer *g, int axis, size_t at)
+{
+    const size_t along = axis ? 1 : g->width, across = axis ? g->width : 1;
+    const size_t count = axis ? g->width : g->height;
+    size_t steps = 0;
+    for (size_t i = 0; i < count; i++) {
+        const size_t first = at * across + i * along, second = first + across;
+        steps += gbuffer_is_foreground(g, first) && gbuffer_is_foreground(g, second) &&
+                 does_depth_step(g, first, second);
+    }
+    return steps;
+}
+
+/* Enlarged by a factor that is no whole number, normals are repeated in some lines and not in those
+ * beside them, and depth steps in these as in the others. Where nothing bends many lines are the
+ * same, but then depth has no steps there either. Returns the factor, or 1. */
+static double line_enlargement(const struct gbuffer *g, int axis)
+{
+    enum { FEW_RUNS = 8, FEW_STEPS = 24 };
+    const size_t size = axis ? g->height : g->width;
+    size_t runs[MOST_BLOCK] = {0}, run = 0, all = 0, repeated = 0, different = 0;
+    size_t steps_of_repeated = 0, steps_beside = 0;
+    for (size_t at = 0; at + 1 < size; at++) {
+        if (!do_lines_differ(g, axis, at)) {
+            run++;
+            continue;
+        }
+        if (different > 0 && run > 0 && run < MOST_BLOCK) {
+            for (size_t k = 1; k <= run; k++)
+                steps_of_repeated += count_line_steps(g, axis, at - k);
+            steps_beside += count_line_steps(g, axis, at);
+            repeated += run;
+            all++;
+        }
+        runs[run < MOST_BLOCK ? run : 0] += different > 0 && run < MOST_BLOCK;
+        different++;
+        run = 0;
+    }
+    /* Two lengths, one apart, are all that a factor makes. */
+    size_t regular = 0, count = 0;
+    for (unsigned i = 0; i < MOST_BLOCK; i++) {
+        const size_t two = runs[i] + (i + 1 < MOST_BLOCK ? runs[i + 1] : 0);
+        regular = two > regular ? two : regular;
+        count += runs[i];
+    }
+    const bool is_repeated = all >= FEW_RUNS && repeated * 8 >= different;
+    const bool has_steps =
+        steps_of_repeated >= FEW_STEPS && 2 * steps_of_repeated * all >= steps_beside * repeated;
+    return is_repeated && has_steps && regular * 10 >= count * 9
+               ? 1.0 + (double)repeated / (double)count
+               : 1.0;
+}
+
+double gbuffer_enlargement_of_normals(const struct gbuffer *g)
+{
+    const unsigned block = block_size_of_normals(g);
+    if (block > 1)
+        return block;
+    const double across = line_enlargement(g, 0);
+    return across > 1.0 ? fmin(across, line_enlargement(g, 1)) : 1.0;
 }
 
 /* --- Ridges --- */

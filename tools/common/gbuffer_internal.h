@@ -172,8 +172,8 @@ bool gbuffer_find_step(const struct gbuffer *g, double *step);
 bool gbuffer_holds_halves(const struct gbuffer *g);
 /* Of depth as stored: 1, or what it was enlarged by without interpolation. */
 unsigned gbuffer_block_size(const struct gbuffer *g);
-/* The same of normals, once they are decoded. */
-unsigned gbuffer_block_size_of_normals(const struct gbuffer *g);
+/* The same of normals, once they are decoded; no whole number perhaps. */
+double gbuffer_enlargement_of_normals(const struct gbuffer *g);
 /* Of depth as stored: 1, or the side of the square whose nearest or farthest value each texel
  * has. */
 unsigned gbuffer_ridge_width(const struct gbuffer *g);
