@@ -103,51 +103,6 @@ def floor_beneath_smooth_things_does_not_decide_alone(scratch, width, height, fo
     equal(camera['rotation'], 'estimated', 'rotation')
 
 
-# z = a x + b y + c: few, and those that touch a dome.
-CORNERS = ((0.7, 0.1, 5), (-0.6, 0.3, 5), (0.1, -0.9, 4.6), (0.2, 0.8, 5.2))
-DOME = tuple((-0.5 * x, -0.5 * y, 5 + 0.25 * (x * x + y * y)) for x in (-2, -0.7, 0.6, 1.9)
-             for y in (-1.2, 0.1, 1.3))
-
-
-def corners(width, height, half, space, planes=CORNERS):
-    """Boxes' corners seen by a parallel camera: z is the nearest of planes."""
-    x = ((np.arange(width) + 0.5) / width * 2 - 1) * half
-    y = (1 - (np.arange(height) + 0.5) / height * 2) * half * height / width
-    x, y = np.meshgrid(x, y)
-    z, normals = np.full_like(x, np.inf), np.zeros((height, width, 3))
-    for a, b, c in planes:
-        plane = a * x + b * y + c
-        normal = np.array([a, b, 1]) / np.sqrt(a * a + b * b + 1)
-        nearer = plane < z
-        z = np.where(nearer, plane, z)
-        normals = np.where(nearer[..., None], normal, normals)
-    if space == 'world':
-        normals = normals @ TURN
-    return {'Z': z.astype(np.float32),
-            **{f'N.{c}': normals[..., i].astype(np.float32) for i, c in enumerate('XYZ')}}
-
-
-@cases([('world',), ('camera',)])
-def parallel_camera_is_found(scratch, space):
-    write_exr(scratch.path('in.exr'), corners(160, 100, 2.4, space))
-    view, said = inspect(scratch)
-    equal(view['camera']['type'], 'orthographic', 'type')
-    check(abs(view['camera']['ortho_width'] / 4.8 - 1) < 0.01,
-          f'width {view["camera"]["ortho_width"]}, want 4.8')
-    matches('orthographic, width 4.8', said, 'the warning')
-
-
-@cases([('fraction', lambda z: 15 * z / (15 + z), r'a z / \(a \+ z\)'),
-        ('exponential', lambda z: 15 * (1 - np.exp(-z / 15)), r'a \(1 - exp\(-z / a\)\)')])
-def squeezed_depth_of_a_parallel_camera_is_said(scratch, _, squeeze, name):
-    # All of it only looks narrower.
-    channels = corners(320, 200, 2.4, 'world')
-    channels['Z'] = squeeze(channels['Z'])
-    write_exr(scratch.path('in.exr'), channels)
-    matches(rf"depth 'Z' looks squeezed, as {name} with a = 1[3-7]", inspect(scratch)[1],
-            'the warning')
-
-
 @case
 def cut_data_window_is_seen_in_its_display(scratch):
     scene, cut = Scene(200, 120, 66), (slice(30, 120), slice(20, 170))
@@ -159,16 +114,17 @@ def cut_data_window_is_seen_in_its_display(scratch):
           f'{camera["fov_x_deg"]} degrees, want 66')
 
 
-@case
-def half_floats_are_enough(scratch):
+@cases([('half', np.float16), ('halves in float', np.float32)])
+def half_floats_are_enough(scratch, _, stored):
     scene = Scene(240, 160, 52)
     channels = {'Z': scene.depth(), **scene.normals(space='world')}
     channels = {k: np.where(np.isfinite(v), np.minimum(v, 65504), v).astype(np.float16)
                 for k, v in channels.items()}
-    write_exr(scratch.path('in.exr'), channels)
+    write_exr(scratch.path('in.exr'), {k: v.astype(stored) for k, v in channels.items()})
     camera = inspect(scratch)[0]['camera']
-    check(abs(half_width(camera['fov_x_deg']) / half_width(52) - 1) < 0.02
-          or camera['source'] == 'assumed', f'{camera["fov_x_deg"]} degrees, want 52 or nothing')
+    matches('^estimated', camera['source'], 'the source')
+    check(abs(half_width(camera['fov_x_deg']) / half_width(52) - 1) < 0.02,
+          f'{camera["fov_x_deg"]} degrees, want 52')
 
 
 @case
@@ -418,6 +374,15 @@ def wrong_field_of_view_is_no_squeeze_and_no_type(scratch, kind, told, times):
     check('as wide as high' not in said and 'says that depth' not in said, said)
 
 
+@cases([('a half', (320, 180), True), ('a third', (480, 270), True), ('a cut', (320, 200), False),
+        ('all of it', (160, 90), False)])
+def proxy_in_the_display_of_the_whole_is_said(scratch, _, size, is_said):
+    write_exr(scratch.path('in.exr'), {'Z': Scene().depth()},
+              display=(0, 0, size[0] - 1, size[1] - 1))
+    said = inspect(scratch, '--fov', FOV)[1]
+    equal('as in a proxy, camera and AO are wrong' in said, is_said, said)
+
+
 # --- Sequences ---
 
 def frames_of(scratch, fovs):
@@ -474,82 +439,6 @@ def another_depth_than_told_is_said_where_it_begins(scratch):
                           '--depth-type', 'planar').stderr
     equal(re.findall(r"in\.(\d+)\.exr: --depth-type says that depth 'Z' is planar, but", said),
           ['0003', '0006'], f'doubted frames in {said}')
-
-
-@cases([('perspective', ('--ortho', 7), True), ('parallel', ('--ortho', 4.8), False)])
-def parallel_camera_of_another_image_is_said(scratch, kind, options, is_said):
-    channels = {'Z': Scene().depth()} if kind == 'perspective' else corners(160, 100, 2.4, 'world')
-    write_exr(scratch.path('in.exr'), {'Z': channels['Z']})
-    said = inspect(scratch, *options)[1]
-    equal("flat things of depth 'Z' are flat only as 1/z" in said, is_said, said)
-    equal('if the image is in perspective after all, --fov DEGREES' in said, is_said, said)
-
-
-NUKE = [('nuke/version', '15.1v2')]
-
-
-@cases([('told', ('--ortho', 4.8), False, []), ('told, normals', ('--ortho', 4.8), True, []),
-        ('Nuke, told', ('--ortho', 4.8), False, NUKE),
-        ('Nuke, told, normals', ('--ortho', 4.8), True, NUKE),
-        ('Nuke, a dome', (), True, NUKE), ('a dome', (), True, [])])
-def inverse_depth_of_a_parallel_camera(scratch, name, options, has_normals, attributes):
-    # What few planes show may be a view in perspective as well.
-    planes = DOME if 'dome' in name else CORNERS
-    channels = corners(160, 100, 2.4, 'camera', planes)
-    channels = channels if has_normals else {'Z': channels['Z']}
-    write_exr(scratch.path('true.exr'), channels)
-    scratch.render('true.exr', '-o', 'true_ao.exr', *BASE, '--ortho', 4.8, '--depth-type', 'planar')
-    channels['depth.Z'] = 1 / channels.pop('Z')
-    write_exr(scratch.path('in.exr'), channels, attributes=attributes)
-    view, said = inspect(scratch, *options)
-    equal(view['conventions']['depth_type'], 'inverse', said)
-    check('not as 1/z' not in said, said)
-    scratch.render('in.exr', '-o', 'ao.exr', *BASE, *options)
-    rmse = np.sqrt(np.mean((read_ao(scratch.path('ao.exr')).astype(np.float64) -
-                            read_ao(scratch.path('true_ao.exr'))) ** 2))
-    check(rmse < 0.01, f'RMSE {rmse}: {said}')
-
-
-@case
-def distances_of_a_parallel_camera_through_nuke(scratch):
-    write_exr(scratch.path('in.exr'), {'depth.Z': corners(160, 100, 2.4, 'camera')['Z']},
-              attributes=NUKE)
-    view, said = inspect(scratch, '--ortho', 4.8)
-    equal(view['conventions']['depth_type'], 'planar', said)
-    matches('is taken as distances, not as 1/z', said, 'what is said')
-
-
-@case
-def perspective_is_no_inverse_depth_of_a_parallel_camera(scratch):
-    write_exr(scratch.path('in.exr'), {'Z': Scene().depth(), **Scene().normals()})
-    view, said = inspect(scratch, '--ortho', 7)
-    matches(r'--ortho says orthographic, width 7, but depth and normals 60\.?\d* degrees.* '
-            r'\(--fov 60\.?\d* or '
-            '--camera overrides', said, 'what is said')
-    equal(view['conventions']['depth_type'], 'planar', said)
-    view, said = inspect(scratch)
-    equal((view['camera']['type'], view['conventions']['depth_type']), ('perspective', 'planar'),
-          said)
-
-
-@case
-def parallel_image_whose_header_tells_a_field_of_view(scratch):
-    # With normals that see it depth is no 1/z, which it would be through that.
-    write_exr(scratch.path('in.exr'), corners(160, 100, 2.4, 'camera'),
-              attributes=[('CameraFov', 50.0)])
-    view, said = inspect(scratch)
-    equal(view['conventions']['depth_type'], 'planar', said)
-    matches(r'depth and normals orthographic, width 4\.8.*\(--ortho 4\.8 or --camera', said,
-            'what is said')
-
-
-@cases([('a half', (320, 180), True), ('a third', (480, 270), True), ('a cut', (320, 200), False),
-        ('all of it', (160, 90), False)])
-def proxy_in_the_display_of_the_whole_is_said(scratch, _, size, is_said):
-    write_exr(scratch.path('in.exr'), {'Z': Scene().depth()},
-              display=(0, 0, size[0] - 1, size[1] - 1))
-    said = inspect(scratch, '--fov', FOV)[1]
-    equal('as in a proxy, camera and AO are wrong' in said, is_said, said)
 
 
 # --- Not found, and not asked ---

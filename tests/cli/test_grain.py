@@ -173,7 +173,8 @@ def narrow_tops_before_a_floor_are_where_they_are(scratch):
 
 @cases([('a texel to the right', 0, 1), ('a texel to the left', 0, -1), ('a texel below', 1, 0),
         ('a texel above', -1, 0), ('6 texels to the right', 0, 6), ('8 texels above', -8, 0),
-        ('3 texels to the left and 2 texels below', 2, -3)])
+        ('3 texels to the left and 2 texels below', 2, -3),
+        ('9 texels to the right and 7 texels below', 7, 9)])
 def depth_and_normals_of_different_places_are_said(scratch, where, down, right):
     # Flat things, small and large, and round ones.
     scene = Scene(320, 180)

@@ -263,6 +263,8 @@ static VKAPI_ATTR VkResult VKAPI_CALL fake_CreateComputePipelines(
     }
     *out = (VkPipeline)(uintptr_t)handle;
     pthread_mutex_unlock(&fake->lock);
+    if (fake->compiling)
+        pthread_barrier_wait(fake->compiling);
     return result;
 }
 

@@ -110,6 +110,8 @@ struct fake_vulkan {
     bool fail_from;      /* and every one after it */
     VkResult fail_result;
     const VkAllocationCallbacks *expected_allocator; /* must be given to every create and destroy */
+    /* If not NULL: who compiles a pipeline waits here with it, as long as compiling takes. */
+    pthread_barrier_t *compiling;
 
     /* What happened. */
     unsigned result_calls;

@@ -7,6 +7,7 @@
 
 #include "cpu/layout.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -212,6 +213,72 @@ static void ao_is_copied_if_its_image_is_given(void **state)
     }
 }
 
+/* What the first frame without the image adds fails at each call in turn; then it does not. */
+static void late_passes_that_fail_leave_a_whole_effect(void **state)
+{
+    (void)state;
+    unsigned failures = 0;
+    for (unsigned nth = 1;; ++nth) {
+        struct world w;
+        open_cpu(&w);
+        world_create_effect(&w);
+        const size_t compiled = fake_count(&w.fake, "vkCreateComputePipelines");
+        w.fake.fail_at = w.fake.result_calls + nth;
+        w.fake.failed = NULL;
+        const vkao_result result = vkao_frame_create(w.effect, &w.frame_info, &w.frame);
+        w.fake.fail_at = 0;
+        const bool has_failed = w.fake.failed;
+        assert_int_equal(result == VKAO_SUCCESS, !has_failed);
+        if (has_failed) {
+            assert_null(w.frame);
+            failures++;
+            assert_int_equal(vkao_frame_create(w.effect, &w.frame_info, &w.frame), VKAO_SUCCESS);
+        }
+        assert_true(fake_count(&w.fake, "vkCreateComputePipelines") >= compiled + 2);
+        assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+        world_close(&w);
+        if (!has_failed)
+            break;
+    }
+    /* A module and two pipelines are not all that a frame makes. */
+    assert_true(failures > 3);
+}
+
+static void *complete(void *effect)
+{
+    const vkao_result result = vkao_program_complete(((vkao_effect *)effect)->passes, false);
+    return result == VKAO_SUCCESS ? effect : NULL;
+}
+
+/* Each compiles what is missing, and one of two that are alike is destroyed. */
+static void frames_of_two_threads_add_late_passes_once(void **state)
+{
+    (void)state;
+    struct world w;
+    open_cpu(&w);
+    world_create_effect(&w);
+    const size_t compiled = fake_count(&w.fake, "vkCreateComputePipelines");
+    const size_t live = fake_live_of(&w.fake, VK_OBJECT_TYPE_PIPELINE);
+    pthread_barrier_t compiling;
+    assert_int_equal(pthread_barrier_init(&compiling, NULL, 2), 0);
+    w.fake.compiling = &compiling;
+    pthread_t threads[2];
+    for (int i = 0; i < 2; ++i)
+        assert_int_equal(pthread_create(&threads[i], NULL, complete, w.effect), 0);
+    for (int i = 0; i < 2; ++i) {
+        void *done;
+        pthread_join(threads[i], &done);
+        assert_non_null(done);
+    }
+    w.fake.compiling = NULL;
+    pthread_barrier_destroy(&compiling);
+    assert_int_equal(fake_count(&w.fake, "vkCreateComputePipelines"), compiled + 4);
+    assert_int_equal(fake_live_of(&w.fake, VK_OBJECT_TYPE_PIPELINE), live + 2);
+    assert_int_equal(vkao_frame_create(w.effect, &w.frame_info, &w.frame), VKAO_SUCCESS);
+    assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
+    world_close(&w);
+}
+
 /* The directions of the blur take turns: what either needs is needed until both have ended. */
 static void parts_that_are_needed_together_do_not_overlap(void **state)
 {
@@ -336,6 +403,8 @@ int main(void)
         cmocka_unit_test(strips_cover_the_rect_once),
         cmocka_unit_test(tiles_are_those_of_the_rect),
         cmocka_unit_test(ao_is_copied_if_its_image_is_given),
+        cmocka_unit_test(late_passes_that_fail_leave_a_whole_effect),
+        cmocka_unit_test(frames_of_two_threads_add_late_passes_once),
         cmocka_unit_test(parts_that_are_needed_together_do_not_overlap),
         cmocka_unit_test(images_follow_parts_that_have_ended),
         cmocka_unit_test(images_of_other_slots_are_refused),

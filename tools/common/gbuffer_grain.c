@@ -201,43 +201,64 @@ static size_t count_line_steps(const struct gbuffer *g, int axis, size_t at)
     return steps;
 }
 
-/* Enlarged by a factor that is no whole number, normals are repeated in some lines and not in those
- * beside them, and depth steps in these as in the others. Where nothing bends many lines are the
- * same, but then depth has no steps there either. Returns the factor, or 1. */
-static double line_enlargement(const struct gbuffer *g, int axis)
+/* Of lines, along an axis, that are the same as those beside them. */
+struct repeats {
+    size_t lengths[MOST_BLOCK]; /* places by how many lines are repeated there */
+    size_t places, repeated, different;
+    size_t steps_of_repeated, steps_beside; /* of depth, there and in the lines that differ */
+};
+
+static void find_repeats(const struct gbuffer *g, int axis, struct repeats *r)
 {
-    enum { FEW_RUNS = 8, FEW_STEPS = 24 };
     const size_t size = axis ? g->height : g->width;
-    size_t runs[MOST_BLOCK] = {0}, run = 0, all = 0, repeated = 0, different = 0;
-    size_t steps_of_repeated = 0, steps_beside = 0;
+    size_t run = 0;
+    *r = (struct repeats){0};
     for (size_t at = 0; at + 1 < size; at++) {
         if (!do_lines_differ(g, axis, at)) {
             run++;
             continue;
         }
-        if (different > 0 && run > 0 && run < MOST_BLOCK) {
+        if (r->different > 0 && run < MOST_BLOCK)
+            r->lengths[run]++;
+        if (r->different > 0 && run > 0 && run < MOST_BLOCK) {
             for (size_t k = 1; k <= run; k++)
-                steps_of_repeated += count_line_steps(g, axis, at - k);
-            steps_beside += count_line_steps(g, axis, at);
-            repeated += run;
-            all++;
+                r->steps_of_repeated += count_line_steps(g, axis, at - k);
+            r->steps_beside += count_line_steps(g, axis, at);
+            r->repeated += run;
+            r->places++;
         }
-        runs[run < MOST_BLOCK ? run : 0] += different > 0 && run < MOST_BLOCK;
-        different++;
+        r->different++;
         run = 0;
     }
+}
+
+/* Chosen by hand: of 27 ray-traced images enlarged by 1.25 to 2.5 these tell 22, and of 182 clean
+ * ones, 109 of them of pickets and boxes with parallel faces, none. */
+enum { FEW_PLACES = 8, FEW_STEPS = 24 };
+static const double few_lines = 0.125, few_steps = 0.5, irregular = 0.1;
+
+/* Enlarged by a factor that is no whole number, normals are repeated in some lines and not in those
+ * beside them, and depth steps in these as in the others. Where nothing bends many lines are the
+ * same, but then depth has no steps there either. Returns the factor, or 1. */
+static double line_enlargement(const struct gbuffer *g, int axis)
+{
+    struct repeats r;
+    find_repeats(g, axis, &r);
     /* Two lengths, one apart, are all that a factor makes. */
     size_t regular = 0, count = 0;
     for (unsigned i = 0; i < MOST_BLOCK; i++) {
-        const size_t two = runs[i] + (i + 1 < MOST_BLOCK ? runs[i + 1] : 0);
+        const size_t two = r.lengths[i] + (i + 1 < MOST_BLOCK ? r.lengths[i + 1] : 0);
         regular = two > regular ? two : regular;
-        count += runs[i];
+        count += r.lengths[i];
     }
-    const bool is_repeated = all >= FEW_RUNS && repeated * 8 >= different;
-    const bool has_steps =
-        steps_of_repeated >= FEW_STEPS && 2 * steps_of_repeated * all >= steps_beside * repeated;
-    return is_repeated && has_steps && regular * 10 >= count * 9
-               ? 1.0 + (double)repeated / (double)count
+    if (r.places < FEW_PLACES || (double)r.repeated < few_lines * (double)r.different ||
+        (double)(count - regular) > irregular * (double)count)
+        return 1.0;
+    /* Per line. */
+    const double there = (double)r.steps_of_repeated / (double)r.repeated;
+    const double beside = (double)r.steps_beside / (double)r.places;
+    return r.steps_of_repeated >= FEW_STEPS && there >= few_steps * beside
+               ? 1.0 + (double)r.repeated / (double)count
                : 1.0;
 }
 
