@@ -284,9 +284,35 @@ def device_depth_is_not_taken_for_distances(scratch, kind, planes):
     write_exr(scratch.path('in.exr'), {'depth': scene.depth(kind)})
     scratch.fails(CHANNELS, "in.exr: depth 'depth' is from ", 'in.exr', '-o', 'x.exr', '--fov',
                   FOV, hint='--near')
-    ao, _ = run(scratch, {'depth': scene.depth(kind)}, '--fov', FOV, '--depth-type', 'device',
-                *planes)
-    check_same(ao, wanted, kind)
+    for options in (('--depth-type', 'device'), ()):
+        ao, said = run(scratch, {'depth': scene.depth(kind)}, '--fov', FOV, *options, *planes)
+        check_same(ao, wanted, kind)
+        equal('taken for a depth buffer (--depth-type' in said, not options, said)
+
+
+@case
+def told_ends_say_the_type_of_depth_from_0_to_1(scratch):
+    scene, ends = Scene(), ('--depth-range', '0,20')
+    wanted, _ = clean(scratch, scene)
+    parts = {'Z': depth_of(scene, 1, 1 / 20), **scene.normals(space='world')}
+    ao, said = run(scratch, parts, '--fov', FOV, *ends)
+    check_same(ao, wanted, said)
+    matches('--depth-range is given: taken for parts of that range', said, 'stderr')
+    # Of other depth planes are told as well, and a range is a mistake.
+    for unit, options, want in ((1, ('--near', 0.1, '--far', 100), ''),
+                                (0.01, ('--near', 0.001, '--far', 1), ''),
+                                (1, ends, "--depth-range is left aside: depth 'Z' is taken for ")):
+        write_exr(scratch.path('in.exr'),
+                  {'Z': depth_of(scene, 1e10, unit), **scene.normals(space='world')})
+        view = inspect(scratch, '--fov', FOV, *options)
+        said = str(view['warnings'])
+        equal(view['conventions']['depth_type'], 'planar', said)
+        equal('left aside' in said, bool(want), said)
+        matches(want, said, 'what is said')
+    # Normals may know better.
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth('device'), **scene.normals()})
+    matches("--depth-range says that depth 'Z' is normalized, but by normals 'N' it is device",
+            str(inspect(scratch, '--fov', FOV, *ends)['warnings']), 'what is said')
 
 
 @case

@@ -588,6 +588,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     struct report unheard = {.verbosity = REPORT_QUIET};
     struct layer_signs thickness = {0}, second = {0};
     float *positions = NULL;
+    enum depth_type by_ends;
     bool is_moved, is_empty;
     if (g->camera.remark[0])
         report_warn(report, "camera remark", "%s: %s", info->path, g->camera.remark);
@@ -614,6 +615,13 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         goto failed;
     free(positions);
     positions = NULL;
+    if (!gbuffer_find_told_ends(g, options, &by_ends, report, err))
+        goto failed;
+    if (by_ends != DEPTH_AUTO) {
+        with_type = *options;
+        with_type.depth_type = by_ends;
+        options = &with_type;
+    }
     gbuffer_turn_depth(g, options, report);
     if (!gbuffer_find_camera(g, options, depth->info->path, report, err) ||
         !read_behind(g, ROLE_THICKNESS, &g->thickness, &thickness, err) ||

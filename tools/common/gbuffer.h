@@ -51,7 +51,8 @@ enum depth_source {
     DEPTH_BY_NORMALS,    /* those of depth are the stored ones */
     DEPTH_BY_POSITIONS,  /* it was none */
     DEPTH_BY_CONVENTION, /* of the program that wrote the file */
-    DEPTH_BY_CAMERA      /* the camera file says so */
+    DEPTH_BY_CAMERA,     /* the camera file says so */
+    DEPTH_BY_ENDS        /* --near and --far, or --depth-range, say what its ends stand for */
 };
 
 /* What flat things say: shares, in [0,1], of triples of texels that say so; all 0 if there are too
@@ -152,6 +153,7 @@ struct gbuffer {
 
     enum depth_type depth_type; /* of the file, never AUTO */
     enum depth_source depth_source;
+    bool has_told_ends;                   /* which say the type */
     struct depth_range depth_range;       /* of normalised depth */
     bool depth_is_half, depth_is_negated; /* as stored; -z, as view space has it */
     struct depth_planes planes;           /* if they were asked */

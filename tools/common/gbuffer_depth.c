@@ -425,6 +425,11 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
     if (!gbuffer_resolve_depth_type(g, info, options, report, err) || !check_range(g, path, err) ||
         !check_planes(g, path, err))
         return false;
+    if (g->depth_range.is_given && g->depth_type != DEPTH_NORMALIZED)
+        report_warn(report, "unused range",
+                    "%s: --depth-range is left aside: depth '%s' is taken for %s (--depth-type "
+                    "normalized overrides)",
+                    path, role->label, depth_type_name(g->depth_type));
     if (options->depth_type == DEPTH_AUTO && g->depth_source != DEPTH_BY_POSITIONS &&
         !gbuffer_warn_of_curve(g, path, report))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);

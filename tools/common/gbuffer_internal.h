@@ -234,6 +234,10 @@ bool gbuffer_read_holdout(const struct exr_info *info, struct gbuffer *g,
 /* Decoded normals have the 256 steps of a picture, which make round things flat. */
 bool gbuffer_are_normals_of_bytes(const struct gbuffer *g);
 
+/* DEVICE or NORMALIZED, if depth is from 0 to 1, no --depth-type is given and what its ends stand
+ * for is; else AUTO. Needs depth as stored. Errors: EXIT_MEMORY. */
+bool gbuffer_find_told_ends(struct gbuffer *g, const struct gbuffer_options *options,
+                            enum depth_type *type, struct report *report, struct tool_error *err);
 /* Turns negative z round. */
 void gbuffer_turn_depth(struct gbuffer *g, const struct gbuffer_options *options,
                         struct report *report);

@@ -335,6 +335,38 @@ static bool settle_range(struct gbuffer *g, const char *path, struct report *rep
     return true;
 }
 
+bool gbuffer_find_told_ends(struct gbuffer *g, const struct gbuffer_options *options,
+                            enum depth_type *type, struct report *report, struct tool_error *err)
+{
+    const struct role *role = &g->roles.kind[ROLE_DEPTH];
+    const bool has_planes = options->camera.near_plane > 0 && options->camera.far_plane > 0;
+    const bool has_range = options->depth_range.is_given;
+    struct depth_planes planes;
+    *type = DEPTH_AUTO;
+    if (options->depth_type != DEPTH_AUTO || role->depth_type != DEPTH_AUTO ||
+        g->depth_source != DEPTH_ASSUMED || has_planes == has_range)
+        return true;
+    const struct value_facts f = look_at_values(g);
+    if (!is_within_one(&f) || is_constant(&f))
+        return true;
+    g->background.limit = INFINITY;
+    if (!gbuffer_read_planes(g, &planes))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", role->info->path);
+    /* Of a range distances are flat too; planes are told of other depth as well. */
+    const enum planes_say say = listen(g, &planes);
+    if (has_planes && (say == SAY_PLANAR || say == SAY_RADIAL))
+        return true;
+    *type = has_planes ? DEPTH_DEVICE : DEPTH_NORMALIZED;
+    g->depth_type = *type;
+    g->has_told_ends = true;
+    report_warn(report, "told ends",
+                "%s: depth '%s' is from %.4g to %.4g and %s: taken for %s (--depth-type overrides)",
+                role->info->path, role->label, f.low, f.high,
+                has_planes ? "--near and --far are given" : "--depth-range is given",
+                has_planes ? "a depth buffer" : "parts of that range");
+    return true;
+}
+
 void gbuffer_turn_depth(struct gbuffer *g, const struct gbuffer_options *options,
                         struct report *report)
 {
@@ -373,7 +405,9 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
         return true;
     if (options->depth_type != DEPTH_AUTO) {
         take(g, options->depth_type,
-             g->camera.depth_type != DEPTH_AUTO ? DEPTH_BY_CAMERA : DEPTH_BY_OPTION);
+             g->camera.depth_type != DEPTH_AUTO ? DEPTH_BY_CAMERA
+             : g->has_told_ends                 ? DEPTH_BY_ENDS
+                                                : DEPTH_BY_OPTION);
         return g->depth_type != DEPTH_NORMALIZED || !g->depth_range.is_given ||
                settle_range(g, info->path, report, err);
     }

@@ -87,6 +87,7 @@ void gbuffer_tell_type(const struct gbuffer *g, const struct gbuffer_options *op
                        struct report *report)
 {
     const char *type = depth_type_name(g->depth_type);
+    const bool is_range = g->depth_type == DEPTH_NORMALIZED;
     char remedy[REMEDY_BYTES];
     describe_remedy(g, other, remedy);
     report_warn_of_frame(
@@ -95,6 +96,7 @@ void gbuffer_tell_type(const struct gbuffer *g, const struct gbuffer_options *op
         "then, and %.0f %% as it says): %s is taken (--depth-type %s overrides)",
         path,
         g->camera.depth_type != DEPTH_AUTO  ? "the camera file"
+        : g->has_told_ends                  ? is_range ? "--depth-range" : "--far"
         : options->depth_type != DEPTH_AUTO ? "--depth-type"
                                             : "its name",
         g->roles.kind[ROLE_DEPTH].label, type, g->roles.kind[ROLE_NORMAL].label,

@@ -108,7 +108,8 @@ static const char *const source_names[] = {"assumed",
                                            "agreement of the normals",
                                            "from positions",
                                            "convention of the program",
-                                           "camera file"};
+                                           "camera file",
+                                           "--near and --far, or --depth-range"};
 
 static void add_depth_facts(cJSON *entry, const struct gbuffer *g)
 {
@@ -147,7 +148,7 @@ static void add_unconfirmed(cJSON *entry, const struct gbuffer *g)
     cJSON *list = cJSON_AddArrayToObject(entry, "unconfirmed");
     cJSON_AddItemToArray(list, cJSON_CreateString("camera"));
     if (source == DEPTH_ASSUMED || source == DEPTH_BY_OPTION || source == DEPTH_BY_NAME ||
-        source == DEPTH_BY_CAMERA)
+        source == DEPTH_BY_CAMERA || source == DEPTH_BY_ENDS)
         cJSON_AddItemToArray(list, cJSON_CreateString("depth type"));
 }
 
