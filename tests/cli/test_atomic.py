@@ -117,10 +117,18 @@ def outputs(scratch):
 
 
 def stereo(scratch):
+    os.mkdir(scratch.path('png'))
     depth = Scene(32, 18).depth()
     for n in (1, 2):
         write_exr(scratch.path(f'in.{n}.exr'), ({'Z': depth}, {'name': 'Z.l', 'view': 'l'}),
                   ({'Z': depth}, {'name': 'Z.r', 'view': 'r'}))
+
+
+def rename_shim():
+    shim = beside_vkao('..', '..', 'tests', 'cli', 'libvkao_rename_shim.so')
+    if not os.path.exists(shim):
+        skip(f'{shim} is not built')
+    return {'LD_PRELOAD': os.path.abspath(shim)}
 
 
 PAIR = ('in.@.exr', '-o', 'out.@.exr', '--view', 'all', '--fov', 60, '--radius', 0.5)
@@ -131,18 +139,15 @@ PAIR = ('in.@.exr', '-o', 'out.@.exr', '--view', 'all', '--fov', 60, '--radius',
 def kill_between_renames_is_mended_by_the_next_run(scratch, _, folder, number):
     """A frame whose EXR file is there has its previews, and one that lacks it is made anew, with
     previews that say whose they are."""
-    shim = beside_vkao('..', '..', 'tests', 'cli', 'libvkao_kill_shim.so')
-    if not os.path.exists(shim):
-        skip(f'{shim} is not built')
+    shim = rename_shim()
     stereo(scratch)
-    os.mkdir(scratch.path('png'))
     line = (*PAIR, '--preview', f'{folder}out.@.png', '--overwrite', 'skip')
     scratch.render(*line)
     wanted = outputs(scratch)
     equal(len(wanted), 6, 'outputs')
     for name in wanted:
         os.remove(scratch.path(folder if name.endswith('png') else '', name))
-    run = scratch.run(*line, env={'LD_PRELOAD': os.path.abspath(shim), 'VKAO_KILL_AT': str(number)})
+    run = scratch.run(*line, env={**shim, 'VKAO_KILL_AT': str(number)})
     equal(run.code, -signal.SIGKILL, 'exit code')
     left = outputs(scratch)
     equal(len([name for name in left if not name.endswith('.tmp')]), number - 1, 'files renamed')
@@ -153,6 +158,44 @@ def kill_between_renames_is_mended_by_the_next_run(scratch, _, folder, number):
         os.remove(scratch.path(folder if '.png.' in name else '', name))
     scratch.render(*line)
     equal(outputs(scratch), wanted, 'what the next run makes of it')
+
+
+def wait_for_stop(process):
+    end = time.monotonic() + TIMEOUT
+    while process.poll() is None and time.monotonic() < end:
+        with open(f'/proc/{process.pid}/stat', encoding='ascii') as file:
+            if file.read().rsplit(')', 1)[1].split()[0] == 'T':
+                return
+        time.sleep(0.001)
+    check(False, f'it has not stopped: {process.returncode}')
+
+
+@cases([*((f'{n}, the other all', n, 7) for n in range(1, 7)), ('1 and 2', 1, 2),
+        ('1 and 3', 1, 3), ('2 and 1', 2, 1), ('2 and 2', 2, 2), ('3 and 2', 3, 2),
+        ('3 and 3', 3, 3), ('4 and 2', 4, 2)])
+def runs_that_share_a_sequence_leave_what_the_other_has_made(scratch, _, first, second):
+    """Each stops before a rename until the other has ended, or has stopped too."""
+    shim, line = rename_shim(), (*PAIR, '--preview', 'out.@.png', '--overwrite', 'skip')
+    stereo(scratch)
+    scratch.render(*line)
+    wanted = outputs(scratch)
+    for name in wanted:
+        os.remove(scratch.path(name))
+    runs = []
+    for number in first, second:
+        runs.append(scratch.start(*(str(a) for a in line),
+                                  env={**shim, 'VKAO_STOP_AT': str(number)}))
+        if number < 7:
+            wait_for_stop(runs[-1])
+        else:
+            runs[-1].said = runs[-1].communicate(timeout=TIMEOUT)[1]
+    for run in runs:
+        if run.returncode is None:
+            run.send_signal(signal.SIGCONT)
+            run.said = run.communicate(timeout=TIMEOUT)[1]
+    for run in runs:
+        equal(run.returncode, OK, run.said)
+    equal(outputs(scratch), wanted, 'what they have made')
 
 
 @cases([('of another output', ('-o', 'other.1.exr')), ('without a note', ('by hand',)),

@@ -157,6 +157,32 @@ def output_over_the_camera_beside_is_refused(scratch):
                   'in.0001.camera.json', '--overwrite', 'always', *BESIDE)
 
 
+@cases([('INPUT', 'in', ()), ('--depth-file', 'd', ('--depth-file', 'd.####.exr'))])
+def output_must_not_be_a_file_of_another_frame(scratch, what, name, options):
+    """By a link, and by a name that is the input of another frame."""
+    sequence(scratch, (1, 2))
+    sequence(scratch, (1, 2), 'd.{:04d}.exr')
+    sequence(scratch, (1, 11), 'a1{:d}.exr')
+    os.symlink(f'{name}.0001.exr', scratch.path('ao.0002.exr'))
+    before = {name: scratch.bytes(name) for name in scratch.files()}
+    for when in ('always', 'skip'):
+        scratch.fails(USAGE, r'ao\.0002\.exr: --output of frame 2 and '
+                      f'{what} of frame 1 are the same file', 'in.####.exr', '-o', 'ao.####.exr',
+                      *options, '--overwrite', when, *VIEW, hint='remove links among them')
+    scratch.fails(USAGE, r'a11\.exr: --output of frame 11 and INPUT of frame 1 are the same file',
+                  'a1@.exr', '-o', 'a@.exr', '-f', '11,1', '--overwrite', 'always', *VIEW)
+    equal({name: scratch.bytes(name) for name in scratch.files()}, before, 'files')
+
+
+@case
+def outputs_of_two_frames_must_not_be_one_file(scratch):
+    sequence(scratch, (1, 2))
+    scratch.write('ao.0001.exr', 'old')
+    os.symlink('ao.0001.exr', scratch.path('ao.0002.exr'))
+    scratch.fails(USAGE, r'--output of frame 1 and --output of frame 2 are the same file',
+                  'in.####.exr', '-o', 'ao.####.exr', '--overwrite', 'always', *VIEW)
+
+
 @case
 def progress_names_every_frame(scratch):
     sequence(scratch)

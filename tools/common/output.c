@@ -99,21 +99,29 @@ static void color_part_name(const struct options *o, const struct rendered_view 
         snprintf(name, NAME_BYTES, "%s", base);
 }
 
-/* The plan checked the path as given; what it becomes for each view is known only now. */
+/* The plan checked the path as given; what it becomes for each view is known only now. Names of
+ * views may differ in what a path cannot have. */
 static bool check_previews(const struct options *options, const struct plan_frame *frame,
                            const struct frame_source *source, struct tool_error *err)
 {
-    for (size_t v = 0; source->view_count > 1 && v < source->view_count; v++) {
-        struct text path = {0};
-        preview_path(frame->preview, source->views[v].name, source->view_count, &path);
-        const bool ok = path.data && !path.out_of_memory
-                            ? plan_check_preview(options, frame, path.data, err)
-                            : fail(err, EXIT_MEMORY, "%s: out of memory", frame->preview);
-        text_free(&path);
-        if (!ok)
-            return false;
+    const struct view *views = source->views;
+    struct text paths[MAX_VIEWS] = {0};
+    bool ok = true;
+    for (size_t v = 0; ok && source->view_count > 1 && v < source->view_count; v++) {
+        preview_path(frame->preview, views[v].name, source->view_count, &paths[v]);
+        if (!paths[v].data || paths[v].out_of_memory)
+            ok = fail(err, EXIT_MEMORY, "%s: out of memory", frame->preview);
+        for (size_t other = 0; ok && other < v; other++)
+            if (strcmp(paths[v].data, paths[other].data) == 0) {
+                fail_hint(err, "choose one: --view NAME");
+                ok = fail(err, EXIT_OUTPUT, "%s: the preview of both views '%s' and '%s'",
+                          paths[v].data, views[other].name, views[v].name);
+            }
+        ok = ok && plan_check_preview(options, frame, paths[v].data, err);
     }
-    return true;
+    for (size_t v = 0; v < source->view_count; v++)
+        text_free(&paths[v]);
+    return ok;
 }
 
 static const char *const bent_names[] = {"bent.X", "bent.Y", "bent.Z"};
@@ -355,17 +363,43 @@ static bool prepare_previews(const struct options *o, const struct plan_frame *f
 
 /* The EXR file is the last: where it is, the frame is whole, whoever ends the run. What is left to
  * fail when all is written is a rename. Then nothing may stay that the next run would stop at. */
-static bool commit_all(struct atomic_file *files, size_t count, struct tool_error *err)
+static bool commit_all(const struct options *o, const struct plan_frame *frame,
+                       struct atomic_file *files, size_t count, struct tool_error *err)
 {
     for (size_t i = 0; i < count; i++) {
         if (atomic_file_commit(&files[i], err))
             continue;
-        for (size_t done = 0; done < i; done++)
+        /* Where somebody else has made the frame meanwhile, its previews are as good as theirs. */
+        for (size_t done = 0; done < i && !plan_leaves(o, frame->output); done++)
             if (!files[done].replace)
                 unlink(files[done].target);
         return false;
     }
     return true;
+}
+
+/* files: the previews and the EXR file. */
+static bool write_files(const struct options *o, const struct plan_frame *frame,
+                        const struct frame_source *source, const struct rendered_view *views,
+                        const char *device, struct atomic_file *files, size_t previews,
+                        struct tool_error *err)
+{
+    const bool ok = (!previews || prepare_previews(o, frame, source, views, files, err)) &&
+                    prepare_exr(o, frame, source, views, device, &files[previews], err) &&
+                    commit_all(o, frame, files, previews + 1, err);
+    for (size_t i = 0; i <= previews; i++)
+        atomic_file_abort(&files[i]);
+    return ok;
+}
+
+/* Whether somebody who makes the same frame put a preview there after this run had looked. */
+static bool has_preview_come(const struct options *o, const struct plan_frame *frame,
+                             const struct atomic_file *files, size_t previews)
+{
+    for (size_t i = 0; i < previews; i++)
+        if (files[i].path[0] && !files[i].replace && plan_replaces_preview(o, frame, files[i].path))
+            return true;
+    return false;
 }
 
 bool output_write(const struct options *options, const struct plan_frame *frame,
@@ -376,11 +410,11 @@ bool output_write(const struct options *options, const struct plan_frame *frame,
     struct atomic_file *files = calloc(previews + 1, sizeof *files);
     if (!files)
         return fail(err, EXIT_MEMORY, "%s: out of memory", frame->output);
-    bool ok = (!frame->preview || prepare_previews(options, frame, source, views, files, err)) &&
-              prepare_exr(options, frame, source, views, device, &files[previews], err) &&
-              commit_all(files, previews + 1, err);
-    for (size_t i = 0; i <= previews; i++)
-        atomic_file_abort(&files[i]);
+    bool ok = write_files(options, frame, source, views, device, files, previews, err);
+    if (!ok && has_preview_come(options, frame, files, previews)) {
+        *err = (struct tool_error){0};
+        ok = write_files(options, frame, source, views, device, files, previews, err);
+    }
     free(files);
     return ok;
 }

@@ -287,12 +287,6 @@ void plan_say_cameras(const struct plan *plan, const struct report *report)
     }
 }
 
-static bool same_inode(const char *a, const char *b)
-{
-    struct stat x, y;
-    return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
-}
-
 /* The directory of a path, malloc'ed; NULL if memory runs out. */
 static char *directory_of(const char *path)
 {
@@ -308,37 +302,115 @@ static const char *name_of(const char *path)
     return slash ? slash + 1 : path;
 }
 
-/* Also for files that are still to be written: the same name in the same directory. */
-static bool same_file(const char *a, const char *b)
+/* Which file a path of a frame leads to. */
+struct place {
+    dev_t device;
+    ino_t inode;
+    const char *name; /* of what is still to be written, in that directory; "" of what is there */
+    const char *path;
+    const struct plan_frame *frame;
+    enum path_kind kind;
+};
+
+static bool find_place(struct plan_frame *frame, enum path_kind kind, struct place *place,
+                       struct tool_error *err)
 {
-    if (strcmp(a, b) == 0 || same_inode(a, b))
-        return true;
-    if (strcmp(name_of(a), name_of(b)) != 0)
-        return false;
-    char *x = directory_of(a), *y = directory_of(b);
-    bool same = x && y && same_inode(x, y);
-    free(x);
-    free(y);
-    return same;
+    struct stat s = {0};
+    const char *path = *path_of(frame, kind);
+    *place = (struct place){.name = "", .path = path, .frame = frame, .kind = kind};
+    if (stat(path, &s) != 0) {
+        char *directory = directory_of(path);
+        if (!directory)
+            return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+        const bool is_there = stat(directory, &s) == 0;
+        place->name = is_there ? name_of(path) : path;
+        if (!is_there)
+            s = (struct stat){0};
+        free(directory);
+    }
+    place->device = s.st_dev;
+    place->inode = s.st_ino;
+    return true;
 }
 
-static bool check_distinct(struct plan_frame *frame, struct tool_error *err)
+static int compare_files(const struct place *a, const struct place *b)
 {
-    for (int w = 0; w < PATH_KINDS; w++) {
-        const char *path = path_table[w].is_written ? *path_of(frame, (enum path_kind)w) : NULL;
-        for (int k = 0; path && k < PATH_KINDS; k++) {
-            const char *other = *path_of(frame, (enum path_kind)k);
-            /* To write a camera where it was read changes nothing of the picture. */
-            if (w == PATH_WRITE_CAMERA && k == PATH_CAMERA)
-                continue;
-            if (k != w && other && same_file(path, other)) {
-                fail_hint(err, "write to another file; --mode append keeps all of the input in it");
-                return fail(err, EXIT_USAGE, "%s: %s and %s are the same file", path,
-                            path_table[w].name, path_table[k].name);
-            }
-        }
+    if (a->device != b->device)
+        return a->device < b->device ? -1 : 1;
+    if (a->inode != b->inode)
+        return a->inode < b->inode ? -1 : 1;
+    return strcmp(a->name, b->name);
+}
+
+static int compare_places(const void *a, const void *b)
+{
+    const struct place *x = a, *y = b;
+    const int files = compare_files(x, y);
+    if (files != 0)
+        return files;
+    if (x->frame != y->frame)
+        return x->frame < y->frame ? -1 : 1;
+    return x->kind < y->kind ? -1 : x->kind > y->kind;
+}
+
+static bool fail_same(const struct plan *plan, const struct place *written,
+                      const struct place *other, struct tool_error *err)
+{
+    const char *what = path_table[written->kind].name, *with = path_table[other->kind].name;
+    if (written->frame == other->frame || !plan->is_sequence) {
+        fail_hint(err, "write to another file; --mode append keeps all of the input in it");
+        return fail(err, EXIT_USAGE, "%s: %s and %s are the same file", written->path, what, with);
     }
+    fail_hint(err, "write to other files, or remove links among them");
+    return fail(err, EXIT_USAGE,
+                "%s: %s of frame %" PRId64 " and %s of frame %" PRId64 " are the same file",
+                written->path, what, written->frame->number, with, other->frame->number);
+}
+
+/* Whether two paths that lead to one file may: of two frames one may serve both, and to write a
+ * camera where it was read changes nothing of the picture. */
+static bool may_share(enum path_kind written, enum path_kind other)
+{
+    return (written == other && path_table[written].one_for_all) ||
+           (written == PATH_WRITE_CAMERA && other == PATH_CAMERA);
+}
+
+/* Of paths to one file, in the order of the frames. */
+static bool check_shared(const struct plan *plan, const struct place *places, size_t count,
+                         struct tool_error *err)
+{
+    const struct place *first[PATH_KINDS] = {NULL}, *last[PATH_KINDS] = {NULL};
+    for (size_t i = 0; i < count; i++) {
+        const enum path_kind kind = places[i].kind;
+        first[kind] = first[kind] ? first[kind] : &places[i];
+        last[kind] = &places[i];
+    }
+    for (int w = 0; w < PATH_KINDS; w++)
+        for (int k = 0; path_table[w].is_written && first[w] && k < PATH_KINDS; k++)
+            if (last[k] && last[k] != first[w] && !may_share((enum path_kind)w, (enum path_kind)k))
+                return fail_same(plan, first[w], w == k ? last[k] : first[k], err);
     return true;
+}
+
+/* Nothing that a frame writes may be what it, or any other frame, reads or writes. */
+static bool check_distinct(const struct plan *plan, struct tool_error *err)
+{
+    struct place *places = malloc((plan->count * PATH_KINDS + 1) * sizeof *places);
+    size_t count = 0, end;
+    bool ok = places || fail(err, EXIT_MEMORY, "out of memory for a list of files");
+    for (size_t i = 0; ok && i < plan->count; i++)
+        for (int k = 0; ok && k < PATH_KINDS; k++)
+            if (*path_of(&plan->frames[i], (enum path_kind)k))
+                ok = find_place(&plan->frames[i], (enum path_kind)k, &places[count++], err);
+    if (ok)
+        qsort(places, count, sizeof *places, compare_places);
+    for (size_t i = 0; ok && i < count; i = end) {
+        for (end = i + 1; end < count && compare_files(&places[i], &places[end]) == 0; end++)
+            continue;
+        ok = check_shared(plan, places + i, end - i, err);
+    }
+    free(places);
+    return ok;
 }
 
 static bool ends_in(const char *path, const char *extension)
@@ -443,6 +515,18 @@ bool plan_check_outputs(const struct options *options, const struct plan_frame *
             (!preview || plan_check_preview(options, frame, preview, err)));
 }
 
+/* Somebody else may have made the frame since it was looked for. */
+static bool check_outputs_now(const struct options *options, struct plan_frame *frame,
+                              struct tool_error *err)
+{
+    if (plan_check_outputs(options, frame, err))
+        return true;
+    frame->is_left = plan_leaves(options, frame->output);
+    if (frame->is_left)
+        *err = (struct tool_error){0};
+    return frame->is_left;
+}
+
 /* Of inspect, which is told whether a camera exists when it comes to write it: one of a frame that
  * shows nothing is in nobody's way. */
 static bool check_camera_place(const struct options *options, const struct plan_frame *frame,
@@ -509,13 +593,11 @@ bool plan_make(const struct options *options, struct plan *plan, struct tool_err
     *plan = (struct plan){0};
     bool ok = parse_patterns(options, &patterns, err) &&
               list_frames(options, &patterns, plan, err) && plan_take_cameras(options, plan, err);
-    for (size_t i = 0; ok && i < plan->count; i++)
-        ok = check_distinct(&plan->frames[i], err);
-    ok = ok && check_names(options, err);
+    ok = ok && check_distinct(plan, err) && check_names(options, err);
     for (size_t i = 0; ok && options->output && i < plan->count; i++)
         plan->frames[i].is_left = plan_leaves(options, plan->frames[i].output);
     for (size_t i = 0; ok && options->output && !options->continue_on_error && i < plan->count; i++)
-        ok = plan_check_outputs(options, &plan->frames[i], err);
+        ok = check_outputs_now(options, &plan->frames[i], err);
     for (size_t i = 0; ok && i < plan->count; i++)
         ok = check_camera_place(options, &plan->frames[i], err);
     ok = ok && (options->continue_on_error || check_there(plan, err));

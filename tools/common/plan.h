@@ -28,9 +28,9 @@ struct plan {
     char found[256];         /* "1-99, 102-240": the frames that exist, of a sequence */
 };
 
-/* Errors: EXIT_USAGE (patterns, an output that is an input), EXIT_OUTPUT (outputs that exist) and
- * EXIT_INPUT (cameras and other files beside INPUT that do not), both left to the frames with
- * --continue-on-error; EXIT_INPUT (no file matches). */
+/* Errors: EXIT_USAGE (patterns, an output that is a file of any frame), EXIT_OUTPUT (outputs that
+ * exist) and EXIT_INPUT (cameras and other files beside INPUT that do not), both left to the frames
+ * with --continue-on-error; EXIT_INPUT (no file matches). */
 bool plan_make(const struct options *options, struct plan *plan, struct tool_error *err);
 void plan_free(struct plan *plan);
 

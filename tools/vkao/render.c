@@ -339,13 +339,9 @@ static bool render_frame(struct session *s, const struct plan_frame *frame, stru
     start = now_ms();
     char device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE];
     device_name(s, device, sizeof device);
-    const bool is_made = !frame->is_left && plan_leaves(&options, frame->output);
-    const bool is_written = ok && !frame->is_left && !is_made;
+    const bool is_written = ok && !frame->is_left;
     ok = ok && (!is_written || output_write(&options, frame, &source, views, device, err));
     times.write = now_ms() - start;
-    if (ok && is_made)
-        report_note(s->report, "%s: somebody else has made it meanwhile, left as it is",
-                    frame->output);
     if (ok && is_written)
         report_detail(s->report, "%s: read %.0f ms, compute %.0f ms, write %.0f ms", frame->output,
                       times.read, times.compute, times.write);
@@ -413,6 +409,12 @@ static bool try_frame(struct session *s, const struct plan *plan, struct plan_fr
     }
     if (render_frame(s, frame, &err))
         return true;
+    /* Another machine of a farm that works on the same frames, say. */
+    if (err.code == EXIT_OUTPUT && plan_leaves(s->options, frame->output)) {
+        report_note(s->report, "%s: somebody else has made it meanwhile, left as it is",
+                    frame->output);
+        return true;
+    }
     if (err.shows_nothing) {
         frame->is_late = true;
         report_note(s->report, "%s: it is made after the first frame that shows something",

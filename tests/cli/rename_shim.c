@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * Preloaded, it kills the process before its n-th rename of a temporary file, n being
- * VKAO_KILL_AT: as whoever ends a run may, though hardly ever at the same place twice. */
+ * Preloaded, it ends the process before its n-th rename of a temporary file, n being VKAO_KILL_AT,
+ * or stops it there until it is told to go on, n being VKAO_STOP_AT: as whoever ends a run, or
+ * works on the same files, may, though hardly ever at the same place twice. */
 #ifndef _GNU_SOURCE
 #define _GNU_SOURCE
 #endif
@@ -16,9 +17,14 @@ static atomic_int renames;
 
 static void count(const char *from)
 {
-    const char *at = getenv("VKAO_KILL_AT");
-    if (at && strstr(from, ".vkao-") && atomic_fetch_add(&renames, 1) + 1 == atoi(at))
+    const char *kill_at = getenv("VKAO_KILL_AT"), *stop_at = getenv("VKAO_STOP_AT");
+    if (!strstr(from, ".vkao-"))
+        return;
+    const int number = atomic_fetch_add(&renames, 1) + 1;
+    if (kill_at && number == atoi(kill_at))
         raise(SIGKILL);
+    if (stop_at && number == atoi(stop_at))
+        raise(SIGSTOP);
 }
 
 int rename(const char *from, const char *to)
