@@ -3,6 +3,7 @@
 """What fails says why in one line, with the documented exit code, and leaves nothing behind."""
 import json
 import os
+import shutil
 import re
 import socket
 import subprocess
@@ -347,6 +348,27 @@ def existing_previews_of_views_are_kept(scratch):
               ({'Z': SCENE.depth()}, {'name': 'Z.r', 'view': 'r'}))
     scratch.write('p.r.png', 'mine')
     scratch.fails(OUTPUT, r'p\.r\.png: exists', *RUN, '--view', 'all', '--preview', 'p.png')
+
+
+@case
+def views_that_would_share_a_preview_are_refused(scratch):
+    # A path has no slash in a name.
+    write_exr(scratch.path('in.exr'), ({'Z': SCENE.depth()}, {'name': 'Z.l', 'view': 'a/b'}),
+              ({'Z': SCENE.depth()}, {'name': 'Z.r', 'view': 'a_b'}))
+    for when in 'never', 'always':
+        scratch.fails(OUTPUT, r"p\.a_b\.png: the preview of both views 'a/b' and 'a_b'", *RUN,
+                      '--view', 'all', '--preview', 'p.png', '--overwrite', when, hint='--view')
+    scratch.render(*RUN, '--view', 'a/b', '--preview', 'p.png')
+
+
+@case
+def names_too_long_for_files_are_refused_before_any_frame(scratch):
+    gbuffer(scratch)
+    shutil.copy(scratch.path('in.exr'), scratch.path('in.1.exr'))
+    shutil.copy(scratch.path('in.exr'), scratch.path('in.10.exr'))
+    name = 'o' * (255 - len('1.exr')) + '@.exr'  # of frame 10 a byte too long
+    scratch.fails(OUTPUT, 'cannot create: File name too long', 'in.@.exr', '-o', name, '--fov', FOV)
+    equal(scratch.files(), ['in.1.exr', 'in.10.exr', 'in.exr'], 'files')
 
 
 @cases([(f'{mode}: {link} to {target}', mode, link, target)

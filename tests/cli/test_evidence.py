@@ -453,6 +453,7 @@ def depth_without_shape_is_an_error(scratch, _, value):
     result = scratch.fails(CHANNELS, "in.exr: depth 'Z' is .*no picture of anything", 'in.exr',
                            '-o', 'x.exr', hint='--depth NAME')
     check('normalised?' not in result.stderr, result.stderr)
+    equal('is nan everywhere' in result.stderr, bool(np.isnan(value)), result.stderr)
     said = scratch.render('in.exr', '-o', 'x.exr', '--depth-type', 'planar').stderr
     matches("warning: in.exr: depth 'Z' is .*AO is 1 everywhere", said, 'stderr')
 

@@ -70,6 +70,17 @@ def texts_are_not_empty(scratch, option, _):
     fails(scratch, rf'{option} is empty', 'in.exr', '-o', 'out.exr', option, '')
 
 
+@cases([('--channel', 'x'), ('--part-name', 'x')])
+def names_are_no_longer_than_exr_has_them(scratch, option, _):
+    fails(scratch, rf'{option} is of 256 bytes, want at most 255', 'in.exr', '-o', 'out.exr', option,
+          'n' * 256)
+
+
+@case
+def input_is_not_empty(scratch):
+    fails(scratch, 'INPUT is empty', '', '-o', 'out.exr')
+
+
 @cases([(o, 'x') for o in [w[0] for w in WRONG_VALUES] + list(TEXTS)])
 def arguments_are_needed(scratch, option, _):
     fails(scratch, rf"option '{option}' needs an argument", 'in.exr', option, hint=EXAMPLE)

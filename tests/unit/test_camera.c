@@ -481,6 +481,11 @@ static void json_mistakes_are_named(void **state)
     refuse("{}", "'fov_x_deg' must be given");
     refuse("{\"type\":\"fisheye\"}", "'type' must be");
     refuse("{\"type\":\"orthographic\"}", "'ortho_width' must be given");
+    refuse("{\"type\":\"orthographic\",\"ortho_width\":5,\"fov_x_deg\":60}",
+           "'fov_x_deg' must be left out of an orthographic camera");
+    refuse("{\"fov_x_deg\":60,\"ortho_width\":5}",
+           "'ortho_width' must be left out of a perspective camera");
+    refuse("{\"fov_x_deg\":60,\"left_handed\":1}", "'left_handed' must be true or false");
     refuse("{\"fov_x_deg\":180}", "'fov_x_deg' must be a number between 0 and 180");
     refuse("{\"fov_x_deg\":\"60\"}", "'fov_x_deg' must be");
     refuse("{\"fov_x_deg\":60,\"near\":-1}", "'near' must be a number > 0");

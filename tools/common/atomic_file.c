@@ -140,6 +140,9 @@ static bool check_target(const struct atomic_file *file, mode_t *mode, struct to
     *mode = 0;
     if (length == 0 || file->target[length - 1] == '/')
         return fail(err, EXIT_OUTPUT, "%s: cannot create: not a file name", file->path);
+    if (stat(file->target, &status) != 0 && errno == ENAMETOOLONG)
+        return fail(err, EXIT_OUTPUT, "%.200s...: cannot create: %s", file->path,
+                    strerror(ENAMETOOLONG)); /* that of the temporary file is shorter */
     if (stat(file->target, &status) != 0)
         return true; /* usually ENOENT; whatever else is wrong, creating the temporary file tells */
     if (S_ISDIR(status.st_mode))
@@ -201,7 +204,12 @@ static bool fail_create(const struct atomic_file *file, int error, struct tool_e
     if (error == ENOENT && directory > 0 && stat(name, &status) == 0)
         fail_hint(err, "no file can be made in %s: name another directory", name);
     else if (error == ENOENT)
-        fail_hint(err, "make the directory %.*s first", (int)directory, file->target);
+        fail_hint(err,
+                  directory > 0 ? "make the directory %.*s first"
+                                : "the working directory has been removed: change to another",
+                  (int)directory, file->target);
+    else if (error == EMFILE || error == ENFILE)
+        fail_hint(err, "'ulimit -n' limits the files that may be open");
     return false;
 }
 

@@ -66,7 +66,10 @@ static bool read_matrix(const struct reader *r, const cJSON *rows, double m[16])
 static bool read_placement(const struct reader *r, const cJSON *object, struct camera *camera)
 {
     const cJSON *rows = cJSON_GetObjectItemCaseSensitive(object, "world_to_view");
+    const cJSON *left_handed = cJSON_GetObjectItemCaseSensitive(object, "left_handed");
     double m[16];
+    if (left_handed && !cJSON_IsBool(left_handed))
+        return wrong(r, "left_handed", "true or false");
     if (!rows)
         return true;
     if (!read_matrix(r, rows, m))
@@ -88,9 +91,6 @@ static bool read_placement(const struct reader *r, const cJSON *object, struct c
                   fabs(w[3] * w[6] + w[4] * w[7] + w[5] * w[8]);
     if (skew > 1e-3)
         return wrong(r, "world_to_view", "a rotation and a translation, without shear");
-    const cJSON *left_handed = cJSON_GetObjectItemCaseSensitive(object, "left_handed");
-    if (left_handed && !cJSON_IsBool(left_handed))
-        return wrong(r, "left_handed", "true or false");
     const bool mirrors = camera_is_mirrored(camera);
     if (mirrors && !left_handed)
         fail_hint(r->err, "if the world is left-handed, say so: \"left_handed\": true");
@@ -168,6 +168,8 @@ static bool read_type(const struct reader *r, const cJSON *object, struct camera
     if (strcmp(name, "perspective") == 0) {
         if (!(fov > 0))
             return wrong(r, "fov_x_deg", "given for a perspective camera");
+        if (width > 0)
+            return wrong(r, "ortho_width", "left out of a perspective camera");
         camera->type = CAMERA_PERSPECTIVE;
         camera->half_width = tan(fov * degree / 2.0);
         return true;
@@ -175,6 +177,8 @@ static bool read_type(const struct reader *r, const cJSON *object, struct camera
     if (strcmp(name, "orthographic") == 0) {
         if (!(width > 0))
             return wrong(r, "ortho_width", "given for an orthographic camera");
+        if (fov > 0)
+            return wrong(r, "fov_x_deg", "left out of an orthographic camera");
         camera->type = CAMERA_ORTHOGRAPHIC;
         camera->half_width = width / 2.0;
         return true;

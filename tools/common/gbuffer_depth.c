@@ -372,7 +372,8 @@ static bool check_shape(const struct gbuffer *g, const struct gbuffer_options *o
     if (!is_flat)
         snprintf(what, sizeof what, "all background");
     else
-        snprintf(what, sizeof what, "%g everywhere", (double)stored->low);
+        snprintf(what, sizeof what, "%g everywhere",
+                 stored->low <= stored->high ? (double)stored->low : NAN);
     if (options->depth_type != DEPTH_AUTO) {
         report_warn(report, "no depth", "%s: depth '%s' is %s: AO is 1 everywhere", path,
                     role->label, what);

@@ -155,6 +155,8 @@ static bool check_together(const struct options *o, struct tool_error *err)
         fail_hint(err, "%s", options_example);
         return fail(err, EXIT_USAGE, "no INPUT given");
     }
+    if (o->input && !*o->input)
+        return fail(err, EXIT_USAGE, "INPUT is empty");
     if (o->command == COMMAND_DEVICES && o->input)
         return fail(err, EXIT_USAGE, "'vkao devices' takes no INPUT, got '%s'", o->input);
     if (o->command == COMMAND_RENDER && !o->output) {

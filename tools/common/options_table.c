@@ -58,6 +58,18 @@ bool apply_text(struct options *options, const struct option_row *row, const cha
     return true;
 }
 
+/* Of what is written: EXR has no longer ones for channels. */
+static bool apply_name(struct options *options, const struct option_row *row, const char *argument,
+                       struct tool_error *err)
+{
+    enum { MOST = 255 };
+    const size_t bytes = strlen(argument);
+    if (bytes > MOST)
+        return fail(err, EXIT_USAGE, "--%s is of %zu bytes, want at most %d", row->name, bytes,
+                    MOST);
+    return apply_text(options, row, argument, err);
+}
+
 static bool ends_in(const char *path, const char *extension)
 {
     const size_t length = strlen(path), end = strlen(extension);
@@ -469,11 +481,11 @@ const struct option_row option_table[] = {
              "of the colour, with its A untouched."},
     {.name = "part-name", .argument = "NAME",
      .help = "name of the new part, instead of ao",
-     .commands = RENDER, .apply = apply_text, .offset = AT(part_name)},
+     .commands = RENDER, .apply = apply_name, .offset = AT(part_name)},
     {.name = "channel", .argument = "NAME",
      .help = "name of the channel of AO. Default: R, G and B alike, a grey image that every "
              "program shows; AO with --mode append",
-     .commands = RENDER, .apply = apply_text, .offset = AT(channel),
+     .commands = RENDER, .apply = apply_name, .offset = AT(channel),
      .more = "To a file of Blender's with a layer ViewLayer, --mode append adds a part "
              "ViewLayer.AO with a channel ViewLayer.AO.V, which its compositor lists among the "
              "passes; SSAO if there is a pass AO already. Give --part-name and --channel to choose "

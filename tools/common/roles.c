@@ -199,11 +199,13 @@ static bool fail_missing(const struct exr_info *info, const char *view, enum rol
     if (name) {
         fail(err, EXIT_CHANNELS, "%s: no channel or layer '%s'%s%s; channels: %s", info->path, name,
              *view ? " in view " : "", view, channels);
-        fail_hint(err,
-                  role_is_scalar(kind) ? "--%s takes a channel, a layer or part/channel"
-                                       : "--%s takes a layer with three components, X Y Z or R G "
-                                         "B, or a part with them",
-                  role_names[kind].option);
+        if (role_is_scalar(kind))
+            fail_hint(err, "--%s takes a channel, a layer or part/channel",
+                      role_names[kind].option);
+        else
+            fail_hint(err, "--%s takes a layer with three components, %s, or a part with them",
+                      role_names[kind].option,
+                      kind == ROLE_NORMAL || kind == ROLE_POSITION ? "X Y Z or R G B" : "R G B");
     } else {
         fail(err, EXIT_CHANNELS, "%s: no %s channel found%s%s; channels: %s", info->path,
              role_names[kind].option, *view ? " in view " : "", view, channels);
