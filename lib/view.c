@@ -319,10 +319,10 @@ vkao_result vkao_view_constants_init(const struct vkao_logger *log, const vkao_v
     if (p.orthographic != (effect->projection == VKAO_PROJECTION_ORTHOGRAPHIC))
         return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT,
                            "view.projection is %s ([11] is %g, [15] %g), but effect.projection is "
-                           "%u: views of the other kind need an effect of their own",
+                           "%s: views of the other kind need an effect of their own",
                            p.orthographic ? "orthographic" : "perspective",
                            (double)view->projection[11], (double)view->projection[15],
-                           (unsigned)effect->projection);
+                           p.orthographic ? "PERSPECTIVE" : "ORTHOGRAPHIC");
     *out = (struct view_constants){.orthographic = p.orthographic};
     result = resolve_rects(log, view, extent, &out->valid, &out->rect);
     if (result != VKAO_SUCCESS)

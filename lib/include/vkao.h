@@ -458,8 +458,9 @@ typedef struct vkao_image {
 } vkao_image;
 
 /* Image usage: read slots SAMPLED, written slots STORAGE; ao_noisy, ao and bent_normals both, where
- * one stage of the effect writes them and another reads them. All images have the frame's
- * extent. */
+ * one stage of the effect writes them and another reads them. All images have the frame's extent,
+ * which vkao cannot see either, and of smaller ones validation layers may say nothing: a resize
+ * needs a new frame. */
 typedef struct vkao_images {
     uint32_t struct_size;
     uint32_t padding; /* zero */

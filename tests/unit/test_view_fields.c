@@ -352,7 +352,7 @@ static void projection_of_the_other_kind_is_refused(void **state)
     world_open_frame(&w, VKAO_STAGE_ALL);
     w.effect_info.projection = VKAO_PROJECTION_ORTHOGRAPHIC;
     world_create_frame(&w);
-    expect_all_refuse(&w, "view.projection", "effect.projection is 1");
+    expect_all_refuse(&w, "view.projection", "effect.projection is ORTHOGRAPHIC");
     world_close(&w);
 }
 
