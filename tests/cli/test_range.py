@@ -175,5 +175,23 @@ def breaks_along_lines_are_said(scratch, _, change, message):
             matches(message + r".* where normals 'N' go on", said, 'the warnings')
 
 
+@cases([('down to the eye', lambda d: d, None),
+        ('lower part in feet', lambda d: put(d, d * 3.28, slice(105, None), ALL), 'before row 105,'),
+        ('lower part nearer', lambda d: put(d, d * 0.95, slice(108, None), ALL),
+         'before row 108,')], name=lambda row: row[0])
+def ledges_at_the_height_of_the_eye_are_no_seam(scratch, _, change, message):
+    # Both sides of a street have them, and houses of other streets beyond do not.
+    walls = [((-9, -2, -60), (-3, 9, 0)), ((4, -2, -60), (9, 9, 0)), ((-50, -9, -90), (50, -2, 0)),
+             ((-50, -2, -80), (50, 3, -70))]
+    ledges = [((-3, -0.5, -40), (-2.7, 0, -6)), ((3.7, -0.5, -40), (4, 0, -6))]
+    scene = boxes_along_axes(walls + ledges, 384, 216, turn=np.eye(3))
+    scene['Z'] = change(scene['Z']).astype(np.float32)
+    write_exr(scratch.path('in.exr'), scene)
+    said = str(inspect(scratch, '--fov', FOV)['warnings'])
+    equal('depth breaks' in said, message is not None, f'whether it is in {said}')
+    if message:
+        matches(message, said, 'the warnings')
+
+
 if __name__ == '__main__':
     main()

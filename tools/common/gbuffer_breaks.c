@@ -4,7 +4,8 @@
  * depth. Where halves are of two cameras or units, where a line of a sensor or of a file is bad,
  * and around a bucket that is of another frame, depth breaks along a straight line of the image, on
  * all that lies there. The front edge of one thing before another that faces the same way does so
- * too, but is seldom as straight, and faces one way.
+ * too, but is seldom as straight, and faces one way. But ledges at the height of the eye are one
+ * line of the image on all walls of a street or a room.
  */
 #include "gbuffer_internal.h"
 
@@ -20,6 +21,8 @@ enum {
 /* Places along a border between two rows or columns. */
 struct side {
     size_t alike, broken; /* of one normal on both sides; and with a break in depth */
+    size_t upright;       /* of these, on what stands on the plane of the border and the eye */
+    size_t nearer_behind; /* of these */
     double sum[3];        /* of the normals at breaks */
 };
 
@@ -27,7 +30,24 @@ struct side {
 struct border {
     bool is_row;
     size_t at, begin, end;
+    double normal[3]; /* in view space, of the plane that it and the eye are in */
 };
+
+static struct border border_at(const struct gbuffer *g, bool is_row, size_t at, size_t begin,
+                               size_t end)
+{
+    struct border b = {is_row, at, begin, end, {!is_row, is_row, 0}};
+    const double line = (double)at - 0.5;
+    double x, y;
+    camera_ray(&g->camera, &g->display_window, &g->data_window, is_row ? 0 : line,
+               is_row ? line : 0, &x, &y);
+    if (g->camera.type != CAMERA_ORTHOGRAPHIC) {
+        const double slope = is_row ? y : x, length = sqrt(1.0 + slope * slope);
+        b.normal[is_row] = 1.0 / length;
+        b.normal[2] = slope / length;
+    }
+    return b;
+}
 
 /* What lies at the place behind the last two if they are of a plane: w is linear in the image. */
 static double go_on(const struct gbuffer *g, double before, double last)
@@ -36,11 +56,14 @@ static double go_on(const struct gbuffer *g, double before, double last)
     return is_parallel ? 2.0 * last - before : 1.0 / (2.0 / last - 1.0 / before);
 }
 
-/* At the first texel behind a border; across is the step over it. */
-static void look_across(const struct gbuffer *g, size_t texel, size_t across, struct side *side)
+/* At the first texel behind a border. */
+static void look_across(const struct gbuffer *g, const struct border *b, size_t texel,
+                        struct side *side)
 {
     static const double alike = 0.01, length = 0.1; /* 6 degrees; squares */
     static const double least_break = 0.01;         /* of the distance */
+    static const double upright = 0.1;              /* 6 degrees */
+    const size_t across = b->is_row ? g->width : 1;
     static const float zero[3] = {0};
     double z[2 * REACH];
     for (size_t k = 0; k < 2 * REACH; k++) {
@@ -55,7 +78,13 @@ static void look_across(const struct gbuffer *g, size_t texel, size_t across, st
     side->alike++;
     if (fabs(go_on(g, z[0], z[1]) - z[2]) < least || fabs(go_on(g, z[3], z[2]) - z[1]) < least)
         return;
+    double v[3];
+    gbuffer_view_normal(g, texel, v);
+    const bool is_upright =
+        fabs(v[0] * b->normal[0] + v[1] * b->normal[1] + v[2] * b->normal[2]) < upright;
     side->broken++;
+    side->upright += is_upright;
+    side->nearer_behind += is_upright && z[2] < z[1];
     for (int c = 0; c < 3; c++)
         side->sum[c] += (double)g->normals[texel * 4 + (size_t)c];
 }
@@ -67,16 +96,28 @@ static void look_along(const struct gbuffer *g, const struct border *b, struct s
     if (b->at < REACH || b->at + REACH > (b->is_row ? g->height : g->width))
         return;
     for (size_t k = b->begin; k < b->end; k += step)
-        look_across(g, b->at * across + k * along, across, side);
+        look_across(g, b, b->at * across + k * along, side);
+}
+
+/* What is of one kind is all nearer on one side of the border, where ledges or what is above them
+ * stand out, and edges that lie in a plane with the eye are upright on it. Not all walls have them
+ * at that height. */
+static bool are_ledges(const struct side *s)
+{
+    static const double nearly_all = 0.95, most_broken = 0.85;
+    const double upright = nearly_all * (double)s->broken, behind = (double)s->nearer_behind;
+    return (double)s->broken < most_broken * (double)s->alike && (double)s->upright > upright &&
+           (behind > nearly_all * (double)s->upright ||
+            behind < (1.0 - nearly_all) * (double)s->upright);
 }
 
 /* Of clean renders at no line and around no bucket half of the places are broken, of several things
- * that face different ways. Of seams nearly all are. */
+ * that face different ways, but for ledges. Of seams nearly all are. */
 static bool is_seam(const struct side *s, size_t few)
 {
     static const double one_way = 0.95; /* length of a mean */
     const double *n = s->sum;
-    return s->alike >= few && 2 * s->broken > s->alike &&
+    return s->alike >= few && 2 * s->broken > s->alike && !are_ledges(s) &&
            sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]) < one_way * (double)s->broken;
 }
 
@@ -93,7 +134,8 @@ static struct seams find_seams(const struct gbuffer *g, bool is_row)
     struct seams seams = {0};
     for (size_t at = REACH; at + REACH <= size; at++) {
         struct side side = {0};
-        look_along(g, &(struct border){is_row, at, 0, length}, &side);
+        const struct border border = border_at(g, is_row, at, 0, length);
+        look_along(g, &border, &side);
         if (is_seam(&side, few) && seams.count++ == 0)
             seams.first = at;
     }
@@ -136,10 +178,9 @@ static bool is_foreign(const struct gbuffer *g, const struct bucket *b)
     const size_t right = b->x + b->size, below = b->y + b->size;
     const size_t x_end = right < g->width ? right : g->width;
     const size_t y_end = below < g->height ? below : g->height;
-    const struct border borders[4] = {{true, b->y, b->x, x_end},
-                                      {true, below, b->x, x_end},
-                                      {false, b->x, b->y, y_end},
-                                      {false, right, b->y, y_end}};
+    const struct border borders[4] = {
+        border_at(g, true, b->y, b->x, x_end), border_at(g, true, below, b->x, x_end),
+        border_at(g, false, b->x, b->y, y_end), border_at(g, false, right, b->y, y_end)};
     struct side side = {0};
     for (int k = 0; k < 4; k++) {
         const struct side before = side;
