@@ -44,6 +44,47 @@ def a_wall_has_one_normal(scratch):
     check('everywhere' not in said, said)
 
 
+# What is seen straight on has one normal through any field of view.
+PLANES = [('world', 5, True), ('camera', 5, True), ('world', 40, True), ('camera', 88, False)]
+
+
+def floor(degrees, space):
+    """A floor, and sky, of a camera that looks so much down; through a field of view of 90."""
+    scene, turn = Scene(fov=90), np.radians(degrees)
+    up = np.array([0, np.cos(turn), np.sin(turn)])
+    w = -(scene.x * up[0] + scene.y * up[1] - up[2])
+    z = np.where(w > 0.005, 1.5 / np.maximum(w, 0.005), 1e10)
+    normal = (z < 1e9)[..., None] * (up if space != 'world' else np.array([0, 1, 0]))
+    return {'Z': z.astype(np.float32),
+            **{f'N.{c}': normal[..., i].astype(np.float32) for i, c in enumerate('XYZ')}}
+
+
+@cases(PLANES, name=lambda row: f'{row[0]}, {row[1]} degrees')
+def one_plane_tells_no_space(scratch, space, degrees, is_said):
+    channels = floor(degrees, space)
+    write_exr(scratch.path('in.exr'), channels)
+    said = str(inspect(scratch)['warnings'])
+    for word in 'of no plane', 'in camera space':
+        check(word not in said, said)
+    equal('depth is of one plane: without a field of view nothing tells' in said, is_said, said)
+    ao, _ = run(scratch, channels, '--radius', 0.5)
+    check(ao.min() > 0.99, f'AO of {ao.min()} on a plane')
+    # What somebody tells is taken.
+    said = str(inspect(scratch, '--fov', 90, '--normal-space', 'camera')['warnings'])
+    check(space == 'world' or 'the same everywhere' not in said, said)
+
+
+@cases([('camera',), ('world',)])
+def one_plane_of_a_known_view(scratch, space):
+    write_exr(scratch.path('in.exr'), floor(9, space))
+    view = inspect(scratch, '--fov', 90)
+    said = str(view['warnings'])
+    check('the same everywhere' not in said, said)
+    equal('in camera space' in said, space == 'camera', said)
+    if space == 'world':
+        matches('need the rotation of the camera', said, 'the warnings')
+
+
 @case
 def normals_without_signs_are_said(scratch):
     scene = Scene()

@@ -5,6 +5,7 @@
 #include "gbuffer_internal.h"
 #include "text.h"
 
+#include <math.h>
 #include <string.h>
 
 static const float identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -78,6 +79,8 @@ struct way {
  * cameras. */
 static const double least_agreement = 0.35, clear_agreement = 0.15, poor_agreement = 0.25,
                     no_agreement = 0.12;
+/* Planes agree nearly all over. */
+static const double least_of_planes = 0.8;
 enum { FEW_PAIRS = 200 };
 
 /* Of what points away from the eye all three axes are the other way round. */
@@ -147,15 +150,16 @@ static void tell_way(const struct gbuffer *g, double before, bool is_seen, const
 
 /* Changes what names and looks have chosen, which may be nothing, if the depth knows better. */
 static void ask_depth(struct gbuffer *g, const struct way ways[WAYS],
-                      const struct normal_pairs *pairs, enum normal_space wanted, const char *path,
-                      struct report *report)
+                      const struct normal_pairs *pairs, bool is_plane, enum normal_space wanted,
+                      const char *path, struct report *report)
 {
+    const double least = is_plane ? least_of_planes : least_agreement;
     const bool has_chosen = g->normal_space != NORMAL_SPACE_AUTO;
     const struct way *best = best_way(ways, wanted);
     if (pairs->count < FEW_PAIRS || !best)
         return;
     g->normal_agreement = has_chosen ? gbuffer_agreement(pairs, g->view.normal_to_view).share : 0;
-    if (best->agreement.share >= least_agreement &&
+    if (best->agreement.share >= least &&
         best->agreement.share > g->normal_agreement + clear_agreement) {
         const enum normal_space before = g->normal_space;
         const double by_before = g->normal_agreement;
@@ -208,12 +212,77 @@ static bool are_alike(const struct normal_pairs *pairs)
     return pairs->count >= FEW_PAIRS;
 }
 
-/* Planes agree nearly all over. */
-static void check_values(struct gbuffer *g, bool alike, size_t lost_signs, const char *path,
-                         struct report *report)
+/* Share of depth that faces as the whole does, by its own normals. */
+static double share_of_plane(const struct normal_pairs *pairs, double mean[3])
 {
-    static const double least_of_planes = 0.8;
-    if (alike && g->normal_agreement < least_of_planes) {
+    double sum = 0, length = 0;
+    memset(mean, 0, 3 * sizeof *mean);
+    for (size_t i = 0; i < pairs->count; i++)
+        for (int c = 0; c < 3; c++)
+            mean[c] += pairs->pair[i].depth[c];
+    for (int c = 0; c < 3; c++)
+        length += mean[c] * mean[c];
+    length = sqrt(length);
+    for (int c = 0; c < 3 && length > 0; c++)
+        mean[c] /= length;
+    for (size_t i = 0; i < pairs->count; i++) {
+        const double *n = pairs->pair[i].depth;
+        sum += n[0] * mean[0] + n[1] * mean[1] + n[2] * mean[2] > 0.995; /* 6 degrees */
+    }
+    return pairs->count > 0 ? sum / (double)pairs->count : 0;
+}
+
+struct one_normal {
+    bool is_all;   /* that there is */
+    bool is_plane; /* of depth too */
+    bool is_bound; /* to the field of view: what is seen straight on faces the same in any */
+};
+
+static struct one_normal look_for_one(const struct normal_pairs *pairs)
+{
+    static const double nearly_all = 0.95, straight_on = 0.99;
+    struct one_normal one = {.is_all = are_alike(pairs)};
+    double mean[3];
+    if (!one.is_all)
+        return one;
+    one.is_plane = share_of_plane(pairs, mean) >= nearly_all;
+    one.is_bound = fabs(mean[2]) < straight_on;
+    return one;
+}
+
+/* The normal of a plane is anything in some world, and through some field of view: that it is
+ * nearly that of depth by an assumed one is chance. */
+static bool tells_no_space(const struct gbuffer *g, const struct one_normal *one,
+                           enum normal_space wanted)
+{
+    return one->is_plane && one->is_bound && !g->camera.source[0] && !g->camera.has_rotation &&
+           wanted == NORMAL_SPACE_AUTO &&
+           g->roles.kind[ROLE_NORMAL].normal_space == NORMAL_SPACE_AUTO;
+}
+
+static void drop_without_space(struct gbuffer *g, const char *path, struct report *report)
+{
+    report_warn(report, "constant normals",
+                "%s: normals '%s' are the same everywhere, and depth is of one plane: without a "
+                "field of view nothing tells which space they are in; deriving them from depth "
+                "(--fov and --normal-space, or --camera, tell)",
+                path, g->roles.kind[ROLE_NORMAL].label);
+    gbuffer_drop_normals(g);
+}
+
+static void check_values(struct gbuffer *g, const struct one_normal *one, size_t lost_signs,
+                         const char *path, struct report *report)
+{
+    const bool is_other = one->is_all && g->normal_agreement < least_of_planes;
+    if (is_other && one->is_plane) {
+        report_warn(report, "constant normals",
+                    "%s: normals '%s' are the same everywhere, and depth is of one plane that "
+                    "faces another way: tangent space, or is the camera (%s) or --normal-space "
+                    "wrong? deriving them from depth",
+                    path, g->roles.kind[ROLE_NORMAL].label,
+                    g->camera.source[0] ? g->camera.source : "assumed");
+        gbuffer_drop_normals(g);
+    } else if (is_other) {
         report_warn(report, "constant normals",
                     "%s: normals '%s' are the same everywhere, and the depth is of no plane: "
                     "tangent space? deriving them from depth",
@@ -288,10 +357,15 @@ static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const cha
         return false;
     if (!gbuffer_pair_normals(g, GBUFFER_MOST_PAIRS, &pairs))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    const struct one_normal one = look_for_one(&pairs);
+    if (tells_no_space(g, &one, wanted)) {
+        gbuffer_free_pairs(&pairs);
+        drop_without_space(g, path, report);
+        return true;
+    }
     judge_ways(ways, &pairs, g, world);
-    ask_depth(g, ways, &pairs, wanted, path, report);
+    ask_depth(g, ways, &pairs, one.is_plane, wanted, path, report);
     const size_t count = pairs.count;
-    const bool alike = are_alike(&pairs);
     const size_t lost_signs = gbuffer_count_lost_signs(g, &pairs);
     const bool ok = count < FEW_PAIRS || g->normal_space == NORMAL_SPACE_AUTO ||
                     (gbuffer_ask_whether_inside_out(g, &pairs, path, report) &&
@@ -300,7 +374,7 @@ static bool resolve_space(struct gbuffer *g, enum normal_space wanted, const cha
     if (!ok)
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     if (count >= FEW_PAIRS && wanted == NORMAL_SPACE_AUTO && g->normal_space != NORMAL_SPACE_AUTO)
-        check_values(g, alike, lost_signs, path, report);
+        check_values(g, &one, lost_signs, path, report);
     return !g->normals || check_normals(g, wanted, count, path, report, err);
 }
 
