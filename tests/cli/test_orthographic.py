@@ -5,7 +5,7 @@ import numpy as np
 
 from cli import case, cases, check, equal, main, matches, read_ao, write_exr
 from evidence import inspect_and_hear as inspect
-from scene import RADIUS, TURN, Scene
+from scene import RADIUS, TURN, Scene, boxes_along_axes
 
 BASE = ('--radius', RADIUS, '--pixel-type', 'float', '--overwrite', 'always')
 
@@ -107,6 +107,43 @@ def perspective_is_no_inverse_depth_of_a_parallel_camera(scratch):
     equal(view['conventions']['depth_type'], 'planar', said)
     view, said = inspect(scratch)
     equal((view['camera']['type'], view['conventions']['depth_type']), ('perspective', 'planar'),
+          said)
+
+
+def tilted_boxes(background):
+    """Boxes on a floor, and sky. All normals but those upwards are turned by 10 degrees: no camera
+    has them, and 1/z without perspective fits best."""
+    random, boxes = np.random.default_rng(0), [((-60, -3, -60), (60, -2, 60))]
+    for _ in range(18):
+        middle = random.uniform([-4, -2, -14], [5, 0, -3])
+        size = random.uniform(0.15, 0.6, 3)
+        boxes.append((middle - size, middle + size))
+    channels = boxes_along_axes(boxes, 320, 180, turn=np.eye(3))
+    channels['Z'] = np.where(channels['Z'] > 1e9, background, channels['Z']).astype(np.float32)
+    y, z, floor = channels['N.Y'], channels['N.Z'], channels['N.Y'] > 0.9
+    cosine, sine = np.cos(np.radians(10)), np.sin(np.radians(10))
+    channels['N.Y'] = np.where(floor, y, cosine * y + sine * z).astype(np.float32)
+    channels['N.Z'] = np.where(floor, z, cosine * z - sine * y).astype(np.float32)
+    return channels
+
+
+@cases([('1e10', 1e10), ('infinity', np.inf), ('a far plane', 5000)])
+def nothing_is_at_the_largest_of_inverse_depth(scratch, _, background):
+    write_exr(scratch.path('in.exr'), tilted_boxes(background))
+    view, said = inspect(scratch)
+    check(view['conventions']['depth_type'] != 'inverse', said)
+    check('orthographic' not in view['camera']['type'], said)
+
+
+@case
+def inverse_depth_of_a_parallel_camera_before_a_sky(scratch):
+    channels = corners(160, 100, 2.4, 'camera', DOME)
+    sky = np.arange(100)[:, None] < 25
+    channels = {name: np.where(sky, 0, plane).astype(np.float32)
+                for name, plane in {**channels, 'Z': 1 / channels['Z']}.items()}
+    write_exr(scratch.path('in.exr'), channels)
+    view, said = inspect(scratch)
+    equal((view['camera']['type'], view['conventions']['depth_type']), ('orthographic', 'inverse'),
           said)
 
 

@@ -12,6 +12,43 @@ bool gbuffer_type_is_auto(const struct gbuffer *g, const struct gbuffer_options 
     return options->depth_type == DEPTH_AUTO && g->roles.kind[ROLE_DEPTH].depth_type == DEPTH_AUTO;
 }
 
+/* At a texel, by alpha or normals. */
+static bool is_nothing(const struct gbuffer *g, size_t texel)
+{
+    static const double least_length = 0.5;
+    return (g->alpha && !(g->alpha[texel] > 0)) ||
+           (g->normals && !(gbuffer_length(g->normals + texel * 4) > least_length));
+}
+
+/* Sky at a value far above all else, as renderers write 1e10 or infinity. The largest of 1/z is
+ * what is nearest, and nothing is at 0. */
+static bool has_sky_at_largest(const struct gbuffer *g)
+{
+    static const double same_value = 0.99, clear_gap = 20.0;
+    static const double least_share = 0.002, nearly_all = 0.9, half = 0.5, hardly_any = 0.02;
+    enum { FEW = 16 };
+    const size_t step = gbuffer_sample_step(g), samples = gbuffer_texels(g) / step;
+    size_t sky = 0, nothing = 0, between = 0, rest = 0;
+    double largest = 0;
+    for (size_t i = 0; i < gbuffer_texels(g); i += step)
+        largest = fmax(largest, (double)g->depth[i]);
+    for (size_t i = 0; largest > 0 && i < gbuffer_texels(g); i += step) {
+        const double d = (double)g->depth[i];
+        if (d >= largest * same_value) {
+            sky++;
+            nothing += is_nothing(g, i);
+        } else {
+            between += d * clear_gap > largest;
+            rest++;
+        }
+    }
+    /* Alpha may be of another frame; no thing is at such a value in any unit. */
+    const double least_nothing = gbuffer_is_measurable(largest) ? nearly_all : half;
+    return sky >= FEW && (double)sky >= least_share * (double)samples &&
+           (double)nothing >= least_nothing * (double)sky &&
+           (double)between <= hardly_any * (double)rest;
+}
+
 /* As role and options have it, what the depth may be; known: through the camera that is known. 0:
  * nothing that an image tells. */
 static unsigned possible_models(const struct gbuffer *g, const struct gbuffer_options *options,
@@ -28,8 +65,8 @@ static unsigned possible_models(const struct gbuffer *g, const struct gbuffer_op
     if (known && ortho)
         return g->depth_type == DEPTH_PLANAR || g->depth_type == DEPTH_RADIAL_NEAR ? parallel : 0;
     if (gbuffer_type_is_auto(g, options) && g->depth_type == DEPTH_PLANAR)
-        return 1u << FIT_PLANAR | (known ? ALL_RADIAL : 1u << FIT_RADIAL) | 1u << FIT_INVERSE |
-               parallel | UNSCALED;
+        return 1u << FIT_PLANAR | (known ? ALL_RADIAL : 1u << FIT_RADIAL) |
+               (has_sky_at_largest(g) ? 0 : 1u << FIT_INVERSE) | parallel | UNSCALED;
     switch (g->depth_type) {
     case DEPTH_PLANAR:
         return 1u << FIT_PLANAR | parallel;
@@ -124,7 +161,7 @@ bool gbuffer_estimate_parallel(const struct gbuffer *g, const struct gbuffer_opt
     struct gbuffer other = *g;
     *fit = (struct fit){0};
     if (!gbuffer_type_is_auto(g, options) || g->depth_type != DEPTH_PLANAR ||
-        (is_known && g->camera.type != CAMERA_ORTHOGRAPHIC))
+        (is_known && g->camera.type != CAMERA_ORTHOGRAPHIC) || has_sky_at_largest(g))
         return true;
     other.depth = malloc(gbuffer_texels(g) * sizeof *other.depth);
     if (!other.depth)
