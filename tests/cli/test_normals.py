@@ -85,6 +85,29 @@ def one_plane_of_a_known_view(scratch, space):
         matches('need the rotation of the camera', said, 'the warnings')
 
 
+ACES_CG = np.array([[.6131, .3395, .0474], [.0702, .9164, .0134], [.0206, .1096, .8698]])
+SHORTER = np.random.default_rng(2).uniform(0.7, 1, (180, 320, 1))
+
+
+@cases([('a matrix of colours', 'signed', lambda n: n @ ACES_CG.T, True),
+        ('the same of 0..1', 'unsigned', lambda n: n @ ACES_CG.T, True),
+        ('a gain', 'signed', lambda n: n * [1.1, 0.95, 0.85], True),
+        ('as it is', 'signed', lambda n: n, False), ('0..1', 'unsigned', lambda n: n, False),
+        ('all longer', 'signed', lambda n: n * 1.07, False),
+        ('of filters', 'signed', lambda n: n * SHORTER, False),
+        ('bytes', 'signed', lambda n: np.round(n * 127) / 127, False)], name=lambda row: row[0])
+def a_colour_transform_of_normals_is_said(scratch, _, encoding, change, is_said):
+    scene = Scene(320, 180)
+    channels = {'Z': scene.depth(), **scene.normals(space='world', encoding=encoding)}
+    names = [f'N.{c}' for c in 'XYZ']
+    values = change(np.stack([channels[n] for n in names], -1))
+    channels.update({n: values[..., i].astype(np.float32) for i, n in enumerate(names)})
+    write_exr(scratch.path('in.exr'), channels)
+    for options in (), ('--fov', FOV):
+        said = str(inspect(scratch, '--normal-encoding', encoding, *options)['warnings'])
+        equal("normals 'N' look as if a colour transform" in said, is_said, said)
+
+
 @case
 def normals_without_signs_are_said(scratch):
     scene = Scene()

@@ -210,7 +210,7 @@ static bool make_unit(struct gbuffer *g)
 
 /* The library replaces zero normals by those of the depth. What lies outside the part's data window
  * is zero too, and must not be decoded. */
-static bool decode(struct gbuffer *g)
+static void decode(struct gbuffer *g)
 {
     for (size_t i = 0; i < gbuffer_texels(g); i++) {
         float *n = g->normals + i * 4;
@@ -221,7 +221,6 @@ static bool decode(struct gbuffer *g)
         if (!finite3(n))
             n[0] = n[1] = n[2] = 0;
     }
-    return g->normal_encoding != NORMAL_ENCODING_SIGNED || make_unit(g);
 }
 
 bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, const char *path,
@@ -233,7 +232,9 @@ bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, cons
         return false;
     if (!g->normals)
         return true;
-    if (!decode(g))
+    decode(g);
+    gbuffer_warn_of_matrix(g, path, report);
+    if (g->normal_encoding == NORMAL_ENCODING_SIGNED && !make_unit(g))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     g->view.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
     return true;

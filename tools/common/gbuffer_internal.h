@@ -306,6 +306,8 @@ void gbuffer_drop_normals(struct gbuffer *g);
 /* Decides and undoes the encoding of g->normals as read. */
 bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, const char *path,
                             struct report *report, struct tool_error *err);
+/* Of decoded normals before they are of unit length: those that a matrix was applied to. */
+void gbuffer_warn_of_matrix(const struct gbuffer *g, const char *path, struct report *report);
 /* Of decoded normals without a negative component: how many must have had one. 0 of others. */
 size_t gbuffer_count_lost_signs(const struct gbuffer *g, const struct normal_pairs *pairs);
 /* Of so many; needs the agreement of the normals. */
