@@ -483,5 +483,39 @@ def no_wall_has_such_normals(scratch, _, normal):
     check((ao[scene.sky] == 1).all(), 'the sky is not 1')
 
 
+def blurred(values, reach=2):
+    """Means over a square: what a filter makes of coverage."""
+    size = 2 * reach + 1
+    wide = np.pad(values, [(reach, reach), (reach, reach)] + [(0, 0)] * (values.ndim - 2), 'edge')
+    return sum(wide[y:y + values.shape[0], x:x + values.shape[1]]
+               for y in range(size) for x in range(size)) / size ** 2
+
+
+@cases([('a thing', 'is perhaps too'), ('what fades', 'is too'), ('normals alone', None),
+        ('nothing', None), ('silhouettes', None)])
+def normals_multiplied_by_alpha_are_said(scratch, name, message):
+    scene = Scene(320, 180)
+    ball, whole = scene.normal[..., 1] % 1 > 0, (~scene.sky).astype(float)
+    fades = 0.55 + 0.35 * np.sin(scene.x * 9) * np.cos(scene.y * 7)
+    normal, z = scene.normal, scene.z
+    alpha = np.where(ball, 0.4, whole) if name in ('a thing', 'nothing') else fades * whole
+    if name == 'silhouettes':
+        sphere = ball[..., None] * normal
+        alpha, normal = blurred(ball.astype(float)), blurred(sphere)
+    elif name != 'nothing':
+        normal = normal * alpha[..., None]
+        z = z if name == 'normals alone' else z * np.where(scene.sky, 1, alpha)
+    channels = {'Z': np.where(scene.sky, 1e10, z), 'A': alpha,
+                **{f'N.{c}': normal[..., i] for i, c in enumerate('XYZ')},
+                **{c: 0.5 * alpha for c in 'RGB'}}
+    write_exr(scratch.path('in.exr'), {n: v.astype(np.float32) for n, v in channels.items()})
+    said = str(inspect(scratch, '--fov', FOV, '--depth-type', 'planar', '--normal-space',
+                       'camera')['warnings'])
+    if message:
+        matches(f"normals 'N' are multiplied by alpha, on .* %.*depth 'Z' {message}", said, name)
+    else:
+        check('multiplied by alpha' not in said, said)
+
+
 if __name__ == '__main__':
     main()

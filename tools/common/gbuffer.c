@@ -641,6 +641,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     }
     gbuffer_warn_of_ramps(g, depth->info->path, report);
     gbuffer_warn_of_holes(g, depth->info->path, report);
+    gbuffer_warn_of_opacity(g, normals->path, report);
     if (!is_moved) {
         gbuffer_warn_of_borders(g, depth->info->path, report);
         gbuffer_warn_of_breaks(g, depth->info->path, report);

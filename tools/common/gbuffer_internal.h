@@ -201,6 +201,9 @@ void gbuffer_warn_of_breaks(const struct gbuffer *g, const char *path, struct re
 /* Of depth as prepared, with its alpha, and the normals that are used, if any: where only one of
  * the two is there. */
 void gbuffer_warn_of_holes(const struct gbuffer *g, const char *path, struct report *report);
+/* Of depth as prepared, with its alpha, and the normals that are used, if any, where alpha was
+ * multiplied into these. */
+void gbuffer_warn_of_opacity(const struct gbuffer *g, const char *path, struct report *report);
 /* By how many widths of a texel depth, as prepared, bends where stored normals are alike: a median,
  * 0 where there are few of them. False if memory ran out. */
 bool gbuffer_measure_noise(const struct gbuffer *g, double *noise);
