@@ -645,6 +645,10 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     if (!is_moved) {
         gbuffer_warn_of_borders(g, depth->info->path, report);
         gbuffer_warn_of_breaks(g, depth->info->path, report);
+        if (!gbuffer_warn_of_strangers(g, depth->info->path, report)) {
+            fail(err, EXIT_MEMORY, "%s: out of memory", depth->info->path);
+            goto failed;
+        }
     }
     /* What is taken out is no fault of the file. */
     if (!gbuffer_take_out(info, g, options, report, err))

@@ -119,6 +119,13 @@ static void weigh(struct normal_pairs *pairs)
  * and of what is round but for its rim. */
 static const double flat_bend = 0.15, round_bend = 0.5;
 
+bool gbuffer_smooth_normal(const struct gbuffer *g, size_t texel, double n[3])
+{
+    const size_t reach = g->depth_is_half ? 4 : 1, x = texel % g->width, y = texel / g->width;
+    return x >= reach && x + reach < g->width && y >= reach && y + reach < g->height &&
+           normal_of_depth(g, texel, reach, round_bend, n);
+}
+
 static bool pair_normals(const struct gbuffer *g, size_t most, double most_bend,
                          struct normal_pairs *pairs)
 {

@@ -204,6 +204,9 @@ void gbuffer_warn_of_holes(const struct gbuffer *g, const char *path, struct rep
 /* Of depth as prepared, with its alpha, and the normals that are used, if any, where alpha was
  * multiplied into these. */
 void gbuffer_warn_of_opacity(const struct gbuffer *g, const char *path, struct report *report);
+/* Of depth as prepared and the normals that are used, if any: single things whose normals are not
+ * those of their depth. False if memory ran out. */
+bool gbuffer_warn_of_strangers(const struct gbuffer *g, const char *path, struct report *report);
 /* By how many widths of a texel depth, as prepared, bends where stored normals are alike: a median,
  * 0 where there are few of them. False if memory ran out. */
 bool gbuffer_measure_noise(const struct gbuffer *g, double *noise);
@@ -272,6 +275,8 @@ bool gbuffer_pair_round_normals(const struct gbuffer *g, size_t most, struct nor
 /* Of depth as prepared, from the neighbours that are most alike, in view space; nearly right on
  * narrow things too. False where there are none. */
 bool gbuffer_rough_normal(const struct gbuffer *g, size_t texel, double n[3]);
+/* The same where depth is smooth, flat or round. False where it is not. */
+bool gbuffer_smooth_normal(const struct gbuffer *g, size_t texel, double n[3]);
 void gbuffer_free_pairs(struct normal_pairs *pairs);
 /* Of stored normals, times the matrix (of columns), with those of depth. 0 without pairs. */
 struct agreement {
