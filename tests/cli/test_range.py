@@ -176,7 +176,8 @@ def breaks_along_lines_are_said(scratch, _, change, message):
 
 
 @cases([('down to the eye', lambda d: d, None),
-        ('lower part in feet', lambda d: put(d, d * 3.28, slice(105, None), ALL), 'before row 105,'),
+        ('lower part in feet', lambda d: put(d, d * 3.28, slice(105, None), ALL),
+         'before row 105,'),
         ('lower part nearer', lambda d: put(d, d * 0.95, slice(108, None), ALL),
          'before row 108,')], name=lambda row: row[0])
 def ledges_at_the_height_of_the_eye_are_no_seam(scratch, _, change, message):

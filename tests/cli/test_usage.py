@@ -72,8 +72,8 @@ def texts_are_not_empty(scratch, option, _):
 
 @cases([('--channel', 'x'), ('--part-name', 'x')])
 def names_are_no_longer_than_exr_has_them(scratch, option, _):
-    fails(scratch, rf'{option} is of 256 bytes, want at most 255', 'in.exr', '-o', 'out.exr', option,
-          'n' * 256)
+    fails(scratch, rf'{option} is of 256 bytes, want at most 255', 'in.exr', '-o', 'out.exr',
+          option, 'n' * 256)
 
 
 @case

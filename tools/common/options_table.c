@@ -554,8 +554,8 @@ const struct option_row option_table[] = {
              "refused, as is a depth that is the same everywhere. Whole numbers are scene units; "
              "of device and normalized they are parts of the largest of 8, 16, 24 or 32 bits that "
              "holds them all: 1 is 255, 65535, 16777215 or 4294967295. Whole numbers of other "
-             "bits are said, and those that nothing shows to be distances are refused. Where depth is "
-             "from 0 to 1 --near with --far, or --depth-range, say the type too."},
+             "bits are said, and those that nothing shows to be distances are refused. Where depth "
+             "is from 0 to 1 --near with --far, or --depth-range, say the type too."},
     {.name = "depth-range", .argument = "NEAR,FAR[,inverted]",
      .help = "distances that 0 and 1 stand for, of normalized depth; inverted: 1 and 0",
      .commands = RENDER | INSPECT, .apply = apply_depth_range, .offset = AT(gbuffer.depth_range),
