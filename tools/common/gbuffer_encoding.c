@@ -84,9 +84,11 @@ static bool unit_length(double length)
 }
 
 /* Some texels are negative in any encoding: filters overshoot. */
+static const double most_of_filters = 0.005;
+
 static enum normal_encoding encoding_of(const struct encoding_facts *f)
 {
-    if (f->count == 0 || f->negative > 0.005 || f->signed_share > f->unsigned_share + 0.2)
+    if (f->count == 0 || f->negative > most_of_filters || f->signed_share > f->unsigned_share + 0.2)
         return NORMAL_ENCODING_SIGNED;
     if (f->unsigned_share > f->signed_share + 0.2)
         return NORMAL_ENCODING_UNSIGNED;
@@ -160,7 +162,8 @@ static bool resolve_encoding(struct gbuffer *g, enum normal_encoding wanted, con
     if (!g->normals)
         return true;
     g->normal_encoding = encoding_of(&facts);
-    if (facts.linear_share > fmax(facts.signed_share, facts.unsigned_share) + 0.2)
+    if (facts.negative < most_of_filters &&
+        facts.linear_share > fmax(facts.signed_share, facts.unsigned_share) + 0.2)
         return fail_linear(g, path, err);
     g->normals_lack_negative =
         g->normal_encoding == NORMAL_ENCODING_SIGNED && !(facts.negative > 0);
