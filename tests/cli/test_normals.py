@@ -288,6 +288,19 @@ def frames_whose_depth_is_turned_say_it_once(scratch):
     equal(said.count('normal=from depth'), said.count('using:'), said)
 
 
+@cases([('signed', 'unsigned'), ('unsigned', 'signed')])
+def another_encoding_than_told_is_said(scratch, stored, told):
+    write_exr(scratch.path('in.exr'),
+              {'Z': Scene().depth(), **Scene().normals(space='world', encoding=stored)})
+    for space in (), ('--fov', FOV, '--normal-space', 'camera'):
+        said = str(inspect(scratch, '--normal-encoding', told, *space)['warnings'])
+        matches(rf"--normal-encoding says that normals 'N' are {told}, but (9\d|100) % are of "
+                rf'length 1 as {stored}, .*: {told} is taken \(--normal-encoding {stored} over',
+                said, 'the warnings')
+        said = str(inspect(scratch, '--normal-encoding', stored)['warnings'])
+        check('--normal-encoding says' not in said, said)
+
+
 @cases([('twice',), ('half',), ('a hundred times',), ('a little more',), ('any length above 1',)])
 def lengths_of_normals_do_not_matter(scratch, name):
     scene = Scene()

@@ -149,15 +149,36 @@ static bool fail_linear(const struct gbuffer *g, const char *path, struct tool_e
                 path, g->roles.kind[ROLE_NORMAL].label);
 }
 
+/* What an option says is taken; lengths that are 1 by the other encoding alone contradict it. */
+static void doubt_encoding(const struct gbuffer *g, const struct encoding_facts *f,
+                           const char *path, struct report *report)
+{
+    static const double nearly_all = 0.9, few = 0.5;
+    const bool is_signed = g->normal_encoding == NORMAL_ENCODING_SIGNED;
+    const double told = is_signed ? f->signed_share : f->unsigned_share;
+    const double other = is_signed ? f->unsigned_share : f->signed_share;
+    if (f->count > 0 && other > nearly_all && told < few)
+        report_warn(report, "told encoding",
+                    "%s: --normal-encoding says that normals '%s' are %s, but %.0f %% are of "
+                    "length 1 as %s, and %.0f %% as it says: %s is taken (--normal-encoding %s "
+                    "overrides)",
+                    path, g->roles.kind[ROLE_NORMAL].label,
+                    normal_encoding_name(g->normal_encoding), other * 100.0,
+                    is_signed ? "unsigned" : "signed", told * 100.0,
+                    normal_encoding_name(g->normal_encoding), is_signed ? "unsigned" : "signed");
+}
+
 static bool resolve_encoding(struct gbuffer *g, enum normal_encoding wanted, const char *path,
                              struct report *report, struct tool_error *err)
 {
     struct encoding_facts facts;
     g->normal_encoding = wanted;
-    if (wanted != NORMAL_ENCODING_AUTO)
-        return true;
     if (!measure_encoding(g, &facts))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    if (wanted != NORMAL_ENCODING_AUTO) {
+        doubt_encoding(g, &facts, path, report);
+        return true;
+    }
     drop_what_is_none(g, &facts, path, report);
     if (!g->normals)
         return true;
