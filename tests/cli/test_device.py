@@ -1,12 +1,14 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
-"""Whichever Vulkan call fails: memory is 33, the device 5, with one line and nothing left behind.
+"""Whichever Vulkan call fails: memory is 33, the device 5, with one line, a remedy and nothing left
+behind.
 
 Without case names, the first and last call of every function; `... VKAO LAYER --sweep` fails every
 call of a run by its number.
 """
 import collections
 import os
+import re
 import sys
 
 from cli import DEVICE, MEMORY, OK, SOME_FRAMES, Failed, case, check, equal, main, write_exr
@@ -51,6 +53,7 @@ def check_fault(scratch, name, fault, code):
     left = remove_outputs(scratch)
     equal(result.code, code, f'exit code after {fault} of {result}\n')
     check(faults.is_message(result.stderr), f'not a message: {result}')
+    check(re.search(r'\n +\S', result.stderr), f'no remedy: {result}')
     check(not left, f'{left} left after {fault}')
 
 
@@ -97,6 +100,7 @@ def a_lost_device_ends_a_sequence_and_a_full_one_does_not(scratch):
     for call, result, code, outputs in (
             ('vkQueueSubmit', faults.DEVICE_LOST, DEVICE, []),
             ('vkQueueWaitIdle', faults.DEVICE_LOST, DEVICE, []),
+            ('vkCreateDescriptorPool', faults.DEVICE_LOST, DEVICE, []),
             ('vkAllocateMemory', faults.OUT_OF_DEVICE_MEMORY, SOME_FRAMES, ['out.2.exr']),
             ('vkCreateImage', faults.OUT_OF_HOST_MEMORY, SOME_FRAMES, ['out.2.exr'])):
         env = {**os.environ, **faults.environment(LAYER, scratch.path('layer'),
@@ -104,6 +108,7 @@ def a_lost_device_ends_a_sequence_and_a_full_one_does_not(scratch):
         done = scratch.run(*command, env=faults.without_leaks(env), timeout=60)
         equal(done.code, code, f'exit code after {call} of {done}\n')
         check('vkao: in.1.exr: ' in done.stderr, f'the message does not name the file: {done}')
+        equal('frame 2/2' in done.stderr, code != DEVICE, f'whether another is tried in {done}')
         equal([f for f in scratch.files() if f.startswith('out')], outputs, 'outputs')
         for name in outputs:
             os.remove(scratch.path(name))

@@ -8,12 +8,27 @@
 
 static const char validation_layer[] = "VK_LAYER_KHRONOS_validation";
 
+static void hint_at_memory(struct tool_error *err)
+{
+    fail_hint(err, "free memory, crop or scale the image, or raise the limit ('ulimit -v')");
+}
+
+static void hint_at_driver(struct tool_error *err)
+{
+    fail_hint(err, "the driver gave up, perhaps for want of memory ('ulimit -v'), as the system's "
+                   "log may tell; or take another with --device");
+}
+
 bool gpu_ok(struct tool_error *err, const char *call, VkResult result)
 {
     if (result == VK_SUCCESS)
         return true;
     bool memory = result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY;
     err->ends_run = err->ends_run || result == VK_ERROR_DEVICE_LOST;
+    if (memory)
+        hint_at_memory(err);
+    else
+        hint_at_driver(err);
     return fail(err, memory ? EXIT_MEMORY : EXIT_DEVICE, "%s failed with VkResult %d", call,
                 (int)result);
 }
@@ -396,10 +411,15 @@ static void print_log(void *user_data, vkao_log_level level, const char *message
 bool gpu_library_failed(struct tool_error *err, const char *call, vkao_result result)
 {
     enum exit_code code = EXIT_DEVICE;
-    if (result == VKAO_ERROR_OUT_OF_HOST_MEMORY || result == VKAO_ERROR_OUT_OF_DEVICE_MEMORY)
+    if (result == VKAO_ERROR_OUT_OF_HOST_MEMORY || result == VKAO_ERROR_OUT_OF_DEVICE_MEMORY) {
         code = EXIT_MEMORY;
-    else if (result == VKAO_ERROR_INVALID_ARGUMENT)
+        hint_at_memory(err);
+    } else if (result == VKAO_ERROR_INVALID_ARGUMENT) {
         code = EXIT_CHANNELS; /* options were checked before: it is what the file says */
+    } else if ((int)result <= (int)VKAO_ERROR_VULKAN) {
+        err->ends_run |= (int)result == (int)VKAO_ERROR_VULKAN + (int)VK_ERROR_DEVICE_LOST;
+        hint_at_driver(err);
+    }
     return fail(err, code, "%s: %s", call, vkao_result_string(result));
 }
 
