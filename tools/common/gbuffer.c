@@ -17,12 +17,6 @@ const char *normal_space_name(enum normal_space space)
     return names[space];
 }
 
-const char *normal_encoding_name(enum normal_encoding encoding)
-{
-    static const char *const names[] = {"auto", "signed", "unsigned"};
-    return names[encoding];
-}
-
 const char *pixel_type_name(enum exr_pixel_type type)
 {
     static const char *const names[] = {"uint", "half", "float"};

@@ -8,6 +8,12 @@
 #include <math.h>
 #include <stdlib.h>
 
+const char *normal_encoding_name(enum normal_encoding encoding)
+{
+    static const char *const names[] = {"auto", "signed", "unsigned"};
+    return names[encoding];
+}
+
 static bool finite3(const float *n)
 {
     return isfinite(n[0]) && isfinite(n[1]) && isfinite(n[2]);
