@@ -299,11 +299,12 @@ def told_ends_say_the_type_of_depth_from_0_to_1(scratch):
     check_same(ao, wanted, said)
     matches('--depth-range is given: taken for parts of that range', said, 'stderr')
     # Of other depth planes are told as well, and a range is a mistake.
-    for unit, options, want in ((1, ('--near', 0.1, '--far', 100), ''),
-                                (0.01, ('--near', 0.001, '--far', 1), ''),
-                                (1, ends, "--depth-range is left aside: depth 'Z' is taken for ")):
+    for unit, sky, options, want in (
+            (1, 1e10, ('--near', 0.1, '--far', 100), ''),
+            (0.01, 0, ('--near', 0.001, '--far', 1), ''),
+            (1, 1e10, ends, "--depth-range is left aside: depth 'Z' is taken for ")):
         write_exr(scratch.path('in.exr'),
-                  {'Z': depth_of(scene, 1e10, unit), **scene.normals(space='world')})
+                  {'Z': depth_of(scene, sky, unit), **scene.normals(space='world')})
         view = inspect(scratch, '--fov', FOV, *options)
         said = str(view['warnings'])
         equal(view['conventions']['depth_type'], 'planar', said)

@@ -552,7 +552,8 @@ def turned_by(angle):
 
 
 @cases([('a ball', True), ('a ball, a little', True), ('a pane', True), ('nothing', False),
-        ('coarse', False), ('bumps', False), ('all', False)])
+        ('coarse', False), ('bumps', False), ('a panel', False), ('a strip', False),
+        ('all', False)])
 def things_with_other_normals_are_said(scratch, name, is_said):
     scene = Scene(320, 180)
     z, normal = scene.z, scene.normal
@@ -562,6 +563,12 @@ def things_with_other_normals_are_said(scratch, name, is_said):
     elif name == 'a pane':  # of glass, of which depth knows nothing
         normal = normal.copy()
         normal[130:175, 20:100] = [0.1, 0, np.sqrt(0.99)]
+    elif name == 'a panel':  # of a normal map on the floor, which goes on around it
+        normal = normal.copy()
+        normal[130:175, 20:100] = [np.sin(0.4), np.cos(0.4), 0]
+    elif name == 'a strip':  # as a bevel is, narrow
+        normal = normal.copy()
+        normal[150:154, 5:300] = [0.1, 0, np.sqrt(0.99)]
     elif name == 'coarse':
         z, normal = column(scene)
     elif name == 'bumps':

@@ -140,11 +140,11 @@ static bool check_target(const struct atomic_file *file, mode_t *mode, struct to
     *mode = 0;
     if (length == 0 || file->target[length - 1] == '/')
         return fail(err, EXIT_OUTPUT, "%s: cannot create: not a file name", file->path);
-    if (stat(file->target, &status) != 0 && errno == ENAMETOOLONG)
-        return fail(err, EXIT_OUTPUT, "%.200s...: cannot create: %s", file->path,
-                    strerror(ENAMETOOLONG)); /* that of the temporary file is shorter */
+    /* Usually ENOENT. Whatever else is wrong, creating the temporary file tells, but for a name too
+     * long: that file's is shorter. */
     if (stat(file->target, &status) != 0)
-        return true; /* usually ENOENT; whatever else is wrong, creating the temporary file tells */
+        return errno != ENAMETOOLONG || fail(err, EXIT_OUTPUT, "%.200s...: cannot create: %s",
+                                             file->path, strerror(ENAMETOOLONG));
     if (S_ISDIR(status.st_mode))
         return fail(err, EXIT_OUTPUT, "%s: cannot create: %s", file->path, strerror(EISDIR));
     if (!S_ISREG(status.st_mode)) {

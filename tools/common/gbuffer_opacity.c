@@ -105,7 +105,8 @@ static enum answer is_depth_multiplied(const struct opacity *o)
 }
 
 /* Of normals that are written as they are, none is as long as alpha but where filters made it so,
- * and these leave those of round things shorter. The length alone does no harm. */
+ * and these leave those of round things shorter. The length alone does no harm. Chosen by hand on
+ * three ray-traced scenes; of 192 other views none is said. */
 void gbuffer_warn_of_opacity(const struct gbuffer *g, const char *path, struct report *report)
 {
     static const double least_share = 0.005, most = 0.8;
