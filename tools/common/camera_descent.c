@@ -201,7 +201,6 @@ static const double moved_by = 1e-5;
 static void find_moved_normals(const struct fit_samples *s, const struct fit_solution *at,
                                const struct equations *eq)
 {
-    fit_find_normals(s, at, s->normals);
     for (int i = 0; i < eq->count - 3; i++) {
         struct fit_solution moved = *at;
         moved.p[eq->parameter[i]] += moved_by;
@@ -225,6 +224,7 @@ static void differentiate(const struct fit_samples *s, size_t i, int count, stru
     }
 }
 
+/* The normals at the solution are those of the last question. */
 static void linearise(const struct fit_samples *s, const struct fit_solution *at, double sigma,
                       struct equations *eq)
 {
@@ -403,6 +403,7 @@ double fit_sensitivity(const struct fit_samples *s, const struct fit_solution *a
     struct equations eq;
     double l[FIT_PARAMETERS][FIT_PARAMETERS], moved[FIT_PARAMETERS] = {0};
     t.free[FIT_LN_K] = true;
+    fit_find_normals(s, &t, s->normals);
     linearise(s, &t, fmax(t.sigma, 1e-3), &eq);
     factorise(&eq, 1.0, 0, l);
     moved[LN_K] = 1.0;

@@ -18,6 +18,7 @@ static const int corners[4][2] = {{-1, -1}, {1, -1}, {-1, 1}, {1, 1}};
 
 struct field {
     const struct fit_input *input;
+    bool *valid;                /* of texels, as is_valid() has it */
     double sign;                /* -1 where depth is negative throughout */
     double least, most;         /* of valid depth */
     bool drop_least, drop_most; /* values held by so many texels that they are background */
@@ -58,10 +59,24 @@ static bool valid_depth(const struct field *f, double d)
            !(f->drop_most && same(d, f->most));
 }
 
-static bool valid_at(const struct field *f, int x, int y)
+static bool is_valid(const struct field *f, int x, int y)
 {
     const double length = length_of(normal_at(f, x, y));
     return valid_depth(f, depth_at(f, x, y)) && length > 0.5 && length < 1.5;
+}
+
+/* Once, since each is asked for many times as a neighbour. */
+static void find_valid(const struct field *f)
+{
+    const int width = (int)f->input->width, height = (int)f->input->height;
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            f->valid[(size_t)y * f->input->width + (size_t)x] = is_valid(f, x, y);
+}
+
+static bool valid_at(const struct field *f, int x, int y)
+{
+    return f->valid[(size_t)y * f->input->width + (size_t)x];
 }
 
 /* A constant that more than 5 % of the texels hold at an end of the range is background. */
@@ -424,6 +439,37 @@ static bool choose(const struct field *f, const struct candidate *list, size_t c
     return arrange(s) && measure(s);
 }
 
+/* Of a field whose valid texels are known. */
+static bool take_valid(struct field *f, struct fit_samples *samples)
+{
+    const struct fit_input *input = f->input;
+    const int width = (int)input->width, height = (int)input->height;
+    f->quantum = ldexp(1.0, -mantissa_bits(f));
+    /* Far enough apart for the rounding of what is stored to be a hundredth of a slope. */
+    const double step_x =
+        2.0 / ((double)input->display_window.x_max - input->display_window.x_min + 1.0);
+    for (f->baseline = 1; f->baseline < 16 && f->quantum * 0.25 / (f->baseline * step_x) > 0.01;)
+        f->baseline++;
+    if (f->baseline < f->blur)
+        f->baseline = f->blur;
+    f->reach = f->baseline + f->blur;
+    if (width <= 2 * f->reach + 2 || height <= 2 * f->reach + 2)
+        return true;
+    samples->step_x = f->baseline * step_x;
+    samples->step_y = samples->step_x / input->pixel_aspect;
+    samples->least = f->least;
+    samples->most = f->most;
+    struct candidate *list;
+    size_t count;
+    bool ok = list_candidates(f, &list, &count);
+    if (ok) {
+        keep_agreeing(list, &count);
+        ok = count < LEAST_SAMPLES || choose(f, list, count, samples);
+    }
+    free(list);
+    return ok;
+}
+
 bool fit_samples_take(const struct fit_input *input, unsigned blur, struct fit_samples *samples)
 {
     struct field f = {.input = input, .step = 1, .blur = (int)blur};
@@ -433,29 +479,12 @@ bool fit_samples_take(const struct fit_input *input, unsigned blur, struct fit_s
     while ((size_t)(width / f.step) * (size_t)(height / f.step) > most)
         f.step++;
     find_range(&f);
-    f.quantum = ldexp(1.0, -mantissa_bits(&f));
-    /* Far enough apart for the rounding of what is stored to be a hundredth of a slope. */
-    const double step_x =
-        2.0 / ((double)input->display_window.x_max - input->display_window.x_min + 1.0);
-    for (f.baseline = 1; f.baseline < 16 && f.quantum * 0.25 / (f.baseline * step_x) > 0.01;)
-        f.baseline++;
-    if (f.baseline < f.blur)
-        f.baseline = f.blur;
-    f.reach = f.baseline + f.blur;
-    if (width <= 2 * f.reach + 2 || height <= 2 * f.reach + 2)
-        return true;
-    samples->step_x = f.baseline * step_x;
-    samples->step_y = samples->step_x / input->pixel_aspect;
-    samples->least = f.least;
-    samples->most = f.most;
-    struct candidate *list;
-    size_t count;
-    bool ok = list_candidates(&f, &list, &count);
-    if (ok) {
-        keep_agreeing(list, &count);
-        ok = count < LEAST_SAMPLES || choose(&f, list, count, samples);
-    }
-    free(list);
+    f.valid = malloc((size_t)input->width * input->height * sizeof *f.valid);
+    if (!f.valid)
+        return false;
+    find_valid(&f);
+    const bool ok = take_valid(&f, samples);
+    free(f.valid);
     if (!ok)
         fit_samples_free(samples);
     return ok;

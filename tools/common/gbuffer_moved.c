@@ -52,12 +52,16 @@ static double disagreement(const struct gbuffer *g, const struct place *p, struc
     return square > 0.25 ? fmax(1.0 - dot * dot / square, 0) : 1.0;
 }
 
+/* Or infinity, as soon as it is certain to be no less than that. */
 static double mean_disagreement(const struct gbuffer *g, const struct places *places,
-                                struct move by)
+                                struct move by, double least)
 {
+    const double enough = least * (double)((places->count + STRIDE - 1) / STRIDE);
     double sum = 0;
     size_t count = 0;
     for (size_t i = 0; i < places->count; i += STRIDE) {
+        if (sum > enough)
+            return INFINITY;
         const double e = disagreement(g, &places->list[i], by);
         if (isnan(e))
             continue;
@@ -70,12 +74,12 @@ static double mean_disagreement(const struct gbuffer *g, const struct places *pl
 static struct move find_best(const struct gbuffer *g, const struct places *places)
 {
     struct move best = {0, 0};
-    double least = mean_disagreement(g, places, best);
+    double least = mean_disagreement(g, places, best, INFINITY);
     for (int round = 0; round < 2 * ROUNDS; round++) {
         const struct move from = best;
         for (ptrdiff_t k = -FARTHEST; k <= FARTHEST; k++) {
             const struct move at = round % 2 ? (struct move){from.x, k} : (struct move){k, from.y};
-            const double mean = mean_disagreement(g, places, at);
+            const double mean = mean_disagreement(g, places, at, least);
             if (mean < least) {
                 least = mean;
                 best = at;
