@@ -184,15 +184,18 @@ double fit_cost(const struct fit_samples *s, const struct fit_solution *at, doub
     return sum / s->total_weight;
 }
 
-/* Normal equations at a solution, and the gradient by groups of samples, whose errors hang
- * together. */
+/* Normal equations at a solution. */
 struct equations {
     int count;                /* of unknowns: three of the rotation, and what is free of p */
     int parameter[FIT_SHAPE]; /* which of p */
     double matrix[FIT_PARAMETERS][FIT_PARAMETERS], gradient[FIT_PARAMETERS];
-    double by_tile[FIT_TILES][FIT_PARAMETERS], by_cell[FIT_CELLS][FIT_PARAMETERS];
     double weight, error; /* of all samples: sums, the second of squares */
     double curvature;     /* of the robust cost, against that of least squares: (0,1] */
+};
+
+/* The gradient by groups of samples, whose errors hang together. */
+struct gradients {
+    double by_tile[FIT_TILES][FIT_PARAMETERS], by_cell[FIT_CELLS][FIT_PARAMETERS];
 };
 
 static const double moved_by = 1e-5;
@@ -224,13 +227,15 @@ static void differentiate(const struct fit_samples *s, size_t i, int count, stru
     }
 }
 
-/* The normals at the solution are those of the last question. */
+/* The normals at the solution are those of the last question. groups: NULL, or wanted too. */
 static void linearise(const struct fit_samples *s, const struct fit_solution *at, double sigma,
-                      struct equations *eq)
+                      struct equations *eq, struct gradients *groups)
 {
     const double s2 = sigma * sigma;
     double slope = 0, bend = 0;
     memset(eq, 0, sizeof *eq);
+    if (groups)
+        memset(groups, 0, sizeof *groups);
     eq->count = 3;
     for (int i = 0; i < FIT_SHAPE; i++)
         if (at->free[i])
@@ -249,12 +254,15 @@ static void linearise(const struct fit_samples *s, const struct fit_solution *at
         bend += weight * (s2 - 3.0 * e2) / (e2 + s2);
         differentiate(s, i, eq->count, q, de);
         for (int a = 0; a < eq->count; a++) {
-            const double score = weight * dot(de[a], e);
+            const struct vec3 weighted = scale(de[a], weight);
+            const double score = dot(weighted, e);
             eq->gradient[a] += score;
-            eq->by_tile[sample->tile][a] += score;
-            eq->by_cell[sample->cell][a] += score;
+            if (groups) {
+                groups->by_tile[sample->tile][a] += score;
+                groups->by_cell[sample->cell][a] += score;
+            }
             for (int b = 0; b <= a; b++)
-                eq->matrix[a][b] += weight * dot(de[a], de[b]);
+                eq->matrix[a][b] += dot(weighted, de[b]);
         }
     }
     for (int a = 0; a < eq->count; a++)
@@ -333,19 +341,20 @@ static struct fit_solution stepped(const struct fit_samples *s, const struct fit
     return next;
 }
 
-void fit_descend(const struct fit_samples *s, struct fit_solution *at, double sigma, int rounds)
+void fit_descend(const struct fit_samples *s, struct fit_solution *at, double sigma, double enough)
 {
+    enum { ROUNDS = 12 };
     double damping = 1e-3;
     at->cost = fit_cost(s, at, sigma);
-    for (int round = 0; round < rounds; round++) {
+    for (int round = 0; round < ROUNDS; round++) {
         struct equations eq;
         bool better = false, done = true;
-        linearise(s, at, sigma, &eq);
+        linearise(s, at, sigma, &eq, NULL);
         for (int attempt = 0; attempt < 6 && !better; attempt++) {
             struct fit_solution next = stepped(s, at, &eq, damping);
             next.cost = fit_cost(s, &next, sigma);
             better = next.cost < at->cost;
-            done = !better || at->cost - next.cost < 1e-6 * fmax(at->cost, 1e-9);
+            done = !better || at->cost - next.cost < enough * fmax(at->cost, 1e-9);
             damping = better ? fmax(damping * 0.2, 1e-9) : damping * 10.0;
             if (better)
                 *at = next;
@@ -383,11 +392,12 @@ static void sandwich(const struct equations *eq, double l[FIT_PARAMETERS][FIT_PA
 static void find_deviations(const struct fit_samples *s, struct fit_solution *at)
 {
     struct equations eq;
+    struct gradients groups;
     double l[FIT_PARAMETERS][FIT_PARAMETERS], tiles[FIT_PARAMETERS], cells[FIT_PARAMETERS];
-    linearise(s, at, at->sigma, &eq);
+    linearise(s, at, at->sigma, &eq, &groups);
     factorise(&eq, eq.curvature, 0, l);
-    sandwich(&eq, l, (const double(*)[FIT_PARAMETERS])eq.by_tile, FIT_TILES, tiles);
-    sandwich(&eq, l, (const double(*)[FIT_PARAMETERS])eq.by_cell, FIT_CELLS, cells);
+    sandwich(&eq, l, (const double(*)[FIT_PARAMETERS])groups.by_tile, FIT_TILES, tiles);
+    sandwich(&eq, l, (const double(*)[FIT_PARAMETERS])groups.by_cell, FIT_CELLS, cells);
     const int decisive = eq.count > 3 ? 3 : 2;
     const double *variance = tiles[decisive] > cells[decisive] ? tiles : cells;
     memset(at->deviation, 0, sizeof at->deviation);
@@ -404,7 +414,7 @@ double fit_sensitivity(const struct fit_samples *s, const struct fit_solution *a
     double l[FIT_PARAMETERS][FIT_PARAMETERS], moved[FIT_PARAMETERS] = {0};
     t.free[FIT_LN_K] = true;
     fit_find_normals(s, &t, s->normals);
-    linearise(s, &t, fmax(t.sigma, 1e-3), &eq);
+    linearise(s, &t, fmax(t.sigma, 1e-3), &eq, NULL);
     factorise(&eq, 1.0, 0, l);
     moved[LN_K] = 1.0;
     substitute(eq.count, l, moved);
@@ -416,7 +426,7 @@ double fit_sensitivity(const struct fit_samples *s, const struct fit_solution *a
 void fit_refine(const struct fit_samples *s, struct fit_solution *at, double sigma)
 {
     double inliers = 0;
-    fit_descend(s, at, sigma, 12);
+    fit_descend(s, at, sigma, FIT_FULLY);
     at->sigma = sigma;
     memset(at->tile_cost, 0, sizeof at->tile_cost);
     const struct fit_residual *residuals = fit_find_residuals(s, at);

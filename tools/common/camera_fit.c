@@ -193,8 +193,8 @@ static bool search(const struct fit_samples *s, const struct fit_input *input, s
     while (f->count > 1 && f->list[f->count - 1].cost > f->list[0].cost + 0.4)
         f->count--;
     for (size_t i = 0; i < f->count; i++) {
-        fit_descend(&few, &f->list[i], 0.1, 12);
-        fit_descend(&few, &f->list[i], 0.05, 12);
+        fit_descend(&few, &f->list[i], 0.1, FIT_NEARLY);
+        fit_descend(&few, &f->list[i], 0.05, FIT_NEARLY);
     }
     drop_outside(&few, f);
     merge_doubles(f);

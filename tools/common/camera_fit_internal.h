@@ -121,8 +121,12 @@ double fit_cost(const struct fit_samples *s, const struct fit_solution *at, doub
 /* Of all samples, and their normals with them: valid until another solution is asked about. */
 const struct fit_residual *fit_find_residuals(const struct fit_samples *s,
                                               const struct fit_solution *at);
-/* Gauss-Newton at one robust scale; fills cost and p alone. */
-void fit_descend(const struct fit_samples *s, struct fit_solution *at, double sigma, int rounds);
+/* Enough of what is refined afterwards, and of what is not. */
+#define FIT_NEARLY 1e-4
+#define FIT_FULLY 1e-6
+/* Gauss-Newton at one robust scale, until a step lowers the cost by no more than that share of it;
+ * fills cost and p alone. */
+void fit_descend(const struct fit_samples *s, struct fit_solution *at, double sigma, double enough);
 /* By how much the normals turn with ln k, as a sine, where the rotation and all that is free follow
  * it: 0 if any field of view fits, as faces do that are square to the view. */
 double fit_sensitivity(const struct fit_samples *s, const struct fit_solution *at);

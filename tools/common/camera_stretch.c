@@ -25,7 +25,7 @@ static struct fit_solution find_best(const struct fit_samples *s, const struct f
         t.free[FIT_LN_A] = true;
         t.p[FIT_LN_A] = starts[i];
         t.rotation = fit_start_rotation(s, &t);
-        fit_descend(s, &t, 0.1, 12);
+        fit_descend(s, &t, 0.1, FIT_NEARLY);
         fit_refine(s, &t, sigma);
         if (t.cost < found.cost && fabs(t.p[FIT_LN_A]) < most)
             found = t;

@@ -40,7 +40,7 @@ static struct fit_solution find_best_of(const struct fit_samples *s,
         const struct fit_solution t = start(s, best, curve, i % TONES, i / TONES);
         found = t.cost < found.cost ? t : found;
     }
-    fit_descend(s, &found, 0.1, 12);
+    fit_descend(s, &found, 0.1, FIT_NEARLY);
     fit_refine(s, &found, sigma);
     return found;
 }
