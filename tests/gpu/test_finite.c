@@ -170,12 +170,12 @@ static void make(struct picture *p, struct chance *settings, struct chance *chan
                                               VKAO_STAGE_COMPOSITE,
                                               VKAO_STAGE_SSAO | VKAO_STAGE_COMPOSITE};
     /* Few shapes and formats: a software driver compiles for each. None of these is a power of
-     * two. */
-    static const uint32_t sizes[] = {1, 9, 13, 22, 27};
+     * two, nor are half of it and what vkao_view_z_extent() makes of either. */
+    static const uint32_t widths[] = {17, 19, 26, 35}, heights[] = {9, 13, 22};
     const vkao_stage_flags both = VKAO_STAGE_SSAO | VKAO_STAGE_BLUR;
     const bool dot = chance_yes(chance, 0.05);
-    picture_init(p, sizes[dot ? 0 : 1 + chance_below(chance, 4)],
-                 sizes[dot ? 0 : 1 + chance_below(chance, 3)], PICK(settings, stages));
+    picture_init(p, dot ? 1 : PICK(chance, widths), dot ? 1 : PICK(chance, heights),
+                 PICK(settings, stages));
     p->view.depth_encoding = (vkao_depth_encoding)chance_below(settings, 4);
     p->view.normal_encoding = (vkao_normal_encoding)chance_below(settings, 5);
     p->view.bent_encoding = (vkao_normal_encoding)chance_below(settings, 5);
