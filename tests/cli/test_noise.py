@@ -7,6 +7,8 @@ Digits of the noise repeat after four texels, and turns climb by a quarter of 1/
 Whatever the scene makes of that, a flat wall shows as waves (i / 4, j / 4 + k / 4g); those along a
 column, i = 0, are mixtures of turns and moves. The scene goes out of the spectrum with the mean
 over several noise patterns."""
+import json
+import os
 from functools import lru_cache
 
 import numpy as np
@@ -125,15 +127,21 @@ def darkest(windows, ao):
     return sorted(windows, key=lambda w: ao[w].mean())[:WINDOWS]
 
 
-def render(scratch, name, radius, patterns, *options):
-    images = []
+def render_patterns(scratch, name, patterns, *options):
+    """Frames of one run, which finds out about them and compiles once: what ao.exr was made with,
+    but for the options. What frames do not share lies in records of their own."""
+    record = json.loads(read_parts(scratch.path('ao.exr'))[0].attributes['vkao/params'])
     for pattern in patterns:
-        scratch.render('in.exr', '-o', 'ao.exr', '--camera',
-                       corpus(f'{name}.camera.json'), '--radius', radius, '--pixel-type', 'float',
-                       '--compression', 'none', '--overwrite', 'always', '--noise-index', pattern,
-                       *options)
-        images.append(read_ao(scratch.path('ao.exr')).astype(np.float64))
-        check_ao(images[-1], name)
+        record['parameters']['noise_index'] = pattern
+        write_exr(scratch.path(f'like.{pattern}.exr'), {'R': np.zeros((1, 1), np.float32)},
+                  attributes=[('vkao/params', json.dumps(record))])
+        if not os.path.exists(scratch.path(f'in.{pattern}.exr')):
+            os.link(scratch.path('in.exr'), scratch.path(f'in.{pattern}.exr'))
+    scratch.render('in.@.exr', '-o', 'ao.@.exr', '--like', 'like.@.exr', '--overwrite', 'always',
+                   '--frames', f'{patterns[0]}-{patterns[-1]}', *options)
+    images = [read_ao(scratch.path(f'ao.{pattern}.exr')).astype(np.float64) for pattern in patterns]
+    for image in images:
+        check_ao(image, name)
     return np.stack(images)
 
 
@@ -150,11 +158,12 @@ def spectrum_of(images, windows):
 @cases([(f'{name} {quality}', name, quality) for name in IMAGES for quality in QUALITIES])
 def no_pattern_of_the_noise_is_left(scratch, _, name, quality):
     radius = f'{read_parts(corpus(f"{name}.gt.exr"))[0].attributes["aoRadius"]:.6g}'
-    options = '--quality', quality
     # Of many images of it, what is not needed need not be unpacked.
     write_exr(scratch.path('in.exr'), planes_of(name), compression='none')
-    blurred, noisy = render(scratch, name, radius, PATTERNS, *options), \
-        render(scratch, name, radius, NOISY_PATTERNS, *options, '--blur', 0)
+    scratch.render('in.exr', '-o', 'ao.exr', '--camera', corpus(f'{name}.camera.json'), '--radius',
+                   radius, '--pixel-type', 'float', '--compression', 'none', '--quality', quality)
+    blurred = render_patterns(scratch, name, PATTERNS)
+    noisy = render_patterns(scratch, name, NOISY_PATTERNS, '--blur', 0)
     windows = darkest(flat_windows(name), blurred.mean(0))
     before = Waves(spectrum_of(noisy, windows), quality == 'fast')
     after = Waves(spectrum_of(blurred, windows), quality == 'fast')
