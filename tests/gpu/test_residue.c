@@ -310,7 +310,7 @@ static void check_none_failed(void)
     assert_int_equal(wrong, 0);
 }
 
-/* Which method has each of the thin images, of those with the same turn: every kind of frame has all
+/* Which method has each of the thin images, of those with one turn: every kind of frame has all
  * of them, and every method one. */
 static const uint32_t thin_methods[KINDS][THIN] = {
     [FULL] = {VKAO_SSAO_SPHERE, VKAO_SSAO_HBAO, VKAO_SSAO_VBAO},
