@@ -140,8 +140,9 @@ def render_patterns(scratch, name, patterns, *options):
     scratch.render('in.@.exr', '-o', 'ao.@.exr', '--like', 'like.@.exr', '--overwrite', 'always',
                    '--frames', f'{patterns[0]}-{patterns[-1]}', *options)
     images = [read_ao(scratch.path(f'ao.{pattern}.exr')).astype(np.float64) for pattern in patterns]
-    for image in images:
+    for i, image in enumerate(images):
         check_ao(image, name)
+        check(i == 0 or (image != images[0]).any(), f'{name}: patterns of frames are the same')
     return np.stack(images)
 
 
