@@ -181,8 +181,11 @@ def depth_and_normals_of_different_places_are_said(scratch, where, down, right):
     for depth, normals in (cards(), cards(640, 360), (depth_of(scene, 1e10), scene.normals())):
         moved = np.roll(depth, (down, right), (0, 1))
         write_exr(scratch.path('in.exr'), {'Z': moved, **normals})
-        matches(f'of different places: depth lies about {where};',
-                str(inspect(scratch, '--fov', FOV, '--normal-space', 'camera')['warnings']), 'said')
+        said = str(inspect(scratch, '--fov', FOV, '--normal-space', 'camera')['warnings'])
+        matches(f'of different places: depth lies about {where};', said, 'said')
+        # What follows from it is not another fault.
+        for other in 'nearest', 'bend', 'breaks', 'blurred', 'enlarged', 'strange':
+            check(other not in said, f'{other}: {said}')
         write_exr(scratch.path('in.exr'), {'Z': depth, **normals})
         said = str(inspect(scratch, '--fov', FOV)['warnings'])
         check('places' not in said, said)

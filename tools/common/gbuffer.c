@@ -583,7 +583,7 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     struct layer_signs thickness = {0}, second = {0};
     float *positions = NULL;
     enum depth_type by_ends;
-    bool is_moved, is_empty;
+    bool is_empty;
     if (g->camera.remark[0])
         report_warn(report, "camera remark", "%s: %s", info->path, g->camera.remark);
     if (!read_depth(g, err) || !check_grey(g, report, err))
@@ -627,23 +627,9 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
         goto failed;
     warn_about_assumption(g, report);
     gbuffer_warn_of_frame(g, options->memory, depth->info->path, report);
-    if (!gbuffer_warn_of_view(g, depth->info->path, report) ||
-        !gbuffer_warn_of_move(g, depth->info->path, report, &is_moved) ||
-        !gbuffer_warn_of_limits(g, depth->info->path, report)) {
-        fail(err, EXIT_MEMORY, "%s: out of memory", depth->info->path);
-        goto failed;
-    }
     gbuffer_warn_of_ramps(g, depth->info->path, report);
-    gbuffer_warn_of_holes(g, depth->info->path, report);
-    gbuffer_warn_of_opacity(g, normals->path, report);
-    if (!is_moved) {
-        gbuffer_warn_of_borders(g, depth->info->path, report);
-        gbuffer_warn_of_breaks(g, depth->info->path, report);
-        if (!gbuffer_warn_of_strangers(g, depth->info->path, report)) {
-            fail(err, EXIT_MEMORY, "%s: out of memory", depth->info->path);
-            goto failed;
-        }
-    }
+    if (!gbuffer_run_checks(g, normals->path, report, err))
+        goto failed;
     /* What is taken out is no fault of the file. */
     if (!gbuffer_take_out(info, g, options, report, err))
         goto failed;

@@ -181,8 +181,7 @@ unsigned gbuffer_ridge_width(const struct gbuffer *g);
 void gbuffer_warn_of_panorama(const struct gbuffer *g, const char *path, struct report *report);
 /* Of depth as prepared and the normals that are used, if any, where these belong to other texels.
  * False if memory ran out. */
-bool gbuffer_warn_of_move(const struct gbuffer *g, const char *path, struct report *report,
-                          bool *is_moved);
+bool gbuffer_warn_of_move(const struct gbuffer *g, const char *path, struct report *report);
 /* Of depth as prepared and the normals that are used, if any, unless filtered_share says enough;
  * becomes part of that. */
 void gbuffer_warn_of_ramps(struct gbuffer *g, const char *path, struct report *report);
@@ -207,6 +206,9 @@ void gbuffer_warn_of_opacity(const struct gbuffer *g, const char *path, struct r
 /* Of depth as prepared and the normals that are used, if any: single things whose normals are not
  * those of their depth. False if memory ran out. */
 bool gbuffer_warn_of_strangers(const struct gbuffer *g, const char *path, struct report *report);
+/* All from gbuffer_warn_of_view on that change nothing of the G-buffer, at a time. */
+bool gbuffer_run_checks(const struct gbuffer *g, const char *normals_path, struct report *report,
+                        struct tool_error *err);
 /* By how many widths of a texel depth, as prepared, bends where stored normals are alike: a median,
  * 0 where there are few of them. False if memory ran out. */
 bool gbuffer_measure_noise(const struct gbuffer *g, double *noise);

@@ -142,20 +142,18 @@ static void describe(ptrdiff_t texels, const char *where, char text[WORDS])
         snprintf(text, WORDS, "%td texels %s", texels, where);
 }
 
-bool gbuffer_warn_of_move(const struct gbuffer *g, const char *path, struct report *report,
-                          bool *is_moved)
+bool gbuffer_warn_of_move(const struct gbuffer *g, const char *path, struct report *report)
 {
     struct places places;
     char across[WORDS] = "", down[WORDS] = "";
-    *is_moved = false;
     if (!g->normals || g->block_size > 1)
         return true;
     if (!find_places(g, &places))
         return false;
     const struct move normals = find_best(g, &places);
-    *is_moved = is_better(g, &places, normals);
+    const bool is_moved = is_better(g, &places, normals);
     free(places.list);
-    if (!*is_moved)
+    if (!is_moved)
         return true;
     describe(normals.x < 0 ? -normals.x : normals.x, normals.x < 0 ? "to the right" : "to the left",
              across);

@@ -5,6 +5,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { LINE_BYTES = 2048 };
@@ -49,12 +50,8 @@ static bool find_key(struct report *report, const char *key, bool *is_new, size_
     return true;
 }
 
-static void warn(struct report *report, const char *key, bool each_frame, const char *format,
-                 va_list args) TOOL_PRINTF(4, 0);
-static void warn(struct report *report, const char *key, bool each_frame, const char *format,
-                 va_list args)
+static void warn(struct report *report, const char *key, bool each_frame, const char *line)
 {
-    char line[LINE_BYTES];
     bool is_new;
     size_t index;
     const bool has_room = find_key(report, key, &is_new, &index);
@@ -63,18 +60,50 @@ static void warn(struct report *report, const char *key, bool each_frame, const 
         report->said_in[index] = report->frame;
     if (!is_new_here)
         return;
-    vsnprintf(line, sizeof line, format, args);
     if (report->heard)
         report->heard(report->heard_data, line);
     if (report->verbosity >= REPORT_NORMAL && (is_new || each_frame))
         print_line("vkao: ", "warning: ", line);
 }
 
+struct report_waiting {
+    const char *key;
+    bool each_frame;
+    char *line;
+};
+
+static void wait_in(struct report_queue *queue, const char *key, bool each_frame, const char *line)
+{
+    struct report_waiting *list = realloc(queue->list, (queue->count + 1) * sizeof *queue->list);
+    char *copy = strdup(line);
+    if (list)
+        queue->list = list;
+    if (list && copy) {
+        list[queue->count++] = (struct report_waiting){key, each_frame, copy};
+        return;
+    }
+    free(copy);
+    queue->out_of_memory = true;
+}
+
+static void warn_or_wait(struct report *report, const char *key, bool each_frame,
+                         const char *format, va_list args) TOOL_PRINTF(4, 0);
+static void warn_or_wait(struct report *report, const char *key, bool each_frame,
+                         const char *format, va_list args)
+{
+    char line[LINE_BYTES];
+    vsnprintf(line, sizeof line, format, args);
+    if (report->queue)
+        wait_in(report->queue, key, each_frame, line);
+    else
+        warn(report, key, each_frame, line);
+}
+
 void report_warn(struct report *report, const char *key, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    warn(report, key, false, format, args);
+    warn_or_wait(report, key, false, format, args);
     va_end(args);
 }
 
@@ -82,8 +111,23 @@ void report_warn_of_frame(struct report *report, const char *key, const char *fo
 {
     va_list args;
     va_start(args, format);
-    warn(report, key, true, format, args);
+    warn_or_wait(report, key, true, format, args);
     va_end(args);
+}
+
+void report_warn_of_queue(struct report *report, struct report_queue *queue)
+{
+    for (size_t i = 0; i < queue->count; i++)
+        warn(report, queue->list[i].key, queue->list[i].each_frame, queue->list[i].line);
+    report_free_queue(queue);
+}
+
+void report_free_queue(struct report_queue *queue)
+{
+    for (size_t i = 0; i < queue->count; i++)
+        free(queue->list[i].line);
+    free(queue->list);
+    *queue = (struct report_queue){0};
 }
 
 void report_note(const struct report *report, const char *format, ...)

@@ -12,6 +12,13 @@
 
 enum verbosity { REPORT_QUIET = -1, REPORT_NORMAL = 0, REPORT_VERBOSE = 1 };
 
+/* Warnings that wait until it is their turn. */
+struct report_queue {
+    struct report_waiting *list;
+    size_t count;
+    bool out_of_memory;
+};
+
 struct report {
     enum verbosity verbosity;
     const char *said[64]; /* keys of the warnings given so far; the strings are static */
@@ -21,6 +28,7 @@ struct report {
     /* Hears warnings too, and however quiet the report is, once per key and frame; NULL: nobody. */
     void (*heard)(void *data, const char *warning);
     void *heard_data;
+    struct report_queue *queue; /* takes warnings, which nobody hears before; NULL: at once */
 };
 
 /* Whatever the verbosity. */
@@ -31,6 +39,9 @@ void report_warn(struct report *report, const char *key, const char *format, ...
 /* Once per key and frame, which may be too much: for what the caller knows to begin there. */
 void report_warn_of_frame(struct report *report, const char *key, const char *format, ...)
     TOOL_PRINTF(3, 4);
+/* What waits, as if it were warned of now, and empties the queue. */
+void report_warn_of_queue(struct report *report, struct report_queue *queue);
+void report_free_queue(struct report_queue *queue);
 /* Progress and summaries, at normal verbosity. */
 void report_note(const struct report *report, const char *format, ...) TOOL_PRINTF(2, 3);
 /* Details, with -v. */

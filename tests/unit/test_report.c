@@ -1,0 +1,84 @@
+/* SPDX-License-Identifier: MIT */
+#include "report.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+struct heard {
+    char all[256];
+};
+
+static void hear(void *data, const char *warning)
+{
+    struct heard *h = data;
+    strncat(h->all, warning, sizeof h->all - strlen(h->all) - 1);
+    strncat(h->all, ";", sizeof h->all - strlen(h->all) - 1);
+}
+
+static void what_waits_is_said_in_its_turn(void **state)
+{
+    (void)state;
+    struct heard heard = {""};
+    struct report_queue first = {0}, second = {0};
+    struct report report = {.verbosity = REPORT_QUIET, .heard = hear, .heard_data = &heard};
+    struct report to_first = {.queue = &first}, to_second = {.queue = &second};
+    report_warn(&to_second, "c", "%d", 3);
+    report_warn(&to_second, "d", "%d", 4);
+    report_warn(&to_first, "b", "%d", 2);
+    report_warn(&report, "a", "%d", 1);
+    assert_string_equal(heard.all, "1;");
+    report_warn_of_queue(&report, &first);
+    report_warn_of_queue(&report, &second);
+    assert_string_equal(heard.all, "1;2;3;4;");
+    assert_int_equal(first.count + second.count, 0);
+    report_warn_of_queue(&report, &second);
+    assert_string_equal(heard.all, "1;2;3;4;");
+}
+
+static void what_was_said_is_not_said_again(void **state)
+{
+    (void)state;
+    struct heard heard = {""};
+    struct report_queue queue = {0};
+    struct report report = {.verbosity = REPORT_QUIET, .heard = hear, .heard_data = &heard};
+    struct report waiting = {.queue = &queue};
+    report_warn(&report, "a", "before");
+    report_warn(&waiting, "a", "again");
+    report_warn_of_frame(&waiting, "b", "frame");
+    report_warn_of_frame(&waiting, "b", "frame again");
+    report_warn_of_queue(&report, &queue);
+    assert_string_equal(heard.all, "before;frame;");
+    report.frame++;
+    report_warn(&waiting, "a", "next");
+    report_warn_of_queue(&report, &queue);
+    assert_string_equal(heard.all, "before;frame;next;");
+}
+
+static void what_waits_may_be_forgotten(void **state)
+{
+    (void)state;
+    struct heard heard = {""};
+    struct report_queue queue = {0};
+    struct report report = {.verbosity = REPORT_QUIET, .heard = hear, .heard_data = &heard};
+    struct report waiting = {.queue = &queue};
+    report_warn(&waiting, "a", "one");
+    report_free_queue(&queue);
+    report_warn_of_queue(&report, &queue);
+    assert_string_equal(heard.all, "");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_waits_is_said_in_its_turn),
+        cmocka_unit_test(what_was_said_is_not_said_again),
+        cmocka_unit_test(what_waits_may_be_forgotten),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
