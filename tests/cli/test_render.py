@@ -73,9 +73,11 @@ def images_as_large_as_buffers_can_be(scratch):
 def sky_is_exactly_one_for_all_methods_and_pixel_types(scratch):
     write_exr(scratch.path('in.exr'), gbuffer())
     for method in METHODS:
+        # The widest blur takes seconds to compile, and does not know the method.
+        blur = 16 if method == 'sphere' else 4
         for pixel in ('half', 'float'):
             scratch.render('in.exr', '-o', 'ao.exr', '--overwrite', 'always', '--method', method,
-                           '--pixel-type', pixel, '--power', 3, '--blur', 16, *VIEW)
+                           '--pixel-type', pixel, '--power', 3, '--blur', blur, *VIEW)
             sky = read_ao(scratch.path('ao.exr'))[SCENE.sky]
             check(sky.size > 500 and (sky == 1).all(), f'{method} {pixel}: {np.unique(sky)[:5]}')
 
