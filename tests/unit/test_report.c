@@ -6,7 +6,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 #include <cmocka.h>
 
@@ -60,6 +62,37 @@ static void what_was_said_is_not_said_again(void **state)
     assert_string_equal(heard.all, "before;frame;next;");
 }
 
+/* How many lines of both frames reach stderr, as each frame waits and is then said. */
+static int lines_of_two_frames(void (*say)(struct report *report, const char *key,
+                                           const char *format, ...))
+{
+    struct report_queue queue = {0};
+    struct report report = {.verbosity = REPORT_NORMAL}, waiting = {.queue = &queue};
+    FILE *lines = tmpfile();
+    const int kept = dup(STDERR_FILENO);
+    int count = 0;
+    assert_non_null(lines);
+    assert_int_equal(dup2(fileno(lines), STDERR_FILENO), STDERR_FILENO);
+    for (report.frame = 1; report.frame <= 2; report.frame++) {
+        say(&waiting, "a", "line");
+        report_warn_of_queue(&report, &queue);
+    }
+    dup2(kept, STDERR_FILENO);
+    close(kept);
+    rewind(lines);
+    for (int c = fgetc(lines); c != EOF; c = fgetc(lines))
+        count += c == '\n';
+    fclose(lines);
+    return count;
+}
+
+static void what_is_of_a_frame_is_said_of_each(void **state)
+{
+    (void)state;
+    assert_int_equal(lines_of_two_frames(report_warn), 1);
+    assert_int_equal(lines_of_two_frames(report_warn_of_frame), 2);
+}
+
 static void what_waits_may_be_forgotten(void **state)
 {
     (void)state;
@@ -78,6 +111,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(what_waits_is_said_in_its_turn),
         cmocka_unit_test(what_was_said_is_not_said_again),
+        cmocka_unit_test(what_is_of_a_frame_is_said_of_each),
         cmocka_unit_test(what_waits_may_be_forgotten),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

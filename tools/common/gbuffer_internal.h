@@ -206,7 +206,8 @@ void gbuffer_warn_of_opacity(const struct gbuffer *g, const char *path, struct r
 /* Of depth as prepared and the normals that are used, if any: single things whose normals are not
  * those of their depth. False if memory ran out. */
 bool gbuffer_warn_of_strangers(const struct gbuffer *g, const char *path, struct report *report);
-/* All from gbuffer_warn_of_view on that change nothing of the G-buffer, at a time. */
+/* Those of view, move, limits, holes, opacity, borders, breaks and strangers, on as many cores as
+ * there are; said in this order, the last three unless there is a move. */
 bool gbuffer_run_checks(const struct gbuffer *g, const char *normals_path, struct report *report,
                         struct tool_error *err);
 /* By how many widths of a texel depth, as prepared, bends where stored normals are alike: a median,

@@ -12,11 +12,11 @@
 
 enum verbosity { REPORT_QUIET = -1, REPORT_NORMAL = 0, REPORT_VERBOSE = 1 };
 
-/* Warnings that wait until it is their turn. */
+/* Warnings that wait until it is their turn; of one thread at a time. */
 struct report_queue {
-    struct report_waiting *list;
+    struct report_waiting *list; /* malloc'ed */
     size_t count;
-    bool out_of_memory;
+    bool out_of_memory; /* not all of them are there */
 };
 
 struct report {
@@ -41,6 +41,7 @@ void report_warn_of_frame(struct report *report, const char *key, const char *fo
     TOOL_PRINTF(3, 4);
 /* What waits, as if it were warned of now, and empties the queue. */
 void report_warn_of_queue(struct report *report, struct report_queue *queue);
+/* Empties it; nobody hears what waited. */
 void report_free_queue(struct report_queue *queue);
 /* Progress and summaries, at normal verbosity. */
 void report_note(const struct report *report, const char *format, ...) TOOL_PRINTF(2, 3);
