@@ -74,9 +74,9 @@
 #define VKAO_SSAO_TEXELS 2    /* of the methods that shade side by side */
 #define VKAO_BLUR_X_WIDTH 8
 #define VKAO_BLUR_Y_WIDTH 4
-#define VKAO_BLUR_Y_HEIGHT 8
+#define VKAO_BLUR_Y_HEIGHT 4
 #define VKAO_UPSAMPLE_WIDTH 8
-#define VKAO_UPSAMPLE_HEIGHT 4
+#define VKAO_UPSAMPLE_HEIGHT 2
 
 /* vkao_constants.path: texels in a row of buffers, and in a row of what is copied. */
 #define VKAO_BREAKS_STRIDE_OF(stride)                                                              \
