@@ -244,7 +244,7 @@ static vkao_result describe(const vkao_effect *effect, const vkao_frame_info *ca
                             bool need_views, vkao_frame_info *info, struct vkao_program *own,
                             vkao_frame *frame)
 {
-    const struct vkao_program *program = &effect->program;
+    struct vkao_program *program = effect->passes;
     const vkao_context *ctx = program->ctx;
     vkao_result result = vkao_import(&ctx->log, VKAO_STRUCT_FRAME_INFO, "frame", caller_info, info);
     if (result == VKAO_SUCCESS)
@@ -348,7 +348,7 @@ vkao_result vkao_frame_create(const vkao_effect *effect, const vkao_frame_info *
     if (frame->program == &own)
         result = compile_own(frame, &own);
     else
-        result = vkao_program_complete(effect->passes, frame->copies);
+        result = vkao_program_complete(effect->passes, frame->copies ? VKAO_FORM_COPIED : 0);
     if (result == VKAO_SUCCESS)
         result = create_scratch(frame, &need);
     if (result == VKAO_SUCCESS)

@@ -15,7 +15,7 @@ struct vkao_rows {
 struct vkao_frame {
     const vkao_context *ctx;
     const vkao_effect *effect;
-    const struct vkao_program *program; /* the effect's, or own */
+    struct vkao_program *program; /* the effect's, or own */
     struct vkao_program *own;           /* if the CPU's buffers cannot hold so large a frame */
     VkExtent2D extent;
     vkao_images images;

@@ -226,22 +226,29 @@ static vkao_result create_form(const struct vkao_program *program, struct vkao_s
     return VKAO_SUCCESS;
 }
 
-/* Of the two kinds of frames, whose AO is copied or not, most effects see one. */
-static bool is_missing(const struct vkao_step *step, uint32_t form, bool copies)
+/* Bits of those that are not there. Of the two kinds of frames, whose AO is copied or not, most
+ * effects see one. A GPU's recordings must not wait for the driver, so that both tones are there
+ * before; a driver in software takes a quarter of all its time for the tone that few ask for. */
+static uint32_t missing_forms(const struct vkao_program *program, const struct vkao_step *step,
+                              uint32_t form)
 {
-    const bool is_other =
-        step->row->forms > VKAO_FORM_COPIED && !(form & VKAO_FORM_COPIED) == copies;
-    return !is_other && !atomic_load(&step->forms[form]);
+    const uint32_t mask = step->row->forms - 1;
+    const uint32_t wanted =
+        1u << (form & mask) | (program->is_cpu ? 0u : 1u << ((form | VKAO_FORM_TONED) & mask));
+    uint32_t missing = 0;
+    for (uint32_t i = 0; i < step->row->forms; ++i) {
+        if (wanted & 1u << i && !atomic_load(&step->forms[i]))
+            missing |= 1u << i;
+    }
+    return missing;
 }
 
 static vkao_result create_forms(const struct vkao_program *program, struct vkao_step *step,
-                                bool copies)
+                                uint32_t form)
 {
     const vkao_context *ctx = program->ctx;
     VkShaderModule module = VK_NULL_HANDLE;
-    uint32_t missing = 0;
-    for (uint32_t form = 0; form < step->row->forms; ++form)
-        missing += is_missing(step, form, copies);
+    const uint32_t missing = missing_forms(program, step, form);
     if (!missing)
         return VKAO_SUCCESS;
     VkResult created =
@@ -255,19 +262,19 @@ static vkao_result create_forms(const struct vkao_program *program, struct vkao_
     if (created != VK_SUCCESS)
         return vkao_vk_failed(&ctx->log, "vkCreateShaderModule", created);
     vkao_result result = VKAO_SUCCESS;
-    for (uint32_t form = 0; result == VKAO_SUCCESS && form < step->row->forms; ++form) {
-        if (is_missing(step, form, copies))
-            result = create_form(program, step, module, form);
+    for (uint32_t i = 0; result == VKAO_SUCCESS && i < step->row->forms; ++i) {
+        if (missing & 1u << i)
+            result = create_form(program, step, module, i);
     }
     ctx->vk.DestroyShaderModule(ctx->device, module, ctx->allocator);
     return result;
 }
 
-vkao_result vkao_program_complete(struct vkao_program *program, bool copies)
+vkao_result vkao_program_complete(struct vkao_program *program, uint32_t form)
 {
     vkao_result result = VKAO_SUCCESS;
     for (uint32_t i = 0; result == VKAO_SUCCESS && i < program->count; ++i)
-        result = create_forms(program, &program->steps[i], copies);
+        result = create_forms(program, &program->steps[i], form);
     return result;
 }
 
@@ -283,7 +290,7 @@ static void compile_step(void *data, uint32_t i)
     struct vkao_step *step = &c->program->steps[i];
     c->results[i] = create_layouts(c->program, step);
     if (c->results[i] == VKAO_SUCCESS)
-        c->results[i] = create_forms(c->program, step, true);
+        c->results[i] = create_forms(c->program, step, VKAO_FORM_COPIED);
 }
 
 vkao_result vkao_program_compile(struct vkao_program *program)

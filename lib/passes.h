@@ -155,9 +155,9 @@ VkDescriptorType vkao_use_type(const struct vkao_use *use);
 
 /* Sampler, layouts and pipelines of all rows. On failure the rest is for vkao_program_destroy. */
 vkao_result vkao_program_compile(struct vkao_program *program);
-/* Forms that are still missing for frames whose AO is copied, which vkao_program_compile begins
- * with, or is not. Any number of threads at a time. */
-vkao_result vkao_program_complete(struct vkao_program *program, bool copies);
+/* Of all rows the form, VKAO_FORM_*, where it is still missing, and on a GPU that with a tone too;
+ * vkao_program_compile begins with COPIED. Any number of threads at a time. */
+vkao_result vkao_program_complete(struct vkao_program *program, uint32_t form);
 void vkao_program_destroy(struct vkao_program *program);
 
 #endif

@@ -204,6 +204,9 @@ static vkao_result record(const vkao_frame *frame, VkCommandBuffer cmd, const ch
 #define FILL(NAME, name) vkao_##name##_constants(&r, &known, &constants);
     VKAO_STAGES(FILL)
 #undef FILL
+    result = vkao_program_complete(frame->program, r.form);
+    if (result != VKAO_SUCCESS)
+        return result;
     begin(&r, stages, &constants);
     record_passes(&r, stages);
     return VKAO_SUCCESS;
