@@ -148,16 +148,21 @@ double ref_falloff(const struct ao_ssao *params, double distance)
     return params->falloff == VKAO_FALLOFF_SMOOTH ? 1.0 - x * x : 1.0;
 }
 
-enum { PANELS = 96 };
-
-/* Of one sign of theta, where the integrand is smooth. */
-static void simpson(double n, double a, double b, double sums[3])
+/* Of one sign of theta, where the integrand is smooth: by Gauss and Legendre with ten points, which
+ * for three waves over half a turn is off by 1e-10. */
+static void smooth(double n, double a, double b, double sums[3])
 {
-    for (int i = 0; i <= PANELS; ++i) {
-        double theta = a + (b - a) * i / PANELS, w = (i == 0 || i == PANELS) ? 1.0
-                                                     : i % 2                 ? 4.0
-                                                                             : 2.0;
-        w *= (b - a) / PANELS / 3.0 * cos(theta - n) * fabs(sin(theta));
+    static const struct {
+        double at, weight;
+    } points[] = {
+        {0.1488743389816312, 0.2955242247147529}, {0.4333953941292472, 0.2692667193099963},
+        {0.6794095682990244, 0.2190863625159820}, {0.8650633666889845, 0.1494513491505806},
+        {0.9739065285171717, 0.0666713443086881},
+    };
+    const double middle = (a + b) / 2.0, half = (b - a) / 2.0;
+    for (int i = 0; i < 10; ++i) {
+        double theta = middle + (i % 2 ? half : -half) * points[i / 2].at;
+        double w = half * points[i / 2].weight * cos(theta - n) * fabs(sin(theta));
         sums[0] += w;
         sums[1] += w * sin(theta);
         sums[2] += w * cos(theta);
@@ -168,10 +173,10 @@ static void integrate(double n, double a, double b, double sums[3])
 {
     sums[0] = sums[1] = sums[2] = 0.0;
     if (a < 0.0 && b > 0.0) {
-        simpson(n, a, 0.0, sums);
-        simpson(n, 0.0, b, sums);
+        smooth(n, a, 0.0, sums);
+        smooth(n, 0.0, b, sums);
     } else {
-        simpson(n, a, b, sums);
+        smooth(n, a, b, sums);
     }
 }
 
