@@ -506,20 +506,25 @@ def blurred(values, reach=2):
 
 
 @cases([('a thing', 'is perhaps too'), ('what fades', 'is too'), ('normals alone', None),
-        ('nothing', None), ('silhouettes', None)])
+        ('nothing', None), ('silhouettes', None), ('edges of a board', None)])
 def normals_multiplied_by_alpha_are_said(scratch, name, message):
     scene = Scene(320, 180)
     ball, whole = scene.normal[..., 1] % 1 > 0, (~scene.sky).astype(float)
     fades = 0.55 + 0.35 * np.sin(scene.x * 9) * np.cos(scene.y * 7)
-    normal, z = scene.normal, scene.z
+    normal, z, sky = scene.normal, scene.z, scene.sky
     alpha = np.where(ball, 0.4, whole) if name in ('a thing', 'nothing') else fades * whole
     if name == 'silhouettes':
         sphere = ball[..., None] * normal
         alpha, normal = blurred(ball.astype(float)), blurred(sphere)
+    elif name == 'edges of a board':  # a filter makes all of them as long as alpha, depth as well
+        board = np.zeros_like(whole)
+        board[40:120, 60:200] = 1
+        alpha = blurred(board)
+        normal, z, sky = alpha[..., None] * np.array([0, 0, 1]), 2.5 * alpha, alpha == 0
     elif name != 'nothing':
         normal = normal * alpha[..., None]
         z = z if name == 'normals alone' else z * np.where(scene.sky, 1, alpha)
-    channels = {'Z': np.where(scene.sky, 1e10, z), 'A': alpha,
+    channels = {'Z': np.where(sky, 1e10, z), 'A': alpha,
                 **{f'N.{c}': normal[..., i] for i, c in enumerate('XYZ')},
                 **{c: 0.5 * alpha for c in 'RGB'}}
     write_exr(scratch.path('in.exr'), {n: v.astype(np.float32) for n, v in channels.items()})
