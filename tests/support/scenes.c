@@ -233,6 +233,20 @@ void scene_render_behind(const struct scene *scene, const struct lens *lens, VkR
     }
 }
 
+/* How near to the point a shape begins, at least. */
+static double least_distance(const struct shape *shape, const double point[3])
+{
+    double v[3], beyond[3];
+    for (int i = 0; i < 3; ++i) {
+        v[i] = shape->center[i] - point[i];
+        beyond[i] = fmax(0.0, fabs(v[i]) - shape->size[i]);
+    }
+    if (shape->kind == SHAPE_PLANE)
+        return fabs(dot(v, shape->size)) / sqrt(dot(shape->size, shape->size));
+    return shape->kind == SHAPE_BOX ? sqrt(dot(beyond, beyond))
+                                    : fabs(sqrt(dot(v, v)) - shape->size[0]);
+}
+
 struct scene_ambient scene_ambient(const struct scene *scene, const double point[3],
                                    const double normal[3], double radius, unsigned rays)
 {
@@ -241,20 +255,30 @@ struct scene_ambient scene_ambient(const struct scene *scene, const double point
            c = normal[0] * normal[1] * a;
     const double t[3] = {1.0 + s * normal[0] * normal[0] * a, s * c, -s * normal[0]};
     const double b[3] = {c, s + normal[1] * normal[1] * a, -normal[1]};
-    double origin[3], ray[3], ignored[3];
+    const double golden = 2.39996322972865332, step[2] = {cos(golden), sin(golden)};
+    double origin[3], ray[3], ignored[3], turn[2] = {1.0, 0.0};
     for (int i = 0; i < 3; ++i)
         origin[i] = point[i] + 1e-6 * normal[i];
+    const struct shape *near[SCENE_SHAPES]; /* others are out of reach */
+    int count = 0;
+    for (int i = 0; i < SCENE_SHAPES && scene->shapes[i].kind != SHAPE_NONE; ++i) {
+        if (least_distance(&scene->shapes[i], origin) < radius)
+            near[count++] = &scene->shapes[i];
+    }
     for (unsigned k = 0; k < rays; ++k) {
-        double r2 = (k + 0.5) / rays, angle = k * 2.39996322972865332, nearest = INFINITY;
+        double r2 = (k + 0.5) / rays, nearest = INFINITY, x = sqrt(r2) * turn[0],
+               y = sqrt(r2) * turn[1], up = sqrt(1.0 - r2);
         for (int i = 0; i < 3; ++i)
-            ray[i] =
-                sqrt(r2) * (cos(angle) * t[i] + sin(angle) * b[i]) + sqrt(1.0 - r2) * normal[i];
-        for (int i = 0; i < SCENE_SHAPES && scene->shapes[i].kind != SHAPE_NONE; ++i) {
-            double at = hit(&scene->shapes[i], origin, ray, ignored);
+            ray[i] = x * t[i] + y * b[i] + up * normal[i];
+        x = turn[0];
+        turn[0] = x * step[0] - turn[1] * step[1];
+        turn[1] = x * step[1] + turn[1] * step[0];
+        for (int i = 0; i < count; ++i) {
+            double at = hit(near[i], origin, ray, ignored);
             nearest = at > 0.0 && at < nearest ? at : nearest;
         }
-        double x = nearest / radius, weight = x < 1.0 ? 1.0 - x * x : 0.0;
-        result.threshold -= x < 1.0 ? 1.0 / rays : 0.0;
+        double reach = nearest / radius, weight = reach < 1.0 ? 1.0 - reach * reach : 0.0;
+        result.threshold -= reach < 1.0 ? 1.0 / rays : 0.0;
         result.falloff -= weight / rays;
         for (int i = 0; i < 3; ++i)
             result.bent[i] += (1.0 - weight) * ray[i];
