@@ -16,7 +16,7 @@ struct vkao_frame {
     const vkao_context *ctx;
     const vkao_effect *effect;
     struct vkao_program *program; /* the effect's, or own */
-    struct vkao_program *own;           /* if the CPU's buffers cannot hold so large a frame */
+    struct vkao_program *own;     /* if the CPU's buffers cannot hold so large a frame */
     VkExtent2D extent;
     vkao_images images;
     bool copies; /* AO is copied into its image */
