@@ -653,7 +653,7 @@ VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_record(const vkao_frame *frame, Vk
  * here. It reads depth over view->valid, for VBAO and where thickness is given the radius as well,
  * and writes the frame's scratch, and comes first each time. Stages share scratch memory: record
  * them in order, each once, over the same rect; to split a frame into rects, record all stages of
- * one before the next. */
+ * one before the next. Errors, and what compiles on a CPU: as vkao_cmd_record. */
 VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_stage(const vkao_frame *frame, VkCommandBuffer cmd,
                                                     vkao_stage_flags stages, const vkao_view *view,
                                                     const vkao_params *params);
