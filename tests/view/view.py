@@ -3,8 +3,7 @@
 
 A test program is `test_NAME.py VKAO VKAO-VIEW [CASE...]`; the cases and the comparison with vkao
 are those of tests/cli. Every run has the validation layers on: one message makes the viewer fail,
-and with it the case. Under sanitizers, where they take a quarter of the time, the same calls were
-judged as built for use.
+and with it the case.
 """
 import contextlib
 import os
@@ -98,10 +97,6 @@ def sanitizer_options():
             **cli.loaded_driver(VIEWER)}
 
 
-def validation():
-    return () if cli.is_sanitized(VIEWER) else ('--validation',)
-
-
 # --- The viewer ---
 
 class Viewer:
@@ -112,7 +107,7 @@ class Viewer:
         arguments = [str(a) for a in arguments]
         if size:
             arguments += ['--size', f'{size[0]}x{size[1]}']
-        self.command = [VIEWER, *validation(), '--device', 'cpu', '--screenshot', 'last.png',
+        self.command = [VIEWER, '--validation', '--device', 'cpu', '--screenshot', 'last.png',
                         *arguments]
         self.process = subprocess.Popen(
             self.command, cwd=scratch.directory, text=True, stdin=subprocess.DEVNULL,
@@ -221,7 +216,7 @@ def shoot(scratch, *arguments, frames=3, code=0, env=None, display=True):
     if display:
         environment.update(Display.get().environment())
     done = subprocess.run(
-        [VIEWER, *validation(), '--device', 'cpu', '--no-panel', '--screenshot', 'shot.png',
+        [VIEWER, '--validation', '--device', 'cpu', '--no-panel', '--screenshot', 'shot.png',
          '--frames', str(frames), *arguments],
         cwd=scratch.directory, capture_output=True, text=True, stdin=subprocess.DEVNULL,
         timeout=TIMEOUT, env=environment)
