@@ -643,8 +643,9 @@ VKAO_DEFAULT(vkao_params)
 /* Record every stage of the frame's effect, in order. All arguments are checked before the first
  * command is recorded, and read before the call returns. ao and output are written in view->rect
  * only; ao_noisy also in the border that the blur reads. Compiles nothing, but on a CPU the last
- * pass once more, for an effect's first recording whose intensity or power is not 1. Errors:
- * INVALID_ARGUMENT, and where it compiles OUT_OF_*_MEMORY and VULKAN; then nothing was recorded. */
+ * pass once more, for an effect's first recording whose intensity or power is not 1, of frames with
+ * images.ao.image and of those without. Errors: INVALID_ARGUMENT, and where it compiles
+ * OUT_OF_*_MEMORY and VULKAN; then nothing was recorded. */
 VKAO_API VKAO_MUST_CHECK vkao_result vkao_cmd_record(const vkao_frame *frame, VkCommandBuffer cmd,
                                                      const vkao_view *view,
                                                      const vkao_params *params);

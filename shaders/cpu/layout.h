@@ -72,6 +72,7 @@
 #define VKAO_MOST_TILES 65535 /* what every device dispatches; in larger frames tiles are higher */
 #define VKAO_STRIP_TEXELS 640 /* width of a strip of tiles, a multiple of every group's */
 #define VKAO_SSAO_TEXELS 2    /* of the methods that shade side by side */
+/* Each texel more of an invocation is unrolled, and drivers take longer to compile it. */
 #define VKAO_BLUR_X_WIDTH 8
 #define VKAO_BLUR_Y_WIDTH 4
 #define VKAO_BLUR_Y_HEIGHT 4

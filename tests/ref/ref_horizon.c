@@ -160,7 +160,7 @@ static void smooth(double n, double a, double b, double sums[3])
         {0.9739065285171717, 0.0666713443086881},
     };
     const double middle = (a + b) / 2.0, half = (b - a) / 2.0;
-    for (int i = 0; i < 10; ++i) {
+    for (size_t i = 0; i < 2 * sizeof points / sizeof points[0]; ++i) {
         double theta = middle + (i % 2 ? half : -half) * points[i / 2].at;
         double w = half * points[i / 2].weight * cos(theta - n) * fabs(sin(theta));
         sums[0] += w;
