@@ -6,6 +6,7 @@ starts and one as it ends, and exits 0, 1 (a case failed) or 77 (all cases were 
 """
 import argparse
 import hashlib
+import itertools
 import os
 import pickle
 import re
@@ -268,14 +269,18 @@ class Part:
 
 def _read_part(file, path, index, only):
     spec = file.spec(index)
+    kinds = [str(kind) for kind in spec.channelformats or [spec.format] * spec.nchannels]
+    wanted = [c for c, name in enumerate(spec.channelnames) if not only or name in only]
     channels = {}
-    for c, name in enumerate(spec.channelnames):
-        if only and name not in only:
-            continue
-        kind = str(spec.channelformats[c] if spec.channelformats else spec.format)
-        pixels = file.read_image(index, 0, c, c + 1, kind)
+    # What lies side by side in one type is read at once: each reading decompresses the part anew.
+    for _, run in itertools.groupby(enumerate(wanted), lambda at: (at[1] - at[0], kinds[at[1]])):
+        together = [c for _, c in run]
+        begin, end = together[0], together[-1] + 1
+        pixels = file.read_image(index, 0, begin, end, kinds[begin])
         check(pixels is not None, f'{path}: {file.geterror()}')
-        channels[name] = np.asarray(pixels).reshape(spec.height, spec.width)
+        pixels = np.asarray(pixels).reshape(spec.height, spec.width, end - begin)
+        for c in together:
+            channels[spec.channelnames[c]] = np.ascontiguousarray(pixels[..., c - begin])
     return Part(spec, channels)
 
 

@@ -4,6 +4,7 @@
 depth and normals tells their lens shift. The corpus lies outside the repository: without it all
 cases are skipped."""
 import json
+from functools import lru_cache
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from cli import cases, check, corpus, equal, main, read_parts, write_exr
 from evidence import inspect
 
 
+@lru_cache
 def load(name, step=3):
     """Planar depth, normals, and the camera; every so-maniest texel."""
     planes = {channel: plane for part in read_parts(corpus(f'{name}.exr'))

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: MIT
 """How fine depth is: that it was filtered, blurred, enlarged, rounded or compressed with loss is
 said."""
+from functools import lru_cache
+
 import numpy as np
 
 from cli import CHANNELS, case, cases, check, equal, main, matches, write_exr
@@ -88,6 +90,7 @@ def blurred(depth, weights, axes):
     return depth.astype(np.float32)
 
 
+@lru_cache
 def cards(width=320, height=180):
     """Squares of all tilts, standing before a wall: depth and normals, in camera space."""
     scene, random = Scene(width, height), np.random.default_rng(5)
