@@ -4,7 +4,7 @@
 #include <assert.h>
 #include <stddef.h>
 
-static_assert(offsetof(struct vkao_constants, far_z) == 160, "vectors lie as std140 has them");
+static_assert(offsetof(struct vkao_constants, far_z) == 168, "vectors lie as std140 has them");
 
 bool vkao_makes_ao(const vkao_effect_info *effect)
 {

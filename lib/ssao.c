@@ -28,6 +28,21 @@ void vkao_ssao_plan(struct vkao_program *program)
     vkao_program_add(program, &methods[program->settings.method]);
 }
 
+/* What vkao_constants says of inverse_unit. */
+static void set_units(const struct vkao_recording *r, const vkao_effect_info *effect, bool is_given,
+                      struct vkao_constants *out)
+{
+    const float gap = out->thickness_gap, widths = (float)VKAO_VBAO_WIDTHS, unit = gap / widths;
+    out->inverse_unit = out->inverse_radius * unit;
+    for (size_t i = 0; i < 2; i++)
+        out->unproject_units[i] = r->grid.unproject[i] * out->inverse_unit;
+    out->unit_square = unit * unit;
+    out->hidden_share = 1.0f / ((float)VKAO_VBAO_SECTORS * out->unit_square);
+    out->unit_base = out->thickness_base / widths;
+    out->unit_slope = out->thickness_slope / gap;
+    out->unit_seen = (is_given ? out->thickness : out->thickness_seen) * gap;
+}
+
 void vkao_ssao_constants(const struct vkao_recording *r, const vkao_params *params,
                          struct vkao_constants *out)
 {
@@ -37,6 +52,9 @@ void vkao_ssao_constants(const struct vkao_recording *r, const vkao_params *para
         (effect->falloff == VKAO_FALLOFF_THRESHOLD ? (float)VKAO_THICKNESS_THRESHOLD : 1.0f);
     out->radius = vkao_radius_of(params);
     out->inverse_radius = 1.0f / out->radius;
+    out->reach =
+        out->radius * (float)(effect->falloff == VKAO_FALLOFF_THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD
+                                                                        : VKAO_VBAO_REACH_SMOOTH);
     out->bias = params->bias * out->radius;
     out->bias_cosine = params->bias;
     const bool is_vbao = effect->method == VKAO_SSAO_VBAO,
@@ -52,6 +70,7 @@ void vkao_ssao_constants(const struct vkao_recording *r, const vkao_params *para
         is_vbao ? (float)VKAO_VBAO_THICKNESS_BASE / share : thickness * (float)VKAO_THICKNESS_BASE;
     out->thickness_slope = is_vbao ? (float)VKAO_VBAO_THICKNESS_SLOPE / share
                                    : thickness * (float)VKAO_THICKNESS_SLOPE;
+    set_units(r, effect, is_given, out);
     if (vkao_has_thickness(effect)) /* in the last bits of view z */
         out->depth_error[effect->projection == VKAO_PROJECTION_ORTHOGRAPHIC] +=
             (float)VKAO_THICKNESS_DEPTH_ERROR *

@@ -28,42 +28,44 @@ struct Slice {
     float cos_n, sin_n;  /* of the projected normal's angle from V, towards O */
 };
 
-/* turn in [0,1) is half the circle. to_eye is V. */
-Slice make_slice(float turn, vec3 position, vec3 normal, Plane plane, vec3 to_eye)
+/* turn in [0,1) is half the circle. to_eye is V. unproject, inverse_unit: texels and scene units in
+ * what x and y are in, which is radii but for vbao. */
+Slice make_slice(float turn, vec3 position, vec3 normal, Plane plane, vec3 to_eye, vec2 unproject,
+                 float inverse_unit)
 {
     Slice s;
-    vec3 d = vec3(half_turn_x(turn), half_turn_y(turn), 0.0);
-    vec2 texels = d.xy * params.inverse_unproject; /* of a scene unit at unit distance */
+    vec2 d = vec2(half_turn_x(turn), half_turn_y(turn));
     /* Either direction is the slice's. To the right its samples have one edge to leave by. */
-    bool is_left = texels.x < 0.0;
-    d = is_left ? -d : d;
-    texels = is_left ? -texels : texels;
+    float right = d.x * params.inverse_unproject.x;
+    d = right < 0.0 ? -d : d;
+    /* of a scene unit at unit distance */
+    vec2 texels = vec2(abs(right), d.y * params.inverse_unproject.y);
     float length2 = dot(texels, texels), per_texel = inversesqrt(length2);
     s.step = product(texels, vec2(per_texel));
     s.texels = length2 * per_texel * (ORTHOGRAPHIC ? 1.0 : 1.0 / position.z);
     /* As long as what is left of d without its share along V; 1 - (d.V)^2 is nothing at the edge of
      * a field of view of nearly 180 degrees. */
-    vec3 across = cross(d, to_eye);
-    float inverse_length = inversesqrt(dot(across, across));
-    s.outward = (d - dot(d, to_eye) * to_eye) * inverse_length;
-    across *= inverse_length;
-    float off = dot(normal, across), facing = dot(normal, to_eye);
+    vec3 across = vec3(d.y * to_eye.z, -d.x * to_eye.z, d.x * to_eye.y - d.y * to_eye.x);
+    across *= inversesqrt(dot(across, across));
+    s.outward = cross(to_eye, across);
+    float facing = dot(normal, to_eye), out_n = dot(normal, s.outward);
     /* A sample's texel lies off the slice by rounding. It is moved into it along the plane that the
      * depth image has here, which keeps its height over that plane, so that a tilted wall still
      * lies flat in the slice, whatever its shading normals. */
     float plane_facing = dot(plane.normal, to_eye);
     float moved = dot(plane.normal, across) / max(plane_facing, plane.steepest);
     s.fall = dot(plane.normal, s.outward) / max(plane_facing, VKAO_STEEPEST);
-    vec2 radii = params.unproject.xy * params.inverse_radius;
-    s.to_x = product(radii, s.outward.xy);
-    s.to_y = product(radii, to_eye.xy + across.xy * moved);
-    s.eye = ORTHOGRAPHIC ? -params.inverse_radius : params.inverse_radius / to_eye.z;
+    s.to_x = product(unproject, s.outward.xy);
+    s.to_y = product(unproject, to_eye.xy + across.xy * moved);
+    s.eye = ORTHOGRAPHIC ? -inverse_unit : inverse_unit / to_eye.z;
     /* It is taken to lie as deep as its depth may be wrong: a wall must not occlude itself by the
      * steps of a format. */
     s.origin = product(vec2(s.eye), vec2(position.z - 2.0 * depth_error(position.z))).x;
-    s.normal_length = sqrt(max(1.0 - off * off, 1.0e-12));
-    s.cos_n = clamp(facing / s.normal_length, 0.0, 1.0);
-    s.sin_n = dot(normal, s.outward) / s.normal_length;
+    float length2_n = max(facing * facing + out_n * out_n, 1.0e-12);
+    float inverse_n = inversesqrt(length2_n);
+    s.normal_length = length2_n * inverse_n;
+    s.cos_n = clamp(facing * inverse_n, 0.0, 1.0);
+    s.sin_n = out_n * inverse_n;
     return s;
 }
 

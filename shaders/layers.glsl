@@ -7,16 +7,17 @@
 
 #include "second_z.glsl"
 
-/* Thickness in radii, from the last bits of view z, without the caller's scale. */
-vec2 width_of(vec2 z)
+/* Thickness from the last bits of view z, without the caller's scale. least: the bits of the least
+ * there is. */
+vec2 width_of(vec2 z, int least)
 {
     ivec2 code = floatBitsToInt(z) & THICKNESS_MASK;
-    return intBitsToFloat((code << THICKNESS_SHIFT) + VKAO_THICKNESS_LEAST_BITS);
+    return intBitsToFloat((code << THICKNESS_SHIFT) + least);
 }
 
 vec2 thickness_of(vec2 z)
 {
-    return params.thickness * width_of(z);
+    return params.thickness * width_of(z, VKAO_THICKNESS_LEAST_BITS);
 }
 
 #endif

@@ -220,6 +220,7 @@
 #define VKAO_VBAO_GAP_RISE 0.03
 #define VKAO_VBAO_GAP_FRONT 0.33 /* share of the gap by which a separate surface's front moves in */
 #define VKAO_VBAO_GAP_BACK 0.66  /* share of the gap by which its back moves out */
+#define VKAO_VBAO_SECTORS 31     /* of a side, see sectors.glsl */
 #define VKAO_VBAO_ROUND 0.9      /* added before a sector bound is cut to an integer */
 /* Taken off that at the upper edge of what all joins to the shaded point: its own plane. */
 #define VKAO_VBAO_ROUND_LESS 0.3
@@ -264,6 +265,9 @@
 #define VKAO_THICKNESS_MASK 15
 #define VKAO_THICKNESS_SHIFT 22
 #define VKAO_THICKNESS_LEAST_BITS 0x3c000000
+/* On a GPU vbao reads it WIDTHS times less, see inverse_unit: its bits then begin so much lower. */
+#define VKAO_VBAO_WIDTHS 4.0
+#define VKAO_VBAO_WIDTHS_BITS 0x01000000
 #define VKAO_THICKNESS_DEPTH_ERROR 0.95e-6 /* what that takes from view z, relative to it */
 /* Where thickness is given it is worth 2 bits more, eighths of octaves. */
 #define VKAO_THICKNESS_FINER 2
@@ -311,6 +315,7 @@ struct vkao_constants {
     VKAO_VEC4(tint);              /* .w is 0 */
     VKAO_UVEC4(path);             /* the CPU's own */
     VKAO_VEC2(inverse_unproject); /* 1 / unproject.xy */
+    VKAO_VEC2(unproject_units);   /* VBAO on a GPU: unproject.xy in units */
     /* PROJECTED: .x / (.y - depth) in perspective, .x + .y * depth in orthographic views */
     VKAO_VEC2(linearize);
     VKAO_VEC2(far_test);    /* PROJECTED: depth * .x >= .y is background */
@@ -321,6 +326,7 @@ struct vkao_constants {
     /* what sharpness is relative to in orthographic views; 0 = the texel's own z */
     VKAO_FLOAT(reference_z);
     VKAO_FLOAT(radius);
+    VKAO_FLOAT(reach); /* VBAO: of the last step */
     VKAO_FLOAT(inverse_radius);
     VKAO_FLOAT(bias);        /* scene units */
     VKAO_FLOAT(bias_cosine); /* bias / radius */
@@ -333,6 +339,14 @@ struct vkao_constants {
     VKAO_FLOAT(thickness_gap);
     VKAO_FLOAT(thickness_base);
     VKAO_FLOAT(thickness_slope);
+    /* VBAO on a GPU measures lengths in units, of which thickness_gap / VKAO_VBAO_WIDTHS are a
+     * radius. The gap of a sample then compares with a width without a factor. */
+    VKAO_FLOAT(inverse_unit); /* units of a scene unit */
+    VKAO_FLOAT(unit_square);  /* a radius in units, squared: below 1 */
+    VKAO_FLOAT(unit_base);    /* thickness_base, _slope and _seen for units */
+    VKAO_FLOAT(unit_slope);
+    VKAO_FLOAT(unit_seen);
+    VKAO_FLOAT(hidden_share); /* of a sector, in what units weigh */
     VKAO_FLOAT(power);
     VKAO_FLOAT(debug_distance);
     VKAO_FLOAT(farthest);     /* texels, see VKAO_STEP_FARTHEST */

@@ -10,7 +10,7 @@
 
 #include "product.glsl"
 
-const float SECTORS = 31.0;
+const float SECTORS = float(VKAO_VBAO_SECTORS);
 
 /* c (G1 + G3 c^2) fits g(c) over [-1, 1]. Its largest error is .0053. On the side that the normal
  * leans to that moves a sector bound by .21 of a sector at most. On the other side sectors are

@@ -46,7 +46,8 @@ Visibility visibility(ivec2 texel, vec3 position, vec3 normal, Plane plane)
     float lost = 0.0, share = 1.0 / float(slice_count());
     uint k = 0u;
     [[unroll]] for (;;) {
-        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye);
+        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye,
+                             params.unproject.xy * params.inverse_radius, params.inverse_radius);
         vec2 h = acos(horizon_cosines(s, texel, noise.jitter));
         float n = s.sin_n > 0.0 ? acos(s.cos_n) : -acos(s.cos_n);
         float h1 = min(h.x, n + 0.5 * PI), h0 = max(-h.y, n - 0.5 * PI);

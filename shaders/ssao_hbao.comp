@@ -46,7 +46,8 @@ Visibility visibility(ivec2 texel, vec3 position, vec3 normal, Plane plane)
     float occluded = 0.0, share = 1.0 / float(slice_count());
     uint k = 0u;
     [[unroll]] for (;;) {
-        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye);
+        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye,
+                             params.unproject.xy * params.inverse_radius, params.inverse_radius);
         occluded += occlusion(s, texel, noise.jitter);
         if (++k >= slice_count())
             break;

@@ -58,14 +58,16 @@ struct Bounds {
     vec2 k1, k2, k3;
 };
 
-Bounds make_bounds(Slice s, vec2 mass)
+/* What sectors.glsl says of both sides, in fewer operations. mass: of each. */
+Bounds make_bounds(Slice s, out vec2 mass)
 {
-    float bend = 3.0 * G3 * s.sin_n * s.sin_n;
-    vec2 scale = SECTORS / mass;
+    float sine2 = s.sin_n * s.sin_n, half_cos = 0.5 * s.cos_n;
+    float level = half_cos + sine2 * (G1 + G3 * sine2 - half_cos);
+    mass = max(level + s.sin_n * ((G1 + G3) * SIDES), 1.0e-4);
+    vec2 scale = (2.0 * SECTORS) / mass, lean = product(scale, s.sin_n * SIDES);
     return Bounds(-0.5 * s.sin_n * SIDES,
-                  product(2.0 * s.sin_n * (G1 - s.cos_n + bend) * SIDES, scale),
-                  product(vec2(2.0 * s.cos_n - 4.0 * bend), scale),
-                  product(8.0 * G3 * s.sin_n * SIDES, scale));
+                  product(lean, vec2(G1 - s.cos_n + 3.0 * G3 * sine2)),
+                  product(scale, vec2(s.cos_n - 6.0 * G3 * sine2)), product(lean, vec2(4.0 * G3)));
 }
 
 /* Half the cosine of a point of the slice, over the tangent plane. */
@@ -82,12 +84,11 @@ const float NOWHERE = -1.0e15;
  * alone. */
 vec2 back_of(vec2 z, vec2 x, vec2 y, vec2 unseen, bool is_given)
 {
-    vec2 width = width_of(z);
+    vec2 width = width_of(z, VKAO_THICKNESS_LEAST_BITS - VKAO_VBAO_WIDTHS_BITS);
     if (is_given)
-        return y - max(params.thickness * width, VKAO_VBAO_THICKNESS_GIVEN_GAP * unseen);
-    width = max(width, params.thickness_gap * unseen);
-    return y -
-           params.thickness_seen * min(width, params.thickness_base + params.thickness_slope * x);
+        return y - max(params.unit_seen * width, VKAO_VBAO_THICKNESS_GIVEN_GAP * unseen);
+    return y - params.unit_seen *
+                   min(max(width, unseen), params.unit_base + params.unit_slope * x);
 }
 
 /* Sectors under a bound. */
@@ -102,15 +103,16 @@ vec2 counted(uvec2 mask)
     return uintBitsToFloat(uvec2(bitCount(mask)) + floatBitsToUint(8388608.0));
 }
 
-/* falloff_weight of a point, by fewer operations. */
+/* falloff_weight of a point, by fewer operations, times unit_square, which is below 1. */
 vec2 weight_at(vec2 x, vec2 y)
 {
-    return THRESHOLD ? falloff_weight(x * x + y * y)
-                     : clamp((1.0 - x * x) - y * y, vec2(0.0), vec2(1.0));
+    vec2 left = (params.unit_square - x * x) - y * y;
+    return THRESHOLD ? params.unit_square * vec2(greaterThanEqual(left, vec2(0.0)))
+                     : clamp(left, vec2(0.0), vec2(1.0));
 }
 
 /* Takes what a sample of both sides hides first. */
-void hide(inout March march, inout Trail last, Slice s, Masks m, Bounds b, float center_z,
+void hide(inout March march, inout Trail last, Slice s, Bounds b, vec2 mass, float center_z,
           vec2 offset, vec2 z, bool is_given)
 {
     vec2 x, y;
@@ -136,14 +138,15 @@ void hide(inout March march, inout Trail last, Slice s, Masks m, Bounds b, float
     uvec2 upper = uvec2(last.rounding + sectors_under(b, front)) & 31u;
     uvec2 above = uvec2((32.0 - VKAO_VBAO_ROUND) - sectors_under(b, back)) & 31u;
     march.open &= uvec2(~1u) << upper | uvec2(~0u) >> above;
-    vec2 near_y = min(max(back_y, vec2(0.0)), y), count = counted(march.open);
+    /* Its square is that of min(max(back_y, 0), y), as the back is not before the front. */
+    vec2 near_y = max(max(back_y, vec2(0.0)), -y), count = counted(march.open);
     vec2 w = weight_at(inner_x, near_y) * (march.count - count);
     march.count = count;
     march.hidden += w;
     if (BENT_NORMALS) {
-        vec2 middle = front + back + m.low + 0.5 * params.bias_cosine;
+        vec2 middle = front + back + 2.0 * b.low + 0.5 * params.bias_cosine;
         middle = clamp(middle, vec2(-1.0), vec2(1.0));
-        w *= m.mass;
+        w *= mass;
         march.out_moment += w * SIDES * sqrt(max(vec2(0.0), 1.0 - middle * middle));
         march.eye_moment += w * middle;
     }
@@ -155,30 +158,27 @@ void hide(inout March march, inout Trail last, Slice s, Masks m, Bounds b, float
 /* What a slice loses: of its mass, .x, and of its moment along O and along V. */
 vec3 hidden(Slice s, ivec2 texel, float center_z, float jitter)
 {
-    Masks m = make_masks(SIDES * s.sin_n, vec2(s.cos_n));
-    Steps steps = make_steps(s, jitter,
-                             params.radius *
-                                 (THRESHOLD ? VKAO_VBAO_REACH_THRESHOLD : VKAO_VBAO_REACH_SMOOTH),
-                             VKAO_VBAO_STEP_LINEAR);
+    Steps steps = make_steps(s, jitter, params.reach, VKAO_VBAO_STEP_LINEAR);
     const vec2 none = vec2(0.0);
-    Bounds b = make_bounds(s, m.mass);
+    vec2 mass;
+    Bounds b = make_bounds(s, mass);
     March march = March(uvec2(~0u), counted(uvec2(~0u)), none, none, none);
     Trail first = Trail(none, none, none, vec2(VKAO_VBAO_ROUND - VKAO_VBAO_ROUND_LESS));
     Trail second = Trail(none, none, none, vec2(VKAO_VBAO_ROUND));
     uint t = 0u;
     [[unroll]] for (;;) {
         vec2 offset = step_offset(s, steps, t, VKAO_VBAO_STEP_LEAST), at = vec2(texel);
-        hide(march, first, s, m, b, center_z, offset, load_sides(at, offset), IS_GIVEN);
+        hide(march, first, s, b, mass, center_z, offset, load_sides(at, offset), IS_GIVEN);
         if (SECOND_LAYER) {
             vec2 z = load_second_sides(at, offset);
-            hide(march, second, s, m, b, center_z, offset, z, IS_GIVEN);
+            hide(march, second, s, b, mass, center_z, offset, z, IS_GIVEN);
         }
         if (++t >= step_count())
             break;
     }
-    march.hidden *= m.mass;
+    march.hidden *= mass;
     return vec3(march.hidden.x + march.hidden.y, march.out_moment.x + march.out_moment.y,
-                march.eye_moment.x + march.eye_moment.y) / SECTORS;
+                march.eye_moment.x + march.eye_moment.y) * params.hidden_share;
 }
 
 Visibility visibility(ivec2 texel, vec3 position, vec3 normal, Plane plane)
@@ -190,7 +190,8 @@ Visibility visibility(ivec2 texel, vec3 position, vec3 normal, Plane plane)
     Visibility v = Visibility(normal * (2.0 / 3.0), 1.0);
     uint k = 0u;
     for (;;) {
-        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye);
+        Slice s = make_slice((float(k) + noise.turn) * share, position, normal, plane, to_eye,
+                             params.unproject_units, params.inverse_unit);
         vec3 lost = share * s.normal_length * hidden(s, texel, position.z, noise.jitter);
         v.open -= lost.x;
         v.bent -= s.outward * lost.y + to_eye * lost.z;

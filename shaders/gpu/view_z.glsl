@@ -57,7 +57,7 @@ float load_view_z(ivec2 texel)
 /* Of the texel at an offset of at most BLOCKS from one in the image: none is beyond the border. */
 float view_z_beside(ivec2 texel, ivec2 offset)
 {
-    vec2 at = place_of(vec2(texel) + vec2(offset));
+    vec2 at = place_of(vec2(texel)) + vec2(offset) * vec2(1.0 / float(BLOCKS), 1.0);
     return load_from(view_z_image, at.x, at.y);
 }
 
