@@ -47,19 +47,21 @@ struct Texel {
     vec4 normal;
 };
 
-Texel load_texel(ivec2 at)
+/* at: of whole texels. */
+Texel load_texel(vec2 at)
 {
     Texel t;
-    t.z = surface_z(load_view_z(at));
-    vec2 middle = vec2(at) + 0.5;
+    float z = load_view_z_at(at);
+    t.z = surface_z(z);
+    vec2 middle = at + 0.5;
     t.v = vec4(decode_hidden(textureLod(sampler2D(source_image, nearest), middle, 0.0).x));
     if (BENT_NORMALS)
         t.v.xyz = decode_bent(textureLod(sampler2D(bent_image, nearest), middle, 0.0));
-    if (t.z == BACKGROUND_Z)
-        t.v = vec4(0.0);
+    t.v = z > 0.0 ? t.v : vec4(0.0);
     t.normal = vec4(0.0);
     if (HAS_NORMALS) {
-        ivec2 inside = clamp(at, unpack_texel(params.valid.x), unpack_texel(params.valid.y) - 1);
+        ivec2 low = unpack_texel(params.valid.x), last = unpack_texel(params.valid.y) - 1;
+        ivec2 inside = clamp(ivec2(at), low, last);
         t.normal = stored_normal(inside << GRID_SHIFT);
     }
     return t;
@@ -214,14 +216,16 @@ void main()
     /* The tile is as wide as half the group's lanes, twice; what is beside it, as an eighth. */
     const int BESIDE = 2 * AROUND;
     ivec2 first = origin - ivec2(AROUND, AROUND);
-    [[unroll]] for (int row = 0; row < ROWS; row += VKAO_BLUR_TILE_THREADS / WIDTH) {
-        ivec2 at = ivec2(lane % WIDTH, row + lane / WIDTH);
-        write_texel(at.y * PITCH + at.x, load_texel(first + at));
-    }
-    [[unroll]] for (int row = 0; row < ROWS; row += VKAO_BLUR_TILE_THREADS / BESIDE) {
-        ivec2 at = ivec2(WIDTH + lane % BESIDE, row + lane / BESIDE);
-        write_texel(at.y * PITCH + at.x, load_texel(first + at));
-    }
+    ivec2 at = ivec2(lane % WIDTH, lane / WIDTH);
+    int place = at.y * PITCH + at.x;
+    vec2 texel = vec2(first + at);
+    [[unroll]] for (int row = 0; row < ROWS; row += VKAO_BLUR_TILE_THREADS / WIDTH)
+        write_texel(place + row * PITCH, load_texel(texel + vec2(0.0, row)));
+    at = ivec2(WIDTH + lane % BESIDE, lane / BESIDE);
+    place = at.y * PITCH + at.x;
+    texel = vec2(first + at);
+    [[unroll]] for (int row = 0; row < ROWS; row += VKAO_BLUR_TILE_THREADS / BESIDE)
+        write_texel(place + row * PITCH, load_texel(texel + vec2(0.0, row)));
     barrier();
     blur_rows(lane);
     blur_columns(lane, origin);

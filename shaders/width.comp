@@ -71,17 +71,6 @@ Breaks breaks_of_columns(ivec2 at, int words)
     return Breaks(clear_outside(farther, at.y, words), clear_outside(nearer, at.y, words));
 }
 
-/* Bits k to k + 31 of a line's words, and those before bit k, the nearest first. */
-uint bits_ahead(Words w, int line, int k)
-{
-    return w.here[line] >> k | w.after[line] << 1 << (31 - k);
-}
-
-uint bits_behind(Words w, int line, int k)
-{
-    return bitfieldReverse(w.here[line] << 1 << (31 - k) | w.before[line] >> k);
-}
-
 /* Steps to the first that is set; -1, which findLSB has for none, is the largest of numbers without
  * sign. */
 uint steps_to(uint bits)
@@ -89,27 +78,82 @@ uint steps_to(uint bits)
     return uint(findLSB(bits));
 }
 
-/* Shares of a step that the surface goes on for to both sides of bit k of a line, at most so many
- * steps to each. own: 1 if a bit stands for several texels. */
-uint run_of(Breaks b, int line, int k, uint most, uint own)
+/* What lies before and behind two texels side by side in a line: bits from that of the first on,
+ * the nearest lowest, and those before that of the second, the nearest highest. Each has what the
+ * other texel needs as well: it is followed through fewer than 32. */
+struct Ends {
+    uint farther_ahead, nearer_ahead, farther_behind, nearer_behind;
+};
+
+uint bits_ahead(Words w, int line, int first)
 {
-    uint farther = bits_ahead(b.farther, line, k), nearer = bits_ahead(b.nearer, line, k);
-    uint end = steps_to(farther), hidden = steps_to(nearer);
-    uint ahead = min(min(end, hidden), most);
-    uint start = steps_to(bits_behind(b.nearer, line, k)),
-         hidden_start = steps_to(bits_behind(b.farther, line, k));
-    uint behind = min(min(start, hidden_start), most), longer = max(ahead, behind);
-    uint run = (hidden < end ? longer : ahead) + (hidden_start < start ? longer : behind);
-    bool is_hidden = hidden < min(end, most) || hidden_start < min(start, most);
-    uint each = is_hidden ? VKAO_VBAO_WIDTH_HIDDEN : VKAO_VBAO_WIDTH_SHARES;
+    return w.here[line] >> first | w.after[line] << 1 << (31 - first);
+}
+
+uint bits_behind(Words w, int line, int second)
+{
+    return w.here[line] << 1 << (31 - second) | w.before[line] >> second;
+}
+
+Ends ends_of(Breaks b, int line, int first, int second)
+{
+    return Ends(bits_ahead(b.farther, line, first), bits_ahead(b.nearer, line, first),
+                bits_behind(b.farther, line, second), bits_behind(b.nearer, line, second));
+}
+
+/* Those of one of the texels, whose bits are apart. */
+Ends ends_of_texel(Ends e, bool is_second, uint apart)
+{
+    uint ahead = is_second ? apart : 0u, behind = is_second ? 0u : apart;
+    return Ends(e.farther_ahead >> ahead, e.nearer_ahead >> ahead, e.farther_behind << behind,
+                e.nearer_behind << behind);
+}
+
+/* Steps from a bit behind which depth breaks to the next; 0 if what is next is both farther and
+ * nearer. */
+uint steps_between(Ends e)
+{
+    return steps_to((e.farther_ahead | e.nearer_ahead) >> 1 | e.farther_ahead & e.nearer_ahead);
+}
+
+/* Shares of a step that the surface goes on for to both sides, at most so many steps to each. own:
+ * 1 if a bit stands for several texels; between: steps_between of that. */
+uint run_of(Ends e, uint most, uint own, uint between)
+{
+    const uint SHARES = VKAO_VBAO_WIDTH_SHARES, MORE = VKAO_VBAO_WIDTH_HIDDEN - SHARES;
+    uint end = steps_to(e.farther_ahead), hidden = steps_to(e.nearer_ahead);
+    uint start = steps_to(bitfieldReverse(e.nearer_behind)),
+         hidden_start = steps_to(bitfieldReverse(e.farther_behind));
+    uint seen_end = min(end, most), seen_start = min(start, most);
+    bool hides_end = hidden < seen_end, hides_start = hidden_start < seen_start;
+    uint ahead = min(seen_end, hidden), behind = min(seen_start, hidden_start);
+    uint longer = max(ahead, behind);
+    uint run = (hides_end ? longer : ahead) + (hides_start ? longer : behind);
+    uint shares = SHARES * run;
     /* What is hidden does not count as going on for being wide alone. */
-    uint shares = min(run * each, max(VKAO_VBAO_WIDTH_SHARES * run,
-                                      2u * VKAO_VBAO_WIDTH_SHARES * most - 1u));
+    uint more = min(shares + MORE * run, max(shares, 2u * SHARES * most - 1u));
+    shares = hides_end || hides_start ? more : shares;
     /* Some of these texels lie before the break that their bit has, some behind it. Which is not
      * known: all get the narrower of both sides, and none is left between two breaks. */
-    uint beyond = min(min(steps_to((farther | nearer) >> 1), behind), most);
-    beyond = hidden == end ? 0u : VKAO_VBAO_WIDTH_SHARES * beyond;
-    return ahead < own ? beyond : shares;
+    return ahead < own ? SHARES * min(between, behind) : shares;
+}
+
+/* with_thickness of thickness.glsl, in fewer operations. texel: its size in radii; share: that of a
+ * step; all: shares, if nothing ends. */
+float with_width(float z, uvec2 along, vec2 texel, vec2 share, uint all)
+{
+    const float LENGTH = VKAO_VBAO_THICKNESS_LENGTH, WIDTH = VKAO_VBAO_THICKNESS_WIDTH;
+    const int HALF = 1 << (THICKNESS_SHIFT - 1);
+    const int MOST = floatBitsToInt(VKAO_VBAO_THICKNESS_WIDE) - VKAO_THICKNESS_LEAST_BITS + HALF >>
+                     THICKNESS_SHIFT;
+    vec2 widths = texel + share * vec2(along);
+    float width = WIDTH * (1.0 - LENGTH) * min(widths.x, widths.y) +
+                  WIDTH * LENGTH * max(widths.x, widths.y);
+    width *= along.x + along.y == all ? VKAO_VBAO_THICKNESS_WIDER : 1.0;
+    width *= ORTHOGRAPHIC ? 1.0 : z;
+    int code = floatBitsToInt(width) - VKAO_THICKNESS_LEAST_BITS + HALF >> THICKNESS_SHIFT;
+    code = min(clamp(code, 0, MOST), floatBitsToInt(z)); /* background stays 0 */
+    return intBitsToFloat(floatBitsToInt(z) & ~THICKNESS_MASK | code);
 }
 
 void main()
@@ -130,12 +174,23 @@ void main()
     float z[2][2];
     [[unroll]] for (int i = 0; i < 4; ++i)
         z[i >> 1][i & 1] = imageLoad(view_z_image, places[i >> 1][i & 1]).x;
+    ivec2 bit = texel >> reach.shift & 31, next = texel + 1 >> reach.shift & 31;
+    Ends row_ends[2], column_ends[2];
+    [[unroll]] for (int i = 0; i < 2; ++i) {
+        row_ends[i] = ends_of(rows, i, bit.x, next.x);
+        column_ends[i] = ends_of(columns, i, bit.y, next.y);
+    }
+    vec2 size_of_texel = params.inverse_radius * abs(params.unproject.xy);
+    vec2 share =
+        size_of_texel * vec2(ivec2(1) << reach.shift) * (1.0 / VKAO_VBAO_WIDTH_SHARES);
+    uint all = uint(2 * VKAO_VBAO_WIDTH_SHARES * (reach.steps.x + reach.steps.y));
     [[unroll]] for (int i = 0; i < 4; ++i) {
         int x = i & 1, y = i >> 1;
-        ivec2 bit = ((texel + ivec2(x, y)) >> reach.shift) & 31;
-        uint along_x = run_of(rows, y, bit.x, uint(reach.steps.x), own.x),
-             along_y = run_of(columns, x, bit.y, uint(reach.steps.y), own.y);
-        imageStore(view_z_image, places[y][x],
-                   vec4(with_thickness(z[y][x], int(along_x), int(along_y), reach)));
+        uint along_x = run_of(ends_of_texel(row_ends[y], x == 1, 1u - own.x), uint(reach.steps.x),
+                              own.x, steps_between(row_ends[y])),
+             along_y = run_of(ends_of_texel(column_ends[x], y == 1, 1u - own.y),
+                              uint(reach.steps.y), own.y, steps_between(column_ends[x]));
+        float thick = with_width(z[y][x], uvec2(along_x, along_y), size_of_texel, share, all);
+        imageStore(view_z_image, places[y][x], vec4(thick));
     }
 }
