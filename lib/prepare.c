@@ -39,11 +39,11 @@ VkExtent2D vkao_view_z_extent(VkExtent2D grid)
                         grid.height + 2 * VKAO_VIEW_Z_BORDER};
 }
 
-#define PREPARES(shader, texels, ...)                                                              \
+#define PREPARES(shader, shades, side, ...)                                                        \
     {                                                                                              \
         .name = "vkao " #shader, .label = "prepare", .stage = VKAO_STAGE_PREPARE,                  \
-        VKAO_CODE(vkao_##shader), .uses = {__VA_ARGS__}, .area = VKAO_AREA_##texels,               \
-        VKAO_ONE_TEXEL, .forms = 1,                                                                \
+        VKAO_CODE(vkao_##shader), .uses = {__VA_ARGS__}, .area = VKAO_AREA_##shades,               \
+        .texels = {side, side}, .group = {VKAO_GROUP_WIDTH, VKAO_GROUP_HEIGHT}, .forms = 1,        \
     }
 #define BREAKS(view_z)                                                                             \
     {                                                                                              \
@@ -66,7 +66,8 @@ VkExtent2D vkao_view_z_extent(VkExtent2D grid)
 /* A layer of depth, and how thick it is as seen. */
 #define LAYER(depth, view_z)                                                                       \
     {                                                                                              \
-        PREPARES(prepare, WHOLE, VKAO_READS(DEPTH, depth), VKAO_WRITES(VIEW_Z_WRITE, view_z)),     \
+        PREPARES(prepare, WHOLE, 2, VKAO_READS(DEPTH, depth), VKAO_READS(NEAREST, SAMPLER),        \
+                 VKAO_WRITES(VIEW_Z_WRITE, view_z)),                                               \
             BREAKS(view_z), WIDTH(view_z),                                                         \
     }
 enum { LAYER_PASSES = 3 };
@@ -74,7 +75,7 @@ static const struct vkao_pass first[LAYER_PASSES] = LAYER(DEPTH, VIEW_Z),
                               second[LAYER_PASSES] = LAYER(SECOND_DEPTH, SECOND_Z);
 /* An input. Back depth is decoded as depth is, so it takes that binding. */
 static const struct vkao_pass given =
-    PREPARES(thickness, VALID, VKAO_READS(DEPTH, THICKNESS), VKAO_WRITES(VIEW_Z_WRITE, VIEW_Z));
+    PREPARES(thickness, VALID, 1, VKAO_READS(DEPTH, THICKNESS), VKAO_WRITES(VIEW_Z_WRITE, VIEW_Z));
 
 static void plan_layer(struct vkao_program *program, const struct vkao_pass *layer, int count)
 {

@@ -162,7 +162,7 @@ static void dispatch_covers_what_the_upsampling_reads(void **state)
         fake_forget_calls(&w.fake);
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
         enum { WIDTH = VKAO_GROUP_WIDTH, HEIGHT = VKAO_GROUP_HEIGHT };
-        check_cover(&w, 0, (struct vkao_rect){0, 0, 51, 30}, WIDTH, HEIGHT, 1);
+        check_cover(&w, 0, (struct vkao_rect){0, 0, 51, 30}, 2 * WIDTH, 2 * HEIGHT, 1);
         check_cover(&w, 1, cases[i].ssao, VKAO_SSAO_GROUP_WIDTH, VKAO_SSAO_GROUP_HEIGHT, 1);
         check_cover(&w, 2, cases[i].blur, VKAO_BLUR_TILE_WIDTH,
                     VKAO_BLUR_TILE_ROWS(2) - 2 * (VKAO_BLUR_TILE_RADIUS + 1), 1);

@@ -318,8 +318,9 @@ static void dispatch_covers_the_rect_exactly(void **state)
         assert_int_equal(world_record_all(&w), VKAO_SUCCESS);
         /* What is not valid is background for all that samples. */
         const VkExtent2D none = {0, 0}, group = {VKAO_GROUP_WIDTH, VKAO_GROUP_HEIGHT},
+                         prepare_group = {2 * VKAO_GROUP_WIDTH, 2 * VKAO_GROUP_HEIGHT},
                          ssao_group = {VKAO_SSAO_GROUP_WIDTH, VKAO_SSAO_GROUP_HEIGHT};
-        check_cover(&w, 0, (struct vkao_rect){0, 0, 100, 60}, (VkExtent2D){8, 2}, group);
+        check_cover(&w, 0, (struct vkao_rect){0, 0, 100, 60}, (VkExtent2D){8, 2}, prepare_group);
         check_cover(&w, 1, cases[i].ssao, none, ssao_group);
         check_cover(&w, 2, cases[i].blur_x, none, group);
         check_cover(&w, 3, cases[i].rest, none, group);
