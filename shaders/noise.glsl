@@ -31,14 +31,14 @@ float unit_float(uint bits)
  * Frames step along the R2 sequence (Roberts 2018): 1/g and 1/g^2 in fixed point. */
 vec2 tile_noise(uvec2 texel, uint slices, uint index)
 {
-    uvec2 at = texel & (slices < 4u ? 3u : 1u);
-    /* w x, of x = 0 to 3, is 0, 2, 3, 1. */
-    uint first = (0x78u >> 2u * at.x & 3u) ^ at.y, second = first ^ at.x;
+    uvec2 at = slices < 4u ? texel : texel & 1u;
+    /* w x, of x = 0 to 3, is 0, 2, 3, 1, and so on. Of all these the last two bits count. */
+    uint first = 0x78787878u >> (2u * at.x & 31u) ^ at.y, second = first ^ at.x;
     uint turn = index * 3242174889u, jitter = index * 2447445414u;
     if (slices < 4u) {
         turn += (first << 30) + (texel.y * 3242174889u >> 2);
         jitter += 0xf8000000u;
-        jitter -= second << 30 | first << 28;
+        jitter -= second << 30 | (first & 3u) << 28;
     } else {
         turn += first << 30 | 1u << 27;
         jitter += 0xe0000000u - (second << 30);

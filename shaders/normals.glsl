@@ -10,7 +10,7 @@
 /* The neighbour along one screen axis that lies on the texel's surface. */
 struct Neighbour {
     float z, rise; /* rise: of view z, a texel on along the axis */
-    bool is_there; /* if not, z is the texel's */
+    bool is_there; /* if not, the others are of no use */
 };
 
 /* From the neighbour before to the texel, and from there to the one after it. */
@@ -46,8 +46,7 @@ Neighbour straight_neighbour(vec2 near_z, vec2 far_z, float z)
     vec2 scale = mix(vec2(1.0), mix(line_scale, curve_scale, curved), there);
     bool before = miss.x * scale.y < miss.y * scale.x;
     vec2 rise = rises_of(near_z, z);
-    return any(there) ? Neighbour(before ? near_z.x : near_z.y, before ? rise.x : rise.y, true)
-                      : Neighbour(z, 0.0, false);
+    return Neighbour(before ? near_z.x : near_z.y, before ? rise.x : rise.y, any(there));
 }
 
 /* Of the nearest pair, the one whose view z differs less: quickly found, and seldom wrong beside an
@@ -57,8 +56,7 @@ Neighbour nearest_neighbour(vec2 near_z, float center_z)
     vec2 rise = rises_of(near_z, center_z);
     bool before = abs(rise.x) < abs(rise.y);
     float z = before ? near_z.x : near_z.y;
-    return z > 0.0 ? Neighbour(z, before ? rise.x : rise.y, true)
-                   : Neighbour(center_z, 0.0, false);
+    return Neighbour(z, before ? rise.x : rise.y, z > 0.0);
 }
 
 /* careful is what a depth image without normals takes; where a stored normal fails now and then,
@@ -94,6 +92,7 @@ Facet facet_of(ivec2 texel, float center_z)
     vec2 slope = vec2(beside.rise, below.rise) * params.inverse_unproject;
     if (!ORTHOGRAPHIC)
         slope /= vec2(beside.z, below.z);
+    slope = vec2(beside.is_there ? slope.x : 0.0, below.is_there ? slope.y : 0.0);
     vec3 n = vec3(clamp(slope, -VKAO_STEEPEST_FACET, VKAO_STEEPEST_FACET), -1.0);
     if (!ORTHOGRAPHIC)
         n.z -= dot(view_position(vec2(texel), 1.0).xy, n.xy);

@@ -97,6 +97,15 @@ vec2 sectors_under(Bounds b, vec2 bound)
     return bound * (b.k1 + bound * (b.k2 + bound * b.k3));
 }
 
+/* Added to a number below 32 it leaves the whole part in the third byte of a float. GPUs shift by a
+ * byte of a register at no cost, where a conversion costs one. */
+const float WHOLE = 128.0;
+
+uvec2 whole_of(vec2 with_whole)
+{
+    return floatBitsToUint(with_whole) >> 16 & 255u;
+}
+
 /* Bits that are set, plus 2^23: a float that takes no conversion. */
 vec2 counted(uvec2 mask)
 {
@@ -136,7 +145,7 @@ void hide(inout March march, inout Trail last, Slice s, Bounds b, vec2 mass, flo
     /* Open as before are those from front on, and those up to back. Bounds of a side that has next
      * to no mass may be anything. */
     uvec2 upper = uvec2(last.rounding + sectors_under(b, front)) & 31u;
-    uvec2 above = uvec2((32.0 - VKAO_VBAO_ROUND) - sectors_under(b, back)) & 31u;
+    uvec2 above = whole_of((WHOLE + 32.0 - VKAO_VBAO_ROUND) - sectors_under(b, back)) & 31u;
     march.open &= uvec2(~1u) << upper | uvec2(~0u) >> above;
     /* Its square is that of min(max(back_y, 0), y), as the back is not before the front. */
     vec2 near_y = max(max(back_y, vec2(0.0)), -y), count = counted(march.open);

@@ -8,9 +8,9 @@
 
 float encode_visibility(float v)
 {
-    float code = v * VKAO_CODE_SCALE + VKAO_CODE_OFFSET * VKAO_CODE_SCALE;
     /* Halves go up, as on CPUs: many a method's few samples end on one. */
-    return NOISY_CODES ? floor(clamp(code, 0.0, 255.0) + 0.5) / 255.0 : noisy_texel(v);
+    float code = v * VKAO_CODE_SCALE + (VKAO_CODE_OFFSET * VKAO_CODE_SCALE + 0.5);
+    return NOISY_CODES ? floor(clamp(code, 0.0, 255.0)) / 255.0 : noisy_texel(v);
 }
 
 /* Less 1, in steps of VISIBILITY_UNIT: exactly 0 where all is open. */
