@@ -52,34 +52,37 @@ ivec2 texel_of(Lines l, int along, int across)
     return l.vertical ? ivec2(across, along) : ivec2(along, across);
 }
 
-/* Does depth break in the middle of four texels in a row? */
-bool breaks(float before, float z, float next, float behind)
+/* Does depth break in the middle of four texels in a row? is_next: is the third something? */
+bool breaks(float before, float z, float next, float behind, bool is_next)
 {
-    return abs(next - z) > break_limit(before, z, next, behind) || next > 0.5 * NOTHING;
+    return abs(next - z) > break_limit(before, z, next, behind) || !is_next;
 }
 
-/* View z of READ texels of a line and of the next one, from a texel on. */
-void read_lines(bool vertical, ivec2 first, out vec2 z[READ])
+/* View z of READ texels of a line and of the next one, from a texel on, and where it is
+ * something. */
+void read_lines(bool vertical, vec2 first, out vec2 z[READ], out bvec2 there[READ])
 {
     if (vertical) {
         [[unroll]] for (int k = 0; k < READ; k += 2) {
-            vec4 left = gather_view_z(first + ivec2(0, k)),
-                 right = gather_view_z(first + ivec2(1, k));
+            vec4 left = gather_view_z(first + vec2(0.0, k)),
+                 right = gather_view_z(first + vec2(1.0, k));
             z[k] = vec2(left.w, right.w);
             z[k + 1] = vec2(left.x, right.x);
         }
     } else {
         const int next = int(BLOCKS);
         [[unroll]] for (int k = 0; k < next; ++k) {
-            vec4 two = gather_view_z(first + ivec2(k, 0)),
-                 third = gather_view_z(first + ivec2(k + 2 * next, 0));
+            vec4 two = gather_view_z(first + vec2(k, 0.0)),
+                 third = gather_view_z(first + vec2(k + 2 * next, 0.0));
             z[k] = two.wx;
             z[k + next] = two.zy;
             z[k + 2 * next] = third.wx;
         }
     }
-    [[unroll]] for (int k = 0; k < READ; ++k)
-        z[k] = mix(vec2(NOTHING), z[k], greaterThan(z[k], vec2(0.0)));
+    [[unroll]] for (int k = 0; k < READ; ++k) {
+        there[k] = greaterThan(z[k], vec2(0.0));
+        z[k] = mix(vec2(NOTHING), z[k], there[k]);
+    }
 }
 
 void find_breaks(Lines l, int thread, ivec2 low, ivec2 high)
@@ -91,11 +94,13 @@ void find_breaks(Lines l, int thread, ivec2 low, ivec2 high)
         int line = 2 * (i & (1 << pairs) - 1), step = RUN * (i >> pairs);
         int along = (l.word * WORD << l.shift) + step;
         vec2 z[READ];
-        read_lines(l.vertical, low + texel_of(l, along - 1, l.first + line), z);
+        bvec2 there[READ];
+        read_lines(l.vertical, vec2(low + texel_of(l, along - 1, l.first + line)), z, there);
         uvec2 broken = uvec2(0u), nearer = uvec2(0u);
         [[unroll]] for (int k = 0; k < RUN; ++k)
-            broken |= uvec2(breaks(z[k].x, z[k + 1].x, z[k + 2].x, z[k + 3].x) ? 1u << k : 0u,
-                            breaks(z[k].y, z[k + 1].y, z[k + 2].y, z[k + 3].y) ? 1u << k : 0u);
+            broken |= uvec2(
+                breaks(z[k].x, z[k + 1].x, z[k + 2].x, z[k + 3].x, there[k + 2].x) ? 1u << k : 0u,
+                breaks(z[k].y, z[k + 1].y, z[k + 2].y, z[k + 3].y, there[k + 2].y) ? 1u << k : 0u);
         [[unroll]] for (int k = RUN; k > 0; --k)
             nearer = nearer << 1 | floatBitsToUint(z[k + 1] - z[k]) >> 31;
         /* Beyond the last texel nothing breaks. */

@@ -35,7 +35,7 @@ struct Corner {
 void load_corners(ivec2 first, out Corner corners[2][2])
 {
     vec2 middle = vec2(first) + 1.0;
-    vec4 left = gather_view_z(first), right = gather_view_z(first + ivec2(1, 0));
+    vec4 left = gather_view_z(vec2(first)), right = gather_view_z(vec2(first) + vec2(1.0, 0.0));
     vec4 z = vec4(left.x, right.xw, left.w); /* as a gather of neighbours has them */
     vec4 open = vec4(0.0);
     if (!BENT_NORMALS)
@@ -47,8 +47,7 @@ void load_corners(ivec2 first, out Corner corners[2][2])
             if (BENT_NORMALS)
                 c.v = textureLod(sampler2D(half_image, nearest), vec2(at) + 0.5, 0.0);
             c.v.w -= 1.0;
-            if (c.z == BACKGROUND_Z)
-                c.v = OPEN; /* nobody has written there */
+            c.v = z[GATHERED[y][x]] > 0.0 ? c.v : OPEN; /* nobody has written there */
             if (NORMAL_POWER > 0.0)
                 c.normal =
                     stored_normal(min(2 * at, unpack_texel(params.image_valid.y) - 1));
@@ -100,10 +99,10 @@ vec4 between_four(Corner corners[2][2], ivec2 texel, float z, vec2 slope)
     return weights > 0.0 ? sum / weights : OPEN;
 }
 
-void put(ivec2 texel, float z, vec4 v)
+void put(ivec2 texel, bool background, vec4 v)
 {
     if (in_rect(texel, here.rect))
-        finish(texel, vec4(v.xyz, v.w + 1.0), z == 0.0);
+        finish(texel, vec4(v.xyz, v.w + 1.0), background);
 }
 
 void main()
@@ -113,22 +112,22 @@ void main()
           last = texel + 1;
     Corner corners[2][2];
     load_corners(first, corners);
-    vec4 depth = textureGather(sampler2D(depth_image, nearest), vec2(texel) + 1.0);
+    vec2 at = vec2(texel); /* texels to come are constants away from it */
+    vec4 depth = textureGather(sampler2D(depth_image, nearest), at + 1.0);
     float right_z = view_z_of(depth[GATHERED[0][1]], right),
           below_z = view_z_of(depth[GATHERED[1][0]], below),
           last_z = view_z_of(depth[GATHERED[1][1]], last);
     /* Beside the last: what is not valid is background. */
     ivec2 far_x = last + ivec2(1, 0), far_y = last + ivec2(0, 1);
-    float far_x_depth = textureLod(sampler2D(depth_image, nearest), vec2(far_x) + 0.5, 0.0).x,
-          far_y_depth = textureLod(sampler2D(depth_image, nearest), vec2(far_y) + 0.5, 0.0).x,
+    float far_x_depth = textureLod(sampler2D(depth_image, nearest), at + vec2(2.5, 1.5), 0.0).x,
+          far_y_depth = textureLod(sampler2D(depth_image, nearest), at + vec2(1.5, 2.5), 0.0).x,
           far_x_z = in_rect(far_x, params.image_valid) ? view_z_of(far_x_depth, far_x) : 0.0,
           far_y_z = in_rect(far_y, params.image_valid) ? view_z_of(far_y_depth, far_y) : 0.0;
 
-    float first_z = corners[0][0].z;
-    put(texel, first_z == BACKGROUND_Z ? 0.0 : first_z, corners[0][0].v);
-    put(right, right_z, between_two(corners[0][0], corners[0][1], right, right_z));
-    put(below, below_z, between_two(corners[0][0], corners[1][0], below, below_z));
+    put(texel, corners[0][0].z == BACKGROUND_Z, corners[0][0].v);
+    put(right, right_z == 0.0, between_two(corners[0][0], corners[0][1], right, right_z));
+    put(below, below_z == 0.0, between_two(corners[0][0], corners[1][0], below, below_z));
     vec2 slopes = vec2(local_slope(surface_z(below_z), last_z, surface_z(far_x_z)),
                        local_slope(surface_z(right_z), last_z, surface_z(far_y_z)));
-    put(last, last_z, between_four(corners, last, last_z, slopes));
+    put(last, last_z == 0.0, between_four(corners, last, last_z, slopes));
 }

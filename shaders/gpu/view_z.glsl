@@ -61,10 +61,12 @@ float view_z_beside(ivec2 texel, ivec2 offset)
     return load_from(view_z_image, at.x, at.y);
 }
 
-/* Of a texel, the fourth to its right, and those below them, as textureGather has them. */
-vec4 gather_view_z(ivec2 texel)
+/* Of a whole texel, the fourth to its right, and those below them, as textureGather has them. */
+vec4 gather_view_z(vec2 texel)
 {
-    return textureGather(sampler2D(view_z_image, nearest), vec2(view_z_place(texel)) + 1.0);
+    vec2 at = place_of(texel) + vec2(1.0, 0.5);
+    at.x += fract(at.x) * params.view_z_pitch;
+    return textureGather(sampler2D(view_z_image, nearest), at);
 }
 
 #endif
