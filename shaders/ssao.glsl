@@ -72,9 +72,9 @@ vec3 stored_or_own(ivec2 texel, vec3 own, vec3 center)
     stored = to_view(stored);
     float behind = ORTHOGRAPHIC ? stored.z : dot(stored, center);
     bool away = behind > 0.0;
-    bool trust = away ? dot(stored, own) < 0.0 : behind < 0.0;
+    bool trust = is_direction(length2) && (!away || dot(stored, own) < 0.0);
     stored *= away ? -scale : scale;
-    return trust && is_direction(length2) ? stored : own;
+    return trust ? stored : own;
 }
 
 /* What is not seen, background, is open. */
