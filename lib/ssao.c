@@ -29,8 +29,7 @@ void vkao_ssao_plan(struct vkao_program *program)
 }
 
 /* What vkao_constants says of inverse_unit. */
-static void set_units(const struct vkao_recording *r, const vkao_effect_info *effect, bool is_given,
-                      struct vkao_constants *out)
+static void set_units(const struct vkao_recording *r, bool is_given, struct vkao_constants *out)
 {
     const float gap = out->thickness_gap, widths = (float)VKAO_VBAO_WIDTHS, unit = gap / widths;
     out->inverse_unit = out->inverse_radius * unit;
@@ -70,7 +69,7 @@ void vkao_ssao_constants(const struct vkao_recording *r, const vkao_params *para
         is_vbao ? (float)VKAO_VBAO_THICKNESS_BASE / share : thickness * (float)VKAO_THICKNESS_BASE;
     out->thickness_slope = is_vbao ? (float)VKAO_VBAO_THICKNESS_SLOPE / share
                                    : thickness * (float)VKAO_THICKNESS_SLOPE;
-    set_units(r, effect, is_given, out);
+    set_units(r, is_given, out);
     if (vkao_has_thickness(effect)) /* in the last bits of view z */
         out->depth_error[effect->projection == VKAO_PROJECTION_ORTHOGRAPHIC] +=
             (float)VKAO_THICKNESS_DEPTH_ERROR *
