@@ -48,15 +48,17 @@ def folder(name):
     return path
 
 
-def install(name="library", *options):
-    """Builds the library alone and installs it; what an earlier run built is used."""
-    build = os.path.join(WORK, name)
-    if not os.path.exists(os.path.join(build, "build.ninja")):
-        execute([MESON, "setup", build, SOURCE, f"--prefix={PREFIX}", "-Dtools=false",
-                 "-Ddefault_library=both", "-Dwerror=true", *options])
+def install(prefix=PREFIX, libdir=None, includedir="include"):
+    """Builds the library alone and installs it; what was built before is used."""
+    build = os.path.join(WORK, "library")
+    # What meson takes by itself, said in full: another folder may have been asked for before.
+    libdir = libdir or "/".join(["lib", *execute(["cc", "-print-multiarch"]).stdout.split()])
+    again = ["--reconfigure"] if os.path.exists(os.path.join(build, "build.ninja")) else []
+    execute([MESON, "setup", build, SOURCE, *again, f"--prefix={prefix}", f"-Dlibdir={libdir}",
+             f"-Dincludedir={includedir}", "-Dtools=false", "-Ddefault_library=both",
+             "-Dwerror=true"])
     execute([MESON, "compile", "-C", build])
     execute([MESON, "install", "-C", build, "--no-rebuild"])
-    return build
 
 
 def installed(pattern):
@@ -206,12 +208,8 @@ def folders_that_lie_apart_are_found():
     """Library and headers outside the prefix, all of them with spaces in their names."""
     need("pkg-config", "cmake")
     root = folder("lies apart")
-    build = os.path.join(root, "build")
     library = os.path.join(root, "the library")
-    execute([MESON, "setup", build, SOURCE, f"--prefix={os.path.join(root, 'the prefix')}",
-             f"-Dlibdir={library}", f"-Dincludedir={os.path.join(root, 'the headers')}",
-             "-Dtools=false", "-Ddefault_library=shared"])
-    execute([MESON, "install", "-C", build])
+    install(os.path.join(root, "the prefix"), library, os.path.join(root, "the headers"))
     flags = execute(["pkg-config", "--cflags", "--libs", "vkao"],
                     env={"PKG_CONFIG_PATH": os.path.join(library, "pkgconfig")}).stdout
     output = os.path.join(root, "smoke")
