@@ -16,10 +16,8 @@ layout(push_constant) uniform Block { vkao_dispatch here; };
 layout(binding = VKAO_BINDING_VIEW_Z_WRITE) uniform writeonly image2D view_z_image;
 #include "columns.glsl"
 #include "depth.glsl"
+#include "gathered.glsl"
 layout(binding = VKAO_BINDING_NEAREST) uniform sampler nearest;
-
-/* Where a gather has its texels, by y and x. */
-const int GATHERED[2][2] = int[2][2](int[2](3, 2), int[2](0, 1));
 
 vec4 gather_depths(ivec2 texel)
 {

@@ -60,23 +60,6 @@ Visibility visibility(ivec2 texel, vec3 position, vec3 normal, Plane plane);
 Visibility visibility(ivec2 texel, vec3 position, vec3 normal);
 #endif
 
-/* trusted_normal of what is stored, in fewer operations: nothing that only decides by its sign has
- * to be of unit length. */
-vec3 stored_or_own(ivec2 texel, vec3 own, vec3 center)
-{
-    if (NORMAL_ENCODING == VKAO_GLSL_NORMALS_FROM_DEPTH)
-        return own;
-    vec3 stored = unpack_direction(texelFetch(normals_image, texel << GRID_SHIFT, 0).xyz,
-                                   NORMAL_ENCODING);
-    float length2 = dot(stored, stored), scale = inversesqrt(length2);
-    stored = to_view(stored);
-    float behind = ORTHOGRAPHIC ? stored.z : dot(stored, center);
-    bool away = behind > 0.0;
-    bool trust = is_direction(length2) && (!away || dot(stored, own) < 0.0);
-    stored *= away ? -scale : scale;
-    return trust ? stored : own;
-}
-
 /* What is not seen, background, is open. */
 Visibility shade(ivec2 texel)
 {
@@ -87,7 +70,8 @@ Visibility shade(ivec2 texel)
     vec3 position = view_position(vec2(texel), z);
 #ifdef VKAO_PLANE
     Facet own = facet_of(texel, z);
-    vec3 normal = stored_or_own(texel, own.normal, view_position(vec2(texel), 1.0));
+    vec3 normal = trusted_normal(stored_view_normal(texel), own.normal,
+                                 view_position(vec2(texel), 1.0));
     v = visibility(texel, position, normal, plane_of(own, normal));
 #else
     v = visibility(texel, position, view_normal(texel, position));

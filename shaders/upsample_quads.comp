@@ -16,11 +16,9 @@ layout(push_constant) uniform Block { vkao_dispatch here; };
 layout(binding = VKAO_BINDING_SOURCE) uniform texture2D half_image;
 #include "view.glsl"
 #include "depth.glsl"
+#include "gathered.glsl"
 #include "surface.glsl"
 #include "finish.glsl"
-
-/* Where a gather has its texels, by y and x. */
-const int GATHERED[2][2] = int[2][2](int[2](3, 2), int[2](0, 1));
 
 /* Of a lone texel before the sky: open, towards the eye. */
 const vec4 OPEN = vec4(0.0, 0.0, -1.0, 0.0);

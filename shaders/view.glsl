@@ -12,27 +12,16 @@
 
 layout(binding = VKAO_BINDING_NORMALS) uniform texture2D normals_image;
 
-/* A stored direction in its own space, of any length. */
-vec3 unpack_direction(vec3 n, uint encoding)
+/* A stored direction in its own space, unit length; zero if there is none to trust: none given, not
+ * finite, or shorter than 0.5, which is what averaging over an edge leaves. */
+vec3 decode_direction(vec3 n, uint encoding)
 {
     if (encoding == VKAO_GLSL_NORMALS_XYZ_UNORM || encoding == VKAO_GLSL_NORMALS_OCT_UNORM)
         n = n * 2.0 - 1.0;
-    return encoding >= VKAO_GLSL_NORMALS_OCT_SNORM ? decode_octahedral(n.xy) : n;
-}
-
-/* Is it one to trust? Not if it is not finite, or shorter than 0.5, which is what averaging over an
- * edge leaves. */
-bool is_direction(float length2)
-{
-    return length2 >= 0.25 && length2 < 3.0e38;
-}
-
-/* The same of unit length; zero if there is none to trust. */
-vec3 decode_direction(vec3 n, uint encoding)
-{
-    n = unpack_direction(n, encoding);
+    if (encoding >= VKAO_GLSL_NORMALS_OCT_SNORM)
+        n = decode_octahedral(n.xy);
     float length2 = dot(n, n);
-    return is_direction(length2) ? n * inversesqrt(length2) : vec3(0.0);
+    return length2 >= 0.25 && length2 < 3.0e38 ? n * inversesqrt(length2) : vec3(0.0);
 }
 
 /* texel is the image's, also where the grid is coarser. */

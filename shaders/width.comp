@@ -138,24 +138,6 @@ uint run_of(Ends e, uint most, uint own, uint between)
     return ahead < own ? SHARES * min(between, behind) : shares;
 }
 
-/* with_thickness of thickness.glsl, in fewer operations. texel: its size in radii; share: that of a
- * step; all: shares, if nothing ends. */
-float with_width(float z, uvec2 along, vec2 texel, vec2 share, uint all)
-{
-    const float LENGTH = VKAO_VBAO_THICKNESS_LENGTH, WIDTH = VKAO_VBAO_THICKNESS_WIDTH;
-    const int HALF = 1 << (THICKNESS_SHIFT - 1);
-    const int MOST = floatBitsToInt(VKAO_VBAO_THICKNESS_WIDE) - VKAO_THICKNESS_LEAST_BITS + HALF >>
-                     THICKNESS_SHIFT;
-    vec2 widths = texel + share * vec2(along);
-    float width = WIDTH * (1.0 - LENGTH) * min(widths.x, widths.y) +
-                  WIDTH * LENGTH * max(widths.x, widths.y);
-    width *= along.x + along.y == all ? VKAO_VBAO_THICKNESS_WIDER : 1.0;
-    width *= ORTHOGRAPHIC ? 1.0 : z;
-    int code = floatBitsToInt(width) - VKAO_THICKNESS_LEAST_BITS + HALF >> THICKNESS_SHIFT;
-    code = min(clamp(code, 0, MOST), floatBitsToInt(z)); /* background stays 0 */
-    return intBitsToFloat(floatBitsToInt(z) & ~THICKNESS_MASK | code);
-}
-
 void main()
 {
     ivec2 low = unpack_texel(params.valid.x), size = unpack_texel(params.valid.y) - low;
@@ -180,17 +162,13 @@ void main()
         row_ends[i] = ends_of(rows, i, bit.x, next.x);
         column_ends[i] = ends_of(columns, i, bit.y, next.y);
     }
-    vec2 size_of_texel = params.inverse_radius * abs(params.unproject.xy);
-    vec2 share =
-        size_of_texel * vec2(ivec2(1) << reach.shift) * (1.0 / VKAO_VBAO_WIDTH_SHARES);
-    uint all = uint(2 * VKAO_VBAO_WIDTH_SHARES * (reach.steps.x + reach.steps.y));
     [[unroll]] for (int i = 0; i < 4; ++i) {
         int x = i & 1, y = i >> 1;
         uint along_x = run_of(ends_of_texel(row_ends[y], x == 1, 1u - own.x), uint(reach.steps.x),
                               own.x, steps_between(row_ends[y])),
              along_y = run_of(ends_of_texel(column_ends[x], y == 1, 1u - own.y),
                               uint(reach.steps.y), own.y, steps_between(column_ends[x]));
-        float thick = with_width(z[y][x], uvec2(along_x, along_y), size_of_texel, share, all);
-        imageStore(view_z_image, places[y][x], vec4(thick));
+        imageStore(view_z_image, places[y][x],
+                   vec4(with_thickness(z[y][x], int(along_x), int(along_y), reach)));
     }
 }
