@@ -285,6 +285,32 @@ static void the_sky_is_open_and_hides_nothing(void **state)
     }
 }
 
+/* Bars of one texel in one plane, before the sky: depth alone says how they face, though none has a
+ * neighbour beside it. */
+static void lone_columns_face_as_their_rows_do(void **state)
+{
+    (void)state;
+    enum { BARS_EVERY = 4 };
+    const struct scene scene = {{{SHAPE_PLANE, {0.0, 0.0, 5.0}, {0.0, 0.0, -1.0}}}};
+    const struct lens lens = lens_perspective(0.6, 0.45);
+    for (int method = 0; method < METHODS; ++method) {
+        struct picture p;
+        make(&p, method, VKAO_STAGE_SSAO, 80, 60, &scene, &lens);
+        p.view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
+        p.formats[SLOT_NORMALS] = VK_FORMAT_UNDEFINED;
+        for (size_t t = 0; t < picture_texels(&p); ++t)
+            if (t % p.width % BARS_EVERY != 0)
+                p.values[SLOT_DEPTH][t] = (double)INFINITY;
+        picture_run(&p);
+        double darkest = 1.0;
+        for (size_t t = 0; t < picture_texels(&p); ++t)
+            darkest = fmin(darkest, p.values[SLOT_AO][t]);
+        print_message("    %-10s darkest %.4f\n", names[method], darkest);
+        assert_true(darkest >= 0.998);
+        picture_free(&p);
+    }
+}
+
 /* A camera that moves by fractions of a texel must not make the picture breathe. */
 static void subpixel_motion_does_not_flicker(void **state)
 {
@@ -453,6 +479,7 @@ int main(void)
         gpu_test(normals_past_the_outline_do_not_darken),
         gpu_test(walls_behind_thin_things_are_open),
         gpu_test(the_sky_is_open_and_hides_nothing),
+        gpu_test(lone_columns_face_as_their_rows_do),
         gpu_test(subpixel_motion_does_not_flicker),
         gpu_test(no_pattern_of_the_noise_is_left),
         gpu_test(ao_is_not_clamped_before_the_blur),
