@@ -87,7 +87,7 @@ CORNER = [((-50, 3.5, -50), (50, 9, 50)), ((-50, -50, -12), (50, 50, -9)),
 
 def with_box(ray, low, high, axes, z, normal):
     """Depth and normals with a box between two corners before them. ray: along the box's axes."""
-    # Whole planes: numpy takes ten times as long along rows of three.
+    # Whole planes: numpy takes three times as long along rows of three.
     ray = np.moveaxis(ray, -1, 0).copy()
     low, high = low[:, None, None], high[:, None, None]
     with np.errstate(divide='ignore', invalid='ignore'):
