@@ -24,20 +24,33 @@ struct frequency {
     double x, y; /* cycles per texel */
 };
 
-/* Fourier transform of the middle of the image under a raised cosine. */
+/* A wave along one axis of the window, under a raised cosine. */
+static void wave_along(double cycles, double re[SIZE], double im[SIZE])
+{
+    for (int i = 0; i < SIZE; ++i) {
+        const double weight = pow(sin(pi * (i + 0.5) / SIZE), 2.0), turn = 2.0 * pi * cycles * i;
+        re[i] = weight * cos(turn);
+        im[i] = weight * sin(turn);
+    }
+}
+
+/* Fourier transform of the middle of the image: along rows, then along the column of these. */
 static void transform(const double *image, struct frequency f, double *re, double *im)
 {
     const size_t x0 = (WIDTH - SIZE) / 2, y0 = (HEIGHT - SIZE) / 2;
+    double x_re[SIZE], x_im[SIZE], y_re[SIZE], y_im[SIZE];
+    wave_along(f.x, x_re, x_im);
+    wave_along(f.y, y_re, y_im);
     *re = *im = 0.0;
     for (size_t y = 0; y < SIZE; ++y) {
-        double row = pow(sin(pi * ((double)y + 0.5) / SIZE), 2.0);
+        double row_re = 0.0, row_im = 0.0;
         for (size_t x = 0; x < SIZE; ++x) {
-            double w = row * pow(sin(pi * ((double)x + 0.5) / SIZE), 2.0);
-            double turn = 2.0 * pi * (f.x * (double)x + f.y * (double)y);
-            double v = w * image[(y0 + y) * WIDTH + x0 + x];
-            *re += v * cos(turn);
-            *im += v * sin(turn);
+            const double v = image[(y0 + y) * WIDTH + x0 + x];
+            row_re += v * x_re[x];
+            row_im += v * x_im[x];
         }
+        *re += row_re * y_re[y] - row_im * y_im[y];
+        *im += row_re * y_im[y] + row_im * y_re[y];
     }
 }
 

@@ -17,7 +17,7 @@ static double horizon(const struct ref_slice *s, double side)
     for (uint32_t t = 0; t < s->params->step_count; ++t) {
         if (!ref_slice_sample(s, side, t, (double)s->params->radius, &sample))
             continue;
-        double c = cos(atan2(sample.out, sample.up)) - (double)s->params->bias;
+        double c = sample.up / sample.distance - (double)s->params->bias;
         double w = ref_falloff(s->params, sample.distance);
         best = fmax(best, tangent * (1.0 - w) + c * w);
     }

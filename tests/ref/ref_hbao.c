@@ -13,12 +13,13 @@ static double visibility(const struct ref_scene *scene, const struct ao_ssao *pa
                          const double p[3], const double n[3])
 {
     double occluded = 0.0;
+    struct ref_slice slice;
     for (uint32_t i = 0; i < 2 * params->slice_count; ++i) {
-        struct ref_slice slice;
         struct ref_sample sample;
         const double side = i % 2 ? -1.0 : 1.0;
         double horizon = asin((double)params->bias);
-        ref_slice_init(&slice, scene, params, x, y, p, n, i / 2);
+        if (i % 2 == 0)
+            ref_slice_init(&slice, scene, params, x, y, p, n, i / 2);
         for (uint32_t t = 0; t < params->step_count; ++t) {
             if (!ref_slice_sample(&slice, side, t, (double)params->radius, &sample))
                 continue;

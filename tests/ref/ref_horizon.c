@@ -83,6 +83,12 @@ void ref_slice_init(struct ref_slice *slice, const struct ref_scene *scene,
     slice->guard = 2.0 * error / fabs(slice->to_eye[2]);
     slice->noise = ref_noise(x, y, params->slice_count, params->noise_index);
     ref_slice_turn(slice, pi * (k + slice->noise.turn) / params->slice_count);
+    double from[2], to[2];
+    const double unit[3] = {p[0] + slice->direction[0], p[1] + slice->direction[1], p[2]};
+    ref_view_project(&scene->view, p, from);
+    ref_view_project(&scene->view, unit, to);
+    for (int i = 0; i < 2; ++i)
+        slice->per_unit[i] = to[i] - from[i];
 }
 
 /* Distances crowd towards the point, but lie at least 1 + least t texels out, and none farther than
@@ -95,12 +101,8 @@ static void step_texel(const struct ref_slice *s, double side, uint32_t step, do
     double linear = is_vbao ? VKAO_VBAO_STEP_LINEAR : VKAO_STEP_LINEAR;
     double least = is_vbao ? VKAO_VBAO_STEP_LEAST : VKAO_STEP_LEAST;
     double q = (step + s->noise.jitter) / s->params->step_count;
-    double from[2], to[2];
-    const double unit[3] = {s->p[0] + s->direction[0], s->p[1] + s->direction[1], s->p[2]};
-    ref_view_project(&s->scene->view, s->p, from);
-    ref_view_project(&s->scene->view, unit, to);
-    double per_unit[2] = {to[0] - from[0], to[1] - from[1]};
-    double length = hypot(per_unit[0], per_unit[1]);
+    const double *per_unit = s->per_unit;
+    double length = sqrt(per_unit[0] * per_unit[0] + per_unit[1] * per_unit[1]);
     double farthest = VKAO_STEP_FARTHEST * fmax(s->scene->width, s->scene->height) / length;
     double distance = fmin(reach, farthest) * q * (linear + (1.0 - linear) * q);
     double texels = distance * length;
@@ -129,7 +131,7 @@ bool ref_slice_sample(const struct ref_slice *s, double side, uint32_t step, dou
     /* The depth may be off by a step of its format. */
     sample->up =
         ref_dot(sample->v, s->to_eye) + off * ref_dot(s->plane, s->across) / facing - s->guard;
-    sample->distance = hypot(sample->out, sample->up);
+    sample->distance = sqrt(sample->out * sample->out + sample->up * sample->up);
     /* Far off the axis a texel beside the slice may lie behind the shaded point. */
     return known && sample->out > 0.0;
 }

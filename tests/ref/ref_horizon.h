@@ -19,8 +19,9 @@ struct ref_slice {
     double outward[3], across[3];           /* orthonormal with to_eye */
     double length, angle;                   /* L and n of the projected normal */
     double fall;                            /* of that plane, against V, per length outwards */
-    double steepest; /* cosine to the eye at which it stops getting steeper */
-    double guard;    /* how far a height may be off */
+    double steepest;    /* cosine to the eye at which it stops getting steeper */
+    double guard;       /* how far a height may be off */
+    double per_unit[2]; /* texels of a scene unit along the direction, as deep as p */
 };
 
 /* Slice k of params->slice_count through texel (x, y), turned by the noise. */

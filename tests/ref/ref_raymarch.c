@@ -13,7 +13,8 @@
 static const double golden_angle = 2.39996322972865332, two_pi = 6.28318530717958647692;
 
 struct ray {
-    double p[3], n[3], direction[3], jitter;
+    double p[3], n[3], eye[3], direction[3], jitter;
+    double guard; /* ref_guard of p */
 };
 
 /* The ray is hit where it is under the scene's surface, which stands over the tangent plane, by
@@ -21,10 +22,10 @@ struct ray {
 static bool hit(const struct ref_scene *layer, const struct ao_ssao *params, const struct ray *ray,
                 const double point[3])
 {
-    double surface[3], v[3], eye[3], under[3], at[2], radius = (double)params->radius;
+    const double *eye = ray->eye, radius = (double)params->radius;
+    double surface[3], v[3], under[3], at[2];
     if (!ref_scene_lookup(layer, point, surface))
         return false;
-    ref_view_eye(&layer->view, ray->p, eye);
     for (int i = 0; i < 3; ++i) {
         v[i] = surface[i] - ray->p[i];
         under[i] = surface[i] - point[i];
@@ -40,8 +41,7 @@ static bool hit(const struct ref_scene *layer, const struct ao_ssao *params, con
     /* What stands behind the point, as the eye sees it, may be higher over the tangent plane and
      * hides nothing. */
     double behind = ref_dot(eye, under);
-    return ref_dot(ray->n, under) > ref_guard(layer, params, ray->p[2]) && behind > 0.0 &&
-           behind < thickness;
+    return ref_dot(ray->n, under) > ray->guard && behind > 0.0 && behind < thickness;
 }
 
 static double first_hit(const struct ref_scene *scene, const struct ao_ssao *params,
@@ -64,6 +64,7 @@ static void visibility(const struct ref_scene *scene, const struct ao_ssao *para
                        const double p[3], const double n[3], double out[4])
 {
     const struct ref_noise noise = ref_noise(x, y, 1, params->noise_index);
+    const double guard = ref_guard(scene, params, p[2]);
     double t[3], b[3];
     ref_basis(n, t, b);
     out[0] = out[1] = out[2] = out[3] = 0.0;
@@ -71,7 +72,8 @@ static void visibility(const struct ref_scene *scene, const struct ao_ssao *para
         /* Malley's method: uniform in the disk, lifted onto the hemisphere. */
         double r = sqrt((k + noise.jitter) / params->sample_count), height = sqrt(1.0 - r * r);
         double angle = k * golden_angle + two_pi * noise.turn;
-        struct ray ray = {.jitter = ref_fract(ref_golden(k) + noise.jitter)};
+        struct ray ray = {.jitter = ref_fract(ref_golden(k) + noise.jitter), .guard = guard};
+        ref_view_eye(&scene->view, p, ray.eye);
         for (int i = 0; i < 3; ++i) {
             ray.p[i] = p[i];
             ray.n[i] = n[i];

@@ -46,18 +46,18 @@ static double literal(const struct ref_scene *scene, const struct ao_ssao *param
 }
 
 /* 1 if the scene hides the point; where it is out of reach or unknown, what an endless wall would
- * do. */
+ * do. guard: ref_guard. */
 static double hidden(const struct ref_scene *scene, const struct ao_ssao *params, const double p[3],
-                     const double n[3], const double offset[3])
+                     const double n[3], const double offset[3], double guard)
 {
-    double height = ref_dot(n, offset), bias = ref_guard(scene, params, p[2]);
+    double height = ref_dot(n, offset);
     double point[3] = {p[0] + offset[0], p[1] + offset[1], p[2] + offset[2]}, q[3];
     double by_plane = height < 0.0 ? 1.0 : 0.0;
     if (!ref_scene_lookup(scene, point, q))
         return by_plane;
     double v[3] = {q[0] - p[0], q[1] - p[1], q[2] - p[2]};
     double weight = ref_range_weight(params, v[2]);
-    double by_scene = ref_dot(n, v) > height + bias ? 1.0 : 0.0;
+    double by_scene = ref_dot(n, v) > height + guard ? 1.0 : 0.0;
     return weight * by_scene + (1.0 - weight) * by_plane;
 }
 
@@ -68,14 +68,14 @@ static double rescaled(const struct ref_scene *scene, const struct ao_ssao *para
     const struct ref_noise noise = ref_noise(x, y, 1, params->noise_index);
     double turn = two_pi * noise.turn, shift = noise.jitter;
     uint32_t pairs = (params->sample_count + 1) / 2;
-    double blocked = 0.0;
+    double blocked = 0.0, guard = ref_guard(scene, params, p[2]);
     for (uint32_t k = 0; k < pairs; ++k) {
         double z = (k + shift) / pairs, angle = k * golden_angle + turn;
         double length = ref_point_length(params, ref_fract(ref_golden(k) + shift));
         double a[3] = {length * sqrt(1.0 - z * z) * cos(angle),
                        length * sqrt(1.0 - z * z) * sin(angle), length * z};
         double b[3] = {-a[0], -a[1], -a[2]};
-        blocked += hidden(scene, params, p, n, a) + hidden(scene, params, p, n, b);
+        blocked += hidden(scene, params, p, n, a, guard) + hidden(scene, params, p, n, b, guard);
     }
     return fmin(1.0, 2.0 * (1.0 - blocked / (2.0 * pairs)));
 }

@@ -8,6 +8,7 @@
 #include "ref_width.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { SECTORS = 31 };
 static const double half_pi = 1.57079632679489661923;
@@ -20,25 +21,45 @@ static double mass_below(double n, double c)
 }
 
 /* On its own side a slice runs from the tangent plane, theta = n + pi/2, up to V, theta = 0. */
+struct measure {
+    double n, low, all;
+};
+
+static struct measure measure_of(double n)
+{
+    const double low = mass_below(n, cos(n + half_pi));
+    return (struct measure){n, low, fmax(mass_below(n, 1.0) - low, 1.0e-4)};
+}
+
+static double share_of(const struct measure *m, double theta)
+{
+    return theta >= m->n + half_pi ? 0.0 : (mass_below(m->n, cos(theta)) - m->low) / m->all;
+}
+
+static int sector_of(const struct measure *m, double theta, double less)
+{
+    if (theta >= m->n + half_pi)
+        return 0;
+    const double sectors = share_of(m, theta) * SECTORS + VKAO_VBAO_ROUND - less;
+    return (int)fmax(0.0, fmin(SECTORS, floor(sectors)));
+}
+
 double ref_vbao_share(double n, double theta)
 {
-    double low = mass_below(n, cos(n + half_pi)), all = mass_below(n, 1.0) - low;
-    if (theta >= n + half_pi)
-        return 0.0;
-    return (mass_below(n, cos(theta)) - low) / fmax(all, 1.0e-4);
+    const struct measure m = measure_of(n);
+    return share_of(&m, theta);
 }
 
 int ref_vbao_sector(double n, double theta, double less)
 {
-    double share = ref_vbao_share(n, theta);
-    if (theta >= n + half_pi)
-        return 0;
-    return (int)fmax(0.0, fmin(SECTORS, floor(share * SECTORS + VKAO_VBAO_ROUND - less)));
+    const struct measure m = measure_of(n);
+    return sector_of(&m, theta, less);
 }
 
 struct side {
     const struct ref_slice *slice;
-    double sign, n, mass;
+    double sign;
+    struct measure measure;
     bool hidden[SECTORS];
     double lost, moment[2]; /* of the measure, and along O and V */
 };
@@ -47,14 +68,14 @@ struct side {
  * yet count. */
 static void hide(struct side *s, double front, double less, double back, double weight)
 {
-    int high = ref_vbao_sector(s->n, front, less), low = ref_vbao_sector(s->n, back, 0.0),
+    int high = sector_of(&s->measure, front, less), low = sector_of(&s->measure, back, 0.0),
         fresh = 0;
     for (int i = low < high ? low : high; i < high; ++i) {
         fresh += !s->hidden[i];
         s->hidden[i] = true;
     }
-    double share = weight * fresh * s->mass / SECTORS;
-    double middle = (cos(front) + fmax(cos(back), cos(s->n + half_pi))) / 2.0;
+    double share = weight * fresh * s->measure.all / SECTORS;
+    double middle = (cos(front) + fmax(cos(back), cos(s->measure.n + half_pi))) / 2.0;
     middle = fmax(-1.0, fmin(1.0, middle));
     s->lost += share;
     s->moment[0] += share * s->sign * sqrt(1.0 - middle * middle);
@@ -81,7 +102,7 @@ static double depth_of(const struct side *s, const struct ref_scene *layer,
     const double radius = (double)params->radius, scale = ref_thickness_scale(params);
     if (first->thickness && layer != first)
         return fmax(scale * radius * ldexp(1.0, -7), VKAO_VBAO_THICKNESS_GIVEN_GAP * unseen);
-    double thickness = ref_width_thickness(layer, radius, p->x, p->y);
+    double thickness = layer->seen[(size_t)p->y * layer->width + (size_t)p->x];
     if (first->thickness)
         return fmax(scale * thickness, VKAO_VBAO_THICKNESS_GIVEN_GAP * unseen);
     thickness *= VKAO_VBAO_THICKNESS_SEEN + VKAO_VBAO_THICKNESS_MISSED / params->step_count;
@@ -140,12 +161,12 @@ static void visibility(const struct ref_scene *scene, const struct ao_ssao *para
     for (int i = 0; i < 3; ++i)
         out[i] = 2.0 / 3.0 * n[i]; /* what an open hemisphere has */
     out[3] = 1.0;
+    struct ref_slice slice;
     for (uint32_t i = 0; i < 2 * params->slice_count; ++i) {
-        struct ref_slice slice;
-        ref_slice_init(&slice, scene, params, x, y, p, n, i / 2);
-        double sign = i % 2 ? -1.0 : 1.0, angle = sign * slice.angle;
-        struct side s = {.slice = &slice, .sign = sign, .n = angle};
-        s.mass = fmax(mass_below(angle, 1.0) - mass_below(angle, cos(angle + half_pi)), 1.0e-4);
+        if (i % 2 == 0)
+            ref_slice_init(&slice, scene, params, x, y, p, n, i / 2);
+        double sign = i % 2 ? -1.0 : 1.0;
+        struct side s = {.slice = &slice, .sign = sign, .measure = measure_of(sign * slice.angle)};
         march(&s);
         double weight = slice.length / params->slice_count;
         out[3] -= weight * s.lost;
@@ -156,11 +177,21 @@ static void visibility(const struct ref_scene *scene, const struct ao_ssao *para
 
 void ref_vbao(const struct ref_scene *scene, const struct ao_ssao *params, double *ao)
 {
-    ref_ssao_directed(scene, params, visibility, ao, NULL);
+    ref_vbao_bent(scene, params, ao, NULL);
 }
 
 void ref_vbao_bent(const struct ref_scene *scene, const struct ao_ssao *params, double *ao,
                    double *bent)
 {
-    ref_ssao_directed(scene, params, visibility, ao, bent);
+    struct ref_scene first = *scene, second;
+    double *seen = ref_width_image(scene, (double)params->radius), *seen_second = NULL;
+    first.seen = seen;
+    if (scene->second) {
+        second = *scene->second;
+        second.seen = seen_second = ref_width_image(scene->second, (double)params->radius);
+        first.second = &second;
+    }
+    ref_ssao_directed(&first, params, visibility, ao, bent);
+    free(seen);
+    free(seen_second);
 }

@@ -43,10 +43,15 @@ bool ref_invert(const double m[16], double out[16])
     return true;
 }
 
+static double row_times(const double m[16], int row, const double p[4])
+{
+    return m[row] * p[0] + m[4 + row] * p[1] + m[8 + row] * p[2] + m[12 + row] * p[3];
+}
+
 static void transform(const double m[16], const double p[4], double out[4])
 {
     for (int row = 0; row < 4; ++row)
-        out[row] = m[row] * p[0] + m[4 + row] * p[1] + m[8 + row] * p[2] + m[12 + row] * p[3];
+        out[row] = row_times(m, row, p);
 }
 
 static void texel_to_ndc(const struct ref_view *view, double x, double y, double ndc[2])
@@ -131,23 +136,32 @@ double ref_view_z(const struct ref_view *view, double x, double y, double stored
     return z > 0.0 && z < view->far_z && isfinite(z) ? z : NAN;
 }
 
+/* Between two points of the texel's ray. References ask for this more than for anything else: what
+ * both points share is found once. */
 void ref_view_position(const struct ref_view *view, double x, double y, double z, double out[3])
 {
-    double ndc[2], a[3], b[3];
+    const double depths[2] = {0.25, 0.75}, *by_depth = &view->inverse[8];
+    double ndc[2], base[4], ends[2][3];
     texel_to_ndc(view, x, y, ndc);
-    unproject(view, ndc, 0.25, a);
-    unproject(view, ndc, 0.75, b);
-    double t = (z - a[2]) / (b[2] - a[2]);
+    transform(view->inverse, (const double[4]){ndc[0], ndc[1], 0.0, 1.0}, base);
+    for (int end = 0; end < 2; ++end) {
+        const double scale = 1.0 / (base[3] + depths[end] * by_depth[3]);
+        for (int i = 0; i < 3; ++i)
+            ends[end][i] = (base[i] + depths[end] * by_depth[i]) * scale;
+        ends[end][2] *= view->forward;
+    }
+    const double t = (z - ends[0][2]) / (ends[1][2] - ends[0][2]);
     for (int i = 0; i < 3; ++i)
-        out[i] = a[i] + t * (b[i] - a[i]);
+        out[i] = ends[0][i] + t * (ends[1][i] - ends[0][i]);
 }
 
 void ref_view_project(const struct ref_view *view, const double p[3], double out[2])
 {
-    double clip[4];
-    transform(view->matrix, (const double[4]){p[0], p[1], view->forward * p[2], 1.0}, clip);
+    const double point[4] = {p[0], p[1], view->forward * p[2], 1.0};
+    const double scale = 0.5 / row_times(view->matrix, 3, point);
     for (int i = 0; i < 2; ++i)
-        out[i] = (clip[i] / clip[3] * 0.5 + 0.5) * view->viewport[2 + i] + view->viewport[i] - 0.5;
+        out[i] = (row_times(view->matrix, i, point) * scale + 0.5) * view->viewport[2 + i] +
+                 view->viewport[i] - 0.5;
 }
 
 void ref_view_eye(const struct ref_view *view, const double p[3], double out[3])

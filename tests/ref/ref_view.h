@@ -32,6 +32,7 @@ struct ref_scene {
      * not above 0 or NAN is unknown. */
     const double *thickness;
     const struct ref_scene *second;
+    const double *seen; /* ref_width_image, for what asks for it more than once a texel */
 };
 
 bool ref_invert(const double m[16], double out[16]);

@@ -4,6 +4,7 @@
 #include "params.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* View z of the k-th texel from (x, y) along an axis. Outside of the valid texels nothing is
@@ -116,4 +117,17 @@ double ref_width_thickness(const struct ref_scene *scene, double radius, int x, 
     if (goes_on)
         thickness *= VKAO_VBAO_THICKNESS_WIDER;
     return radius * coded(fmin(thickness, VKAO_VBAO_THICKNESS_WIDE), false);
+}
+
+double *ref_width_image(const struct ref_scene *scene, double radius)
+{
+    const size_t texels = (size_t)scene->width * scene->height;
+    double *image = malloc(texels * sizeof *image);
+    if (!image)
+        abort();
+    for (size_t i = 0; i < texels; ++i) {
+        const int x = (int)(i % scene->width), y = (int)(i / scene->width);
+        image[i] = isnan(ref_scene_z(scene, x, y)) ? NAN : ref_width_thickness(scene, radius, x, y);
+    }
+    return image;
 }

@@ -8,5 +8,7 @@
 
 /* The thickness that vbao takes from it, in scene units; where thickness is given, that. */
 double ref_width_thickness(const struct ref_scene *scene, double radius, int x, int y);
+/* The same of every texel that has depth, for the caller to free. */
+double *ref_width_image(const struct ref_scene *scene, double radius);
 
 #endif

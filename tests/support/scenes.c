@@ -116,14 +116,15 @@ static double hit_box(const struct shape *shape, const double origin[3], const d
     double enter = -INFINITY, leave = INFINITY;
     int side = 0;
     for (int i = 0; i < 3; ++i) {
-        double a = (shape->center[i] - shape->size[i] - origin[i]) / ray[i];
-        double b = (shape->center[i] + shape->size[i] - origin[i]) / ray[i];
-        /* Parallel rays give infinities of one sign outside the slab, of both signs inside. */
-        if (fmin(a, b) > enter) {
-            enter = fmin(a, b);
-            side = i;
-        }
-        leave = fmin(leave, fmax(a, b));
+        const double scale = 1.0 / ray[i];
+        const double a = (shape->center[i] - shape->size[i] - origin[i]) * scale,
+                     b = (shape->center[i] + shape->size[i] - origin[i]) * scale;
+        /* Parallel rays give infinities of one sign outside the slab, of both signs inside. Not by
+         * fmin, which is a call each time. */
+        const double near = a < b ? a : b, far = a < b ? b : a;
+        side = near > enter ? i : side;
+        enter = near > enter ? near : enter;
+        leave = far < leave ? far : leave;
     }
     for (int i = 0; i < 3; ++i)
         normal[i] = i == side ? 1.0 : 0.0;
