@@ -29,6 +29,19 @@ static void make(struct picture *p, const struct scene *scene, double value)
 
 /* What lies between the two directions has 11 bits: a step of the upper half of [0,1] is 4.9e-4,
  * and some drivers cut rather than round. Intensity and power amplify it. */
+static void check_against_reference(struct picture *p, const char *what)
+{
+    struct ref_scene reference;
+    double *expected = test_alloc(picture_texels(p), sizeof *expected);
+    picture_run(p);
+    picture_reference_scene(p, &reference);
+    ref_blur(&reference, &p->blur, p->view.normal_encoding, p->values[SLOT_NORMALS],
+             p->values[SLOT_NOISY], (double)p->ssao.bias * (double)p->ssao.radius, expected);
+    check_close(what, p->values[SLOT_AO], expected, picture_texels(p), 3e-4, 2e-3, 0.02);
+    ref_scene_free(&reference);
+    free(expected);
+}
+
 static void agrees_with_reference_for_every_parameter(void **state)
 {
     (void)state;
@@ -51,10 +64,8 @@ static void agrees_with_reference_for_every_parameter(void **state)
     for (size_t i = 0; i < sizeof rows / sizeof rows[0]; ++i) {
         for (size_t s = 0; s < sizeof scenes / sizeof scenes[0]; ++s) {
             struct picture p;
-            struct ref_scene reference;
             char what[80];
             make(&p, &scenes[s], -1.0);
-            double *expected = test_alloc(picture_texels(&p), sizeof *expected);
             if (rows[i].orthographic) {
                 struct lens lens = lens_orthographic(1.6, 1.2);
                 picture_render_scene(&p, &scenes[s], &lens, VK_FORMAT_R32_SFLOAT,
@@ -66,16 +77,94 @@ static void agrees_with_reference_for_every_parameter(void **state)
             p.blur.normal_power = rows[i].normal_power;
             p.blur.intensity = rows[i].intensity;
             p.blur.power = rows[i].power;
-            picture_run(&p);
-            picture_reference_scene(&p, &reference);
-            ref_blur(&reference, &p.blur, p.view.normal_encoding, p.values[SLOT_NORMALS],
-                     p.values[SLOT_NOISY], (double)p.ssao.bias * (double)p.ssao.radius, expected);
             snprintf(what, sizeof what, "row %zu, scene %zu", i, s);
-            check_close(what, p.values[SLOT_AO], expected, picture_texels(&p), 3e-4, 2e-3, 0.02);
-            ref_scene_free(&reference);
-            free(expected);
+            check_against_reference(&p, what);
             picture_free(&p);
         }
+    }
+}
+
+/* Normals are compared where both texels have one. What has none counts by depth alone, and so does
+ * all around it. */
+static void texels_without_a_normal_count_by_depth(void **state)
+{
+    (void)state;
+    static const uint32_t radii[] = {3, 6};
+    const struct scene scenes[] = {scene_corner(), scene_open_sky()};
+    for (size_t i = 0; i < 2 * 2; ++i) {
+        struct picture p;
+        char what[80];
+        make(&p, &scenes[i / 2], -1.0);
+        p.blur.radius = radii[i % 2];
+        p.blur.normal_power = 8.0f;
+        for (size_t t = 0; t < picture_texels(&p); ++t)
+            for (size_t c = 0; c < 4 && (t % p.width + 2 * (t / p.width)) % 5 == 0; ++c)
+                p.values[SLOT_NORMALS][t * 4 + c] = 0.0;
+        snprintf(what, sizeof what, "radius %u, scene %zu", radii[i % 2], i / 2);
+        check_against_reference(&p, what);
+        picture_free(&p);
+    }
+}
+
+/* Leaves before the sky: most of a window is background, which gives nothing in either direction,
+ * and is nothing that rows leave to columns. */
+static void lone_texels_before_the_sky_agree_with_reference(void **state)
+{
+    (void)state;
+    static const uint32_t radii[] = {3, 6};
+    const struct scene wall = scene_tilted_plane(30.0, 70.0);
+    for (size_t i = 0; i < 2 * 2; ++i) {
+        struct picture p;
+        uint32_t seed = 77;
+        char what[80];
+        make(&p, &wall, -1.0);
+        p.blur.radius = radii[i % 2];
+        p.blur.normal_power = i / 2 ? 8.0f : 0.0f;
+        for (size_t t = 0; t < picture_texels(&p); ++t) {
+            seed = seed * 1664525u + 1013904223u;
+            if (seed >> 24 < 170)
+                p.values[SLOT_DEPTH][t] = INFINITY;
+        }
+        snprintf(what, sizeof what, "radius %u, %s", radii[i % 2], i / 2 ? "normals" : "depth");
+        check_against_reference(&p, what);
+        picture_free(&p);
+    }
+}
+
+/* Texels need not be as high as they are wide, nor parallel views as wide as things are far:
+ * lengths of rows and of columns differ, and what sharpness is relative to. */
+static void agrees_with_reference_in_oblong_and_narrow_views(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t radius;
+        bool orthographic;
+        double half_width, half_height;
+    } rows[] = {{3, false, 0.6, 0.15},
+                {3, false, 0.15, 0.45},
+                {6, false, 0.6, 0.15},
+                {6, false, 0.15, 0.45},
+                {3, true, 0.4, 1.2}};
+    const struct scene scenes[] = {scene_corner(), scene_sphere_on_plane()};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0] * 2; ++i) {
+        const size_t r = i / 2;
+        const struct lens lens = rows[r].orthographic
+                                     ? lens_orthographic(rows[r].half_width, rows[r].half_height)
+                                     : lens_perspective(rows[r].half_width, rows[r].half_height);
+        struct picture p;
+        char what[80];
+        make(&p, &scenes[i % 2], -1.0);
+        picture_render_scene(&p, &scenes[i % 2], &lens, VK_FORMAT_R32_SFLOAT,
+                             VK_FORMAT_R32G32B32A32_SFLOAT);
+        p.view.normal_encoding = VKAO_NORMALS_FROM_DEPTH;
+        p.blur.radius = rows[r].radius;
+        p.blur.normal_power = 0.0f;
+        p.blur.sharpness = 20.0f;
+        snprintf(what, sizeof what, "radius %u, %s, %g by %g, scene %zu", rows[r].radius,
+                 rows[r].orthographic ? "orthographic" : "perspective", rows[r].half_width,
+                 rows[r].half_height, i % 2);
+        check_against_reference(&p, what);
+        picture_free(&p);
     }
 }
 
@@ -365,6 +454,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         gpu_test(agrees_with_reference_for_every_parameter),
+        gpu_test(texels_without_a_normal_count_by_depth),
+        gpu_test(lone_texels_before_the_sky_agree_with_reference),
+        gpu_test(agrees_with_reference_in_oblong_and_narrow_views),
         gpu_test(depth_edges_do_not_leak),
         gpu_test(normal_edges_do_not_leak),
         gpu_test(narrow_things_take_a_share_of_the_window),

@@ -135,6 +135,68 @@ static void agrees_with_the_reference_at_every_size(void **state)
     }
 }
 
+/* With normals in the blur and on the way back, some of them missing; of a parallel view less wide
+ * than things are far, whose texels are not square. */
+static void agrees_with_the_reference_with_normals_in_the_blur(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t radius;
+        bool orthographic, bent;
+        float normal_power;
+    } rows[] = {{4, false, true, 8.0f}, {3, true, false, 8.0f}, {3, true, true, 0.0f}};
+    const struct scene scenes[] = {scene_corner(), scene_open_sky()};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0] * 2; ++i) {
+        const size_t r = i / 2;
+        const struct lens lens =
+            rows[r].orthographic ? lens_orthographic(0.4, 1.2) : lens_perspective(0.6, 0.45);
+        struct picture p;
+        char what[80];
+        make(&p, 79, 59, &scenes[i % 2], &lens, true);
+        for (size_t t = 0; t < picture_texels(&p); ++t)
+            for (size_t c = 0; c < 4 && (t % p.width + 3 * (t / p.width)) % 7 == 0; ++c)
+                p.values[SLOT_NORMALS][t * 4 + c] = 0.0;
+        p.ssao.method = VKAO_SSAO_GTAO;
+        p.ssao.radius = 0.8f;
+        p.blur.radius = rows[r].radius;
+        p.blur.normal_power = rows[r].normal_power;
+        p.blur.sharpness = rows[r].orthographic ? 20.0f : p.blur.sharpness;
+        if (rows[r].bent)
+            picture_set(&p, SLOT_BENT, VK_FORMAT_R32G32B32A32_SFLOAT, NULL);
+        p.view.bent_encoding = VKAO_NORMALS_XYZ_SNORM;
+        snprintf(what, sizeof what, "row %zu, scene %zu", r, i % 2);
+        check_against_reference(&p, what);
+        picture_free(&p);
+    }
+}
+
+/* The same depths, whatever they are encoded as: what differs is rounding, and by it a sample on
+ * another texel here and there, whose texel the blur shares with its neighbours. */
+static void every_depth_encoding_gives_the_same_ao(void **state)
+{
+    (void)state;
+    const struct scene scene = scene_corner();
+    const struct lens lens = lens_perspective(0.6, 0.45);
+    struct picture p[VKAO_DEPTH_INVERSE_Z + 1];
+    for (int i = 0; i <= VKAO_DEPTH_INVERSE_Z; ++i) {
+        make(&p[i], 79, 59, &scene, &lens, true);
+        p[i].view.depth_encoding = (vkao_depth_encoding)i;
+        picture_render_scene(&p[i], &scene, &lens, VK_FORMAT_R32_SFLOAT,
+                             VK_FORMAT_R32G32B32A32_SFLOAT);
+        p[i].ssao.method = VKAO_SSAO_GTAO;
+        p[i].ssao.radius = 0.8f;
+        picture_run(&p[i]);
+    }
+    for (int i = 0; i <= VKAO_DEPTH_INVERSE_Z; ++i) {
+        char what[80];
+        snprintf(what, sizeof what, "depth encoding %d", i);
+        check_close(what, p[i].values[SLOT_AO], p[VKAO_DEPTH_VIEW_Z].values[SLOT_AO],
+                    picture_texels(&p[i]), 1e-4, 1e-3, 0.02);
+    }
+    for (int i = 0; i <= VKAO_DEPTH_INVERSE_Z; ++i)
+        picture_free(&p[i]);
+}
+
 /* Any split, with odd borders too, and also at full resolution, adds up to the whole, bit for bit.
  * Each part runs in a frame of its own, so that none finds in scratch what another left there. */
 static void split_rects_equal_the_whole(void **state)
@@ -260,6 +322,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         gpu_test(agrees_with_the_reference_at_every_size),
+        gpu_test(agrees_with_the_reference_with_normals_in_the_blur),
+        gpu_test(every_depth_encoding_gives_the_same_ao),
         gpu_test(split_rects_equal_the_whole),
         gpu_test(half_resolution_looks_like_full_resolution),
         gpu_test(depth_edges_do_not_leak),

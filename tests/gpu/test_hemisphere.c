@@ -47,6 +47,28 @@ static void agrees_with_reference_for_every_count_falloff_and_noise(void **state
     }
 }
 
+/* In a corridor with a radius beyond its nearest texels: points behind the eye are seen nowhere,
+ * and hidden by nothing. */
+static void points_behind_the_eye_are_open(void **state)
+{
+    (void)state;
+    static const struct scene corridor = {{
+        {SHAPE_PLANE, {0.0, 0.5, 0.0}, {0.0, -1.0, 0.0}},
+        {SHAPE_PLANE, {0.0, -0.5, 0.0}, {0.0, 1.0, 0.0}},
+        {SHAPE_PLANE, {0.0, 0.0, 4.0}, {0.0, 0.0, -1.0}},
+    }};
+    for (int falloff = 0; falloff < 2; ++falloff) {
+        struct picture p;
+        picture_make(&p, VKAO_STAGE_SSAO, &corridor);
+        p.ssao = *hemisphere();
+        p.ssao.sample_count = 64;
+        p.ssao.falloff = (vkao_falloff)falloff;
+        p.ssao.radius = 3.0f;
+        check_ssao(&p, ref_hemisphere, falloff ? "threshold" : "smooth");
+        picture_free(&p);
+    }
+}
+
 static void agrees_with_reference_for_every_normal_encoding(void **state)
 {
     (void)state;
@@ -81,6 +103,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         gpu_test(agrees_with_reference_for_every_count_falloff_and_noise),
+        gpu_test(points_behind_the_eye_are_open),
         gpu_test(agrees_with_reference_for_every_normal_encoding),
         gpu_test(agrees_with_reference_for_world_space_normals),
         gpu_test(agrees_with_reference_for_every_projection),

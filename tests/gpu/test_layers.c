@@ -196,9 +196,43 @@ static void agrees_with_the_reference(void **state)
     }
 }
 
+/* Half resolution has the thickness and the second layer of the texels whose depth it has: the even
+ * ones. What the others hold makes no difference. */
+static void half_resolution_reads_even_texels(void **state)
+{
+    (void)state;
+    const struct scene scene = scene_beams();
+    for (int i = 0; i < 2 * 2; ++i) {
+        const vkao_thickness_input input = i % 2 ? VKAO_THICKNESS_BACK_DEPTH : VKAO_THICKNESS_GIVEN;
+        const vkao_ssao_method method = i / 2 ? VKAO_SSAO_RAYMARCH : VKAO_SSAO_VBAO;
+        struct picture p[3];
+        for (int k = 0; k < 3; ++k) {
+            p[k] = make(&scene, method, input, true);
+            p[k].half_resolution = true;
+            p[k].ssao.sample_count = 8;
+            for (size_t t = 0; t < picture_texels(&p[k]) && k > 0; ++t) {
+                const bool is_even = t % WIDTH % 2 == 0 && t / WIDTH % 2 == 0;
+                if (is_even == (k == 2)) /* unknown, and nothing */
+                    p[k].values[SLOT_THICKNESS][t] = p[k].values[SLOT_SECOND][t] = 0.0;
+            }
+            picture_run(&p[k]);
+        }
+        check_equal("odd texels hold nothing", p[1].values[SLOT_AO], p[0].values[SLOT_AO],
+                    picture_texels(&p[0]));
+        const struct difference even =
+            difference_of(p[2].values[SLOT_AO], p[0].values[SLOT_AO], picture_texels(&p[0]));
+        print_message("    %s, input %d: without what even texels hold %.4f apart\n",
+                      i / 2 ? "raymarch" : "vbao", (int)input, even.mean);
+        assert_true(even.mean > 0.002);
+        for (int k = 0; k < 3; ++k)
+            picture_free(&p[k]);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {gpu_test(truth_of_thickness_and_layers_pays),
-                                       gpu_test(agrees_with_the_reference)};
+                                       gpu_test(agrees_with_the_reference),
+                                       gpu_test(half_resolution_reads_even_texels)};
     return fixture_run(tests);
 }

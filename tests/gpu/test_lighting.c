@@ -64,6 +64,10 @@ static void make(struct picture *p, bool orthographic, double forward)
 
 static double specular(const struct picture *p, const struct ref_view *view, size_t i)
 {
+    const vkao_normal_encoding encoding =
+        p->view.bent_encoding ? p->view.bent_encoding : VKAO_NORMALS_XYZ_SNORM;
+    const double *direction = &p->values[SLOT_BENT][i * 4],
+                 nothing = encoding == VKAO_NORMALS_XYZ_UNORM ? 0.5 : 0.0;
     double n[3], bent[3], at[3], v[3], ao = p->values[SLOT_AO][i];
     double roughness = p->values[SLOT_SPECULAR][i * 4 + 3];
     if (!ref_normal_decode(p->view.normal_encoding, &p->values[SLOT_NORMALS][i * 4], n))
@@ -71,9 +75,14 @@ static double specular(const struct picture *p, const struct ref_view *view, siz
     ref_view_position(view, (double)(i % p->width), (double)(i / p->width), 1.0, at);
     ref_view_eye(view, at, v);
     n[2] *= view->forward;
+    const double side = ref_dot(n, v) < 0.0 ? -1.0 : 1.0;
+    for (int c = 0; c < 3; ++c)
+        n[c] *= side;
     if (p->composite.specular == VKAO_SPECULAR_FROM_AO)
         return ref_specular_from_ao(ao, roughness, n, v);
-    assert_true(ref_normal_decode(VKAO_NORMALS_XYZ_SNORM, &p->values[SLOT_BENT][i * 4], bent));
+    if (direction[0] == nothing && direction[1] == nothing && direction[2] == nothing)
+        return ao;
+    assert_true(ref_normal_decode(encoding, direction, bent));
     bent[2] *= view->forward;
     return ref_specular_from_bent(ao, roughness, n, v, bent);
 }
@@ -120,6 +129,58 @@ static void every_mode_follows_its_formulas(void **state)
                      p.composite.mode != VKAO_COMPOSITE_AO_ONLY;
         check_close(what, p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4, cones ? 1e-4 : 1e-6,
                     cones ? 2e-3 : 1e-5, cones ? 1e-2 : 1e-5);
+        free(want);
+        picture_free(&p);
+    }
+}
+
+/* Two thirds of the normals face the eye; a fifth of the surface has no mean direction, as where
+ * all is hidden: AO alone decides there. Directions are encoded as normals are, or not. */
+static void other_sides_and_hidden_places_reflect(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2 * 2 * 2; ++i) {
+        struct picture p;
+        char what[80];
+        const bool cones = i % 2, orthographic = i / 2 % 2, apart = i / 4;
+        make(&p, orthographic, -1.0);
+        p.composite.specular = cones ? VKAO_SPECULAR_FROM_BENT : VKAO_SPECULAR_FROM_AO;
+        for (size_t t = 0; t < picture_texels(&p); ++t)
+            for (size_t c = 0; c < 3; ++c) {
+                p.values[SLOT_NORMALS][t * 4 + c] *= t % 3 == 0 ? -1.0 : 1.0;
+                p.values[SLOT_BENT][t * 4 + c] *= t % 5 == 0 ? 0.0 : 1.0;
+            }
+        p.view.bent_encoding = apart ? VKAO_NORMALS_XYZ_UNORM : VKAO_NORMALS_FROM_DEPTH;
+        for (size_t v = 0; v < picture_texels(&p) * 4 && apart; ++v)
+            p.values[SLOT_BENT][v] = 0.5 * p.values[SLOT_BENT][v] + 0.5;
+        double *want = test_alloc(picture_texels(&p) * 4, sizeof *want);
+        expected(&p, want);
+        picture_run(&p);
+        snprintf(what, sizeof what, "%s, %s%s", cones ? "cones" : "AO",
+                 orthographic ? "orthographic" : "perspective", apart ? ", encoded apart" : "");
+        check_close(what, p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4, cones ? 1e-4 : 1e-6,
+                    cones ? 2e-3 : 1e-5, cones ? 1e-2 : 1e-5);
+        free(want);
+        picture_free(&p);
+    }
+}
+
+/* Behind the other stages, which run on every second texel: light is that of every texel still. */
+static void specular_light_is_seen_from_the_eye_at_half_resolution(void **state)
+{
+    (void)state;
+    for (int i = 0; i < 2; ++i) {
+        struct picture p;
+        const bool cones = i == 1;
+        make(&p, false, -1.0);
+        p.stages = VKAO_STAGE_ALL;
+        p.half_resolution = true;
+        p.composite.specular = cones ? VKAO_SPECULAR_FROM_BENT : VKAO_SPECULAR_FROM_AO;
+        picture_run(&p);
+        double *want = test_alloc(picture_texels(&p) * 4, sizeof *want);
+        expected(&p, want); /* of the AO and the bent normals that came out */
+        check_close(cones ? "cones" : "AO", p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4,
+                    cones ? 1e-4 : 1e-6, cones ? 2e-3 : 1e-5, cones ? 1e-2 : 1e-5);
         free(want);
         picture_free(&p);
     }
@@ -187,6 +248,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         gpu_test(every_mode_follows_its_formulas),
+        gpu_test(other_sides_and_hidden_places_reflect),
+        gpu_test(specular_light_is_seen_from_the_eye_at_half_resolution),
         gpu_test(open_is_bright_and_closed_is_dark_at_every_roughness),
         gpu_test(multi_bounce_brightens_by_albedo),
     };
