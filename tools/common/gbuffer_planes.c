@@ -194,6 +194,13 @@ bool gbuffer_read_planes(const struct gbuffer *g, struct depth_planes *planes)
     return true;
 }
 
+/* Steps of halves leave only what bends most, which says nothing of all else. */
+static size_t few_of(const struct gbuffer *g)
+{
+    const size_t all = gbuffer_texels(g) * 2;
+    return (all < MOST_TRIPLES ? all : MOST_TRIPLES) / 200;
+}
+
 bool gbuffer_warn_of_curve(struct gbuffer *g, const char *path, struct report *report)
 {
     static const double least = 0.25, least_of_logarithm = 0.4, more = 1.5;
@@ -201,6 +208,8 @@ bool gbuffer_warn_of_curve(struct gbuffer *g, const char *path, struct report *r
     char what[64] = "";
     if (p->count == 0 && !gbuffer_read_planes(g, p))
         return false;
+    if (p->count < few_of(g))
+        return true;
     const double other = more * fmax(fmax(p->planar, p->linear), fmax(p->radial, p->offset_share));
     if (p->power_share >= least && p->power_share > other && p->power_share >= p->logarithm_share)
         snprintf(what, sizeof what, "a distance to the power of about %.2g", p->power);
