@@ -156,6 +156,57 @@ def normalised_depth_may_be_radial(scratch):
     check('from the eye' not in run(scratch, {'Z': planar}, *options)[1], 'planar is called radial')
 
 
+TOLD_RANGES = [('right', '1.5,9', 1, None), ('right, rounded', '1.52,9.05', 1, None),
+               ('other near', '0,9', 1, r'0,9 is not that of .* as if NEAR were 1\.[45]'),
+               ('nearer', '2.5,9', 1, r'2\.5,9 is not that of .* as if NEAR were 1\.[45]'),
+               ('other way', '1.5,9,inverted', 1, r'counts the other way .*--depth-range 1\.5,9\)'),
+               ('of a picture', '1.5,9', 1 / 2.2, 'flat only as its power of about 2.2'),
+               ('made linear', '1.5,9', 2.2, 'flat only as its power of about 0.45')]
+
+
+@cases(TOLD_RANGES)
+def flat_things_contradict_a_range(scratch, _, told, gamma, message):
+    scene = Scene(320, 180)
+    depth = np.where(scene.sky, 1, ((scene.z - 1.5) / 7.5) ** gamma).astype(np.float32)
+    for normals in {}, scene.normals():
+        write_exr(scratch.path('in.exr'), {'Z': depth, **normals})
+        said = str(inspect(scratch, '--fov', FOV, '--depth-type', 'normalized', '--depth-range',
+                           told)['warnings'])
+        if message:
+            matches(message, said, 'the warnings')
+        else:
+            check('flat things' not in said, said)
+
+
+# What depth is, what it is said to be, and the type that helps.
+TOLD_TYPES = [('radial', 'planar', 'radial'), ('planar', 'radial', 'planar'),
+              ('planar', 'radial-near', 'planar'), ('planar', 'inverse', 'planar'),
+              ('inverse', 'planar', 'inverse'), ('inverse', 'radial', 'device with --near and'),
+              ('planar', 'device', 'planar'),
+              *[(k, k, None) for k in ('planar', 'radial', 'radial-near', 'inverse', 'device')]]
+
+
+@cases(TOLD_TYPES, name=lambda row: f'{row[0]} as {row[1]}')
+def flat_things_contradict_a_type_that_is_told(scratch, kind, told, remedy):
+    write_exr(scratch.path('in.exr'), {'Z': Scene(320, 180).depth(kind)})
+    said = str(inspect(scratch, '--fov', FOV, '--near', NEAR, '--far', FAR, '--depth-type',
+                       told)['warnings'])
+    if remedy:
+        matches(f"--depth-type says that depth 'Z' is {told}, but flat things are flat only .*: "
+                f'{told} is taken .--depth-type .*{remedy}', said, 'the warnings')
+    else:
+        check('flat things' not in said, said)
+
+
+@case
+def flat_things_contradict_a_name(scratch):
+    for name, kind, is_said in (('distance.Z', 'planar', True), ('distance.Z', 'radial', False),
+                                ('distance_to_image_plane.Z', 'radial', True)):
+        write_exr(scratch.path('in.exr'), {name: Scene(320, 180).depth(kind)})
+        said = str(inspect(scratch, '--fov', FOV)['warnings'])
+        equal(f"its name says that depth '{name}' is" in said, is_said, f'whether it is in {said}')
+
+
 @cases([('a third', 1 / 3, True), ('nothing', 0, False)])
 def depth_from_a_near_plane_is_said(scratch, _, share, is_said):
     scene = Scene()
@@ -190,14 +241,25 @@ TONES = [('reinhard', lambda z: 6 * z / (6 + z), True), ('strong', lambda z: 2 *
 
 
 @case
+def bent_depth_of_a_type_that_is_told_is_said(scratch):
+    scene = Scene()
+    for bend, is_said in (np.sqrt, True), (lambda z: z, False):
+        depth = bend(np.where(scene.sky, 1e10, scene.z)).astype(np.float32)
+        write_exr(scratch.path('in.exr'), {'Z': depth})
+        said = str(inspect(scratch, '--fov', FOV, '--depth-type', 'planar')['warnings'])
+        equal('power of about 0.5:' in said, is_said, f'whether it is in {said}')
+
+
+@case
 def steps_of_halves_bend_nothing(scratch):
     # Of a small room only what bends most is more than they are.
     ray = read_parts(corpus('m3_cornell_a.exr'), ('dd.y.T',))[0]['dd.y.T'][::2, ::2]
     view = Scene(640, 360, fov=58)
     depth = np.where(ray > 0, ray / view.stretch + 0.1, np.inf).astype(np.float16)
     write_exr(scratch.path('in.exr'), {'Z': depth})
-    said = str(inspect(scratch, '--fov', 58)['warnings'])
-    check('looks like' not in said and 'flat only' not in said, said)
+    for options in (), ('--depth-type', 'planar'):
+        said = str(inspect(scratch, '--fov', 58, *options)['warnings'])
+        check('looks like' not in said and 'flat only' not in said, said)
 
 
 @cases(TONES)

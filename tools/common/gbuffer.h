@@ -118,7 +118,8 @@ struct gbuffer_options {
     enum empty_depth empty;
     enum normal_space normal_space;
     enum normal_encoding normal_encoding;
-    bool want_color; /* colour is an error if it is missing, and is not read otherwise */
+    bool is_type_recorded; /* depth_type and depth_range were told, and held, in another run */
+    bool want_color;       /* colour is an error if it is missing, and is not read otherwise */
     struct frame_memory *memory; /* of the view, or NULL = a frame of its own */
     struct budget budget;
     /* What the caller will take per texel, counted against the budget: in any case, and more if

@@ -431,8 +431,8 @@ bool gbuffer_prepare_depth(struct gbuffer *g, const struct exr_info *info,
                     "%s: --depth-range is left aside: depth '%s' is taken for %s (--depth-type "
                     "normalized overrides)",
                     path, role->label, depth_type_name(g->depth_type));
-    if (options->depth_type == DEPTH_AUTO && g->depth_source != DEPTH_BY_POSITIONS &&
-        !gbuffer_warn_of_curve(g, path, report))
+    if (g->depth_type != DEPTH_NORMALIZED && !options->is_type_recorded &&
+        g->depth_source != DEPTH_BY_POSITIONS && !gbuffer_warn_of_curve(g, path, report))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
     g->filtered_share = gbuffer_filtered_share(g);
     struct camera_planes planes = {g->camera.near_plane, g->camera.far_plane};

@@ -134,6 +134,8 @@ bool gbuffer_find_flip(struct gbuffer *g, const struct gbuffer_options *options,
  * normals say so. False only if memory runs out. */
 bool gbuffer_find_type(const struct gbuffer *g, const struct gbuffer_options *options,
                        const struct fit *told, struct fit *other, struct tool_error *err);
+/* Who says what depth measures, in words, if somebody does. */
+const char *gbuffer_teller_of_type(const struct gbuffer *g, const struct gbuffer_options *options);
 void gbuffer_tell_type(const struct gbuffer *g, const struct gbuffer_options *options,
                        const struct fit *told, const struct fit *other, const char *path,
                        struct report *report);
@@ -159,8 +161,14 @@ bool gbuffer_is_one_point(const struct gbuffer *g, const float *positions);
 /* Fills g->background; needs depth as stored, normals and alpha. False if memory ran out. */
 bool gbuffer_find_background(struct gbuffer *g, const struct gbuffer_options *options);
 
+/* That contradict what is believed: fewer, as those that steps of halves leave, are of what bends
+ * most. */
+enum { GBUFFER_ENOUGH_TRIPLES = 500 };
 /* Needs depth as stored and its background. False if memory ran out. */
 bool gbuffer_read_planes(const struct gbuffer *g, struct depth_planes *planes);
+/* The power of normalised depth by which flat things are flat, or 1; needs g->planes. False if
+ * memory ran out. */
+bool gbuffer_find_gamma(const struct gbuffer *g, double *gamma);
 /* Of depth as stored that was bent by gamma or a logarithm, which the planes tell. False if memory
  * ran out. */
 bool gbuffer_warn_of_curve(struct gbuffer *g, const char *path, struct report *report);

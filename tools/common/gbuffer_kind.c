@@ -66,12 +66,16 @@ static bool is_parallel(const struct gbuffer *g)
     return g->camera.source[0] && g->camera.type == CAMERA_ORTHOGRAPHIC;
 }
 
+static bool sees_rays(const struct gbuffer *g)
+{
+    return g->camera.source[0] && g->camera.type == CAMERA_PERSPECTIVE;
+}
+
 static enum planes_say listen(const struct gbuffer *g, const struct depth_planes *p)
 {
     enum { MODELS = 3 };
-    const bool sees_rays = g->camera.source[0] && g->camera.type == CAMERA_PERSPECTIVE;
     const double least = 0.2, more = 1.5;
-    const double shares[MODELS] = {p->planar, sees_rays ? p->radial : 0, p->linear};
+    const double shares[MODELS] = {p->planar, sees_rays(g) ? p->radial : 0, p->linear};
     int best = 0;
     for (int i = 1; i < MODELS; i++)
         best = shares[i] > shares[best] ? i : best;
@@ -317,21 +321,111 @@ static void take_seen(struct gbuffer *g, const struct value_facts *f, enum plane
     take(g, DEPTH_PLANAR, DEPTH_ASSUMED);
 }
 
-/* A range says where depth begins and ends, and not along which way. */
-static bool settle_range(struct gbuffer *g, const char *path, struct report *report,
-                         struct tool_error *err)
+/* What flat things say of a range that is told. */
+static bool check_range(const struct gbuffer *g, const struct gbuffer_options *options,
+                        const char *path, struct report *report, struct tool_error *err)
 {
-    const char *by = g->depth_range.is_radial ? "normals agree" : "flat things are flat";
-    if (!g->depth_range.is_radial) {
-        if (!gbuffer_read_planes(g, &g->planes))
-            return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    const char *label = g->roles.kind[ROLE_DEPTH].label;
+    const struct depth_range *r = &g->depth_range;
+    const double near_end = fmin(r->zero, r->one), far_end = fmax(r->zero, r->one);
+    const double c = g->planes.offset;
+    const bool is_inverted = r->one < r->zero;
+    double gamma;
+    if (options->is_type_recorded || g->planes.count < GBUFFER_ENOUGH_TRIPLES)
+        return true;
+    if (!gbuffer_find_gamma(g, &gamma))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    if (gamma < 1 || gamma > 1)
+        report_warn(report, "curved range",
+                    "%s: normalised depth '%s' looks like a picture with a gamma: flat things are "
+                    "flat only as its power of about %.2g; AO is wrong; write it without any curve",
+                    path, label, gamma);
+    else if (listen(g, &g->planes) != SAY_OFFSET)
+        return true;
+    else if (near_end + c < 0 && far_end + c <= 0)
+        report_warn(report, "told range",
+                    "%s: normalised depth '%s' counts the other way than --depth-range says: flat "
+                    "things are flat only then, and AO is wrong (--depth-range %.6g,%.6g%s)",
+                    path, label, near_end, far_end, is_inverted ? "" : ",inverted");
+    else
+        report_warn(report, "told range",
+                    "%s: --depth-range %.6g,%.6g is not that of normalised depth '%s': flat things "
+                    "are flat only if %.3g is added to distances, as if NEAR were %.4g; AO is "
+                    "wrong",
+                    path, near_end, far_end, label, c, far_end * (near_end + c) / (far_end + c));
+    return true;
+}
+
+/* A range says where depth begins and ends, and not along which way. */
+static bool settle_range(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
+                         struct report *report, struct tool_error *err)
+{
+    const bool is_by_normals = g->depth_range.is_radial;
+    if (!gbuffer_read_planes(g, &g->planes))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    if (!is_by_normals)
         g->depth_range.is_radial = listen(g, &g->planes) == SAY_RADIAL;
-    }
     if (g->depth_range.is_radial)
         report_warn(report, "radial range",
                     "%s: normalised depth '%s' is taken for distances from the eye, not along the "
                     "view axis: %s only then",
-                    path, g->roles.kind[ROLE_DEPTH].label, by);
+                    path, g->roles.kind[ROLE_DEPTH].label,
+                    is_by_normals ? "normals agree" : "flat things are flat");
+    return g->depth_range.is_radial || check_range(g, options, path, report, err);
+}
+
+/* What flat things say of depth that is what it is told to be. */
+static bool is_as_told(const struct gbuffer *g, enum planes_say say)
+{
+    const bool is_straight = say == (is_parallel(g) ? SAY_LINEAR : SAY_PLANAR);
+    /* Without rays to divide by, both kinds of distances look much the same. */
+    const bool is_round = say == SAY_RADIAL || (is_straight && !sees_rays(g));
+    switch (g->depth_type) {
+    case DEPTH_PLANAR:
+        return is_straight;
+    case DEPTH_RADIAL:
+        return is_round;
+    case DEPTH_RADIAL_NEAR: /* which lacks something */
+        return is_round || say == SAY_OFFSET;
+    case DEPTH_INVERSE:
+        return say == (is_parallel(g) ? SAY_INVERSE : SAY_LINEAR);
+    case DEPTH_DEVICE:
+        return say == SAY_LINEAR;
+    default:
+        return true;
+    }
+}
+
+/* Normals have said more, if there are any. What is told is believed all the same. */
+static bool check_told(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
+                       struct report *report, struct tool_error *err)
+{
+    static const char *const seen[] = {
+        [SAY_PLANAR] = "as distances along the view axis",
+        [SAY_RADIAL] = "as distances from the eye",
+        [SAY_LINEAR] = "as 1/z or a depth buffer, or without perspective",
+        [SAY_OFFSET] = "if something is added",
+        [SAY_INVERSE] = "as 1/z",
+    };
+    static const char *const remedies[] = {
+        [SAY_PLANAR] = "--depth-type planar",
+        [SAY_RADIAL] = "--depth-type radial",
+        [SAY_LINEAR] = "--depth-type inverse, device with --near and --far, or --ortho WIDTH",
+        [SAY_OFFSET] = "--depth-type normalized with --depth-range, or radial-near with --near",
+        [SAY_INVERSE] = "--depth-type inverse",
+    };
+    if (g->normals || options->is_type_recorded)
+        return true;
+    if (!gbuffer_read_planes(g, &g->planes))
+        return fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    const enum planes_say say = listen(g, &g->planes);
+    if (g->planes.count >= GBUFFER_ENOUGH_TRIPLES && say != SAY_NOTHING && !is_as_told(g, say))
+        report_warn(report, "doubted depth",
+                    "%s: %s says that depth '%s' is %s, but flat things are flat only %s: %s is "
+                    "taken (%s overrides)",
+                    path, gbuffer_teller_of_type(g, options), g->roles.kind[ROLE_DEPTH].label,
+                    depth_type_name(g->depth_type), seen[say], depth_type_name(g->depth_type),
+                    remedies[say]);
     return true;
 }
 
@@ -408,12 +502,13 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
              g->camera.depth_type != DEPTH_AUTO ? DEPTH_BY_CAMERA
              : g->has_told_ends                 ? DEPTH_BY_ENDS
                                                 : DEPTH_BY_OPTION);
-        return g->depth_type != DEPTH_NORMALIZED || !g->depth_range.is_given ||
-               settle_range(g, info->path, report, err);
+        if (g->depth_type == DEPTH_NORMALIZED)
+            return !g->depth_range.is_given || settle_range(g, options, info->path, report, err);
+        return check_told(g, options, info->path, report, err);
     }
     if (role->depth_type != DEPTH_AUTO) {
         take(g, role->depth_type, DEPTH_BY_NAME);
-        return true;
+        return check_told(g, options, info->path, report, err);
     }
     if (g->depth_source == DEPTH_BY_NORMALS) {
         warn_about_whole(g, &seen, report);

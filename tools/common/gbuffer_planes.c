@@ -54,14 +54,15 @@ static bool find_storage(const struct gbuffer *g, struct storage *s)
     return g->depth_is_half || gbuffer_find_step(g, &s->step);
 }
 
-/* Parts of a range are no distances, but what they stand for. */
-static double as_measured(const struct gbuffer *g, size_t texel)
+/* Parts of a range are no distances, but what they stand for once a gamma is undone. */
+static double as_measured(const struct gbuffer *g, double gamma, size_t texel)
 {
-    return g->depth_type == DEPTH_NORMALIZED ? gbuffer_distance(g, g->depth[texel])
-                                             : (double)g->depth[texel];
+    return g->depth_type == DEPTH_NORMALIZED
+               ? gbuffer_distance(g, (float)pow((double)g->depth[texel], gamma))
+               : (double)g->depth[texel];
 }
 
-static size_t collect(const struct gbuffer *g, const struct storage *storage,
+static size_t collect(const struct gbuffer *g, double gamma, const struct storage *storage,
                       struct triple *triples)
 {
     const bool is_coarse = g->depth_is_half || storage->step > 0;
@@ -79,7 +80,7 @@ static size_t collect(const struct gbuffer *g, const struct storage *storage,
             double d[3], r[3];
             bool ok = true;
             for (int k = 0; k < 3; k++) {
-                d[k] = as_measured(g, at[k]);
+                d[k] = as_measured(g, gamma, at[k]);
                 ok &= gbuffer_is_measurable(d[k]) && d[k] < g->background.limit;
                 r[k] = d[k] / gbuffer_ray_length(g, at[k]);
             }
@@ -119,8 +120,9 @@ static double share_with_offset(const struct triple *triples, size_t count, doub
 }
 
 /* Depth that lacks something, or counts down from 1 or from a far plane. None is longer than the
- * distance. */
-static double best_offset(const struct triple *triples, size_t count, double *offset)
+ * distance, but that of a range whose ends are told may be. */
+static double best_offset(const struct triple *triples, size_t count, bool may_be_longer,
+                          double *offset)
 {
     double best = 0;
     *offset = 0;
@@ -128,7 +130,7 @@ static double best_offset(const struct triple *triples, size_t count, double *of
         const struct triple *t = &triples[k * count / OFFSETS];
         const double c = t->depth * (1.0 / t->planar - 1.0);
         const bool counts_down = t->depth + c < 0;
-        const bool is_likely = isfinite(c) && (c > 0 || counts_down);
+        const bool is_likely = isfinite(c) && (c > 0 || counts_down || may_be_longer);
         const double share = is_likely ? share_with_offset(triples, count, c) : 0;
         if (share > best) {
             best = share;
@@ -172,7 +174,7 @@ static void read_curves(const struct triple *triples, size_t count, struct depth
     }
 }
 
-bool gbuffer_read_planes(const struct gbuffer *g, struct depth_planes *planes)
+static bool read_planes(const struct gbuffer *g, double gamma, struct depth_planes *planes)
 {
     struct triple *triples = malloc(MOST_TRIPLES * sizeof *triples);
     struct storage storage;
@@ -181,16 +183,43 @@ bool gbuffer_read_planes(const struct gbuffer *g, struct depth_planes *planes)
         free(triples);
         return false;
     }
-    const size_t count = collect(g, &storage, triples);
+    const size_t count = collect(g, gamma, &storage, triples);
     if (count >= FEW_TRIPLES) {
         planes->planar = share_near(triples, count, 1.0, false);
         planes->linear = share_near(triples, count, 0.0, false);
         planes->radial = share_near(triples, count, 1.0, true);
-        planes->offset_share = best_offset(triples, count, &planes->offset);
+        planes->offset_share =
+            best_offset(triples, count, g->depth_type == DEPTH_NORMALIZED, &planes->offset);
         read_curves(triples, count, planes);
     }
     planes->count = count;
     free(triples);
+    return true;
+}
+
+bool gbuffer_read_planes(const struct gbuffer *g, struct depth_planes *planes)
+{
+    return read_planes(g, 1.0, planes);
+}
+
+bool gbuffer_find_gamma(const struct gbuffer *g, double *gamma)
+{
+    /* Those of pictures, either way, and what else people do by hand. */
+    static const double gammas[] = {1 / 3.0, 1 / 2.2, 1 / 1.8, 1 / 1.5, 1.5, 1.8, 2.2, 3.0};
+    static const double least = 0.25, more = 1.5;
+    const struct depth_planes *p = &g->planes;
+    double best = more * fmax(fmax(p->planar, p->linear), fmax(p->radial, p->offset_share));
+    *gamma = 1.0;
+    for (size_t i = 0; best < 1.0 && i < sizeof gammas / sizeof *gammas; i++) {
+        struct depth_planes other;
+        if (!read_planes(g, gammas[i], &other))
+            return false;
+        const double share = fmax(other.planar, other.radial);
+        if (other.count >= GBUFFER_ENOUGH_TRIPLES && share >= least && share > best) {
+            best = share;
+            *gamma = gammas[i];
+        }
+    }
     return true;
 }
 
@@ -208,7 +237,9 @@ bool gbuffer_warn_of_curve(struct gbuffer *g, const char *path, struct report *r
     char what[64] = "";
     if (p->count == 0 && !gbuffer_read_planes(g, p))
         return false;
-    if (p->count < few_of(g))
+    const bool is_told = g->depth_source == DEPTH_BY_OPTION || g->depth_source == DEPTH_BY_CAMERA ||
+                         g->depth_source == DEPTH_BY_ENDS;
+    if (p->count < (is_told ? GBUFFER_ENOUGH_TRIPLES : few_of(g)))
         return true;
     const double other = more * fmax(fmax(p->planar, p->linear), fmax(p->radial, p->offset_share));
     if (p->power_share >= least && p->power_share > other && p->power_share >= p->logarithm_share)

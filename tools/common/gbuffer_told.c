@@ -82,24 +82,27 @@ static void describe_remedy(const struct gbuffer *g, const struct fit *other,
     }
 }
 
+const char *gbuffer_teller_of_type(const struct gbuffer *g, const struct gbuffer_options *options)
+{
+    if (g->camera.depth_type != DEPTH_AUTO)
+        return "the camera file";
+    if (g->has_told_ends)
+        return g->depth_type == DEPTH_NORMALIZED ? "--depth-range" : "--far";
+    return options->depth_type != DEPTH_AUTO ? "--depth-type" : "its name";
+}
+
 void gbuffer_tell_type(const struct gbuffer *g, const struct gbuffer_options *options,
                        const struct fit *told, const struct fit *other, const char *path,
                        struct report *report)
 {
     const char *type = depth_type_name(g->depth_type);
-    const bool is_range = g->depth_type == DEPTH_NORMALIZED;
     char remedy[REMEDY_BYTES];
     describe_remedy(g, other, remedy);
     report_warn_of_frame(
         report, "doubted depth",
         "%s: %s says that depth '%s' is %s, but by normals '%s' it is %.*s (%.0f %% of them agree "
         "then, and %.0f %% as it says): %s is taken (--depth-type %s overrides)",
-        path,
-        g->camera.depth_type != DEPTH_AUTO  ? "the camera file"
-        : g->has_told_ends                  ? is_range ? "--depth-range" : "--far"
-        : options->depth_type != DEPTH_AUTO ? "--depth-type"
-                                            : "its name",
-        g->roles.kind[ROLE_DEPTH].label, type, g->roles.kind[ROLE_NORMAL].label,
-        (int)strcspn(remedy, " "), remedy, other->agreement * 100.0, told->agreement * 100.0, type,
-        remedy);
+        path, gbuffer_teller_of_type(g, options), g->roles.kind[ROLE_DEPTH].label, type,
+        g->roles.kind[ROLE_NORMAL].label, (int)strcspn(remedy, " "), remedy,
+        other->agreement * 100.0, told->agreement * 100.0, type, remedy);
 }

@@ -666,6 +666,7 @@ bool options_take_record(struct options *options, const struct record *record,
         g->roles.name[ROLE_DEPTH] = as_name(record->depth);
     if (!option_is_given(o, "depth-type"))
         g->depth_type = record->depth_type;
+    g->is_type_recorded = !option_is_given(o, "depth-type") && !option_is_given(o, "depth-range");
     if (!option_is_given(o, "depth-range"))
         g->depth_range = record->depth_range;
     if (!option_is_given(o, "background")) {
