@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * Thickness as seen does not depend on how many texels show it, nor much on what stands before. */
-#include "fixture.h"
+#include "ref_methods.h"
+#include "ssao_checks.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -113,6 +114,23 @@ static void what_is_hidden_goes_on(void **state)
     }
 }
 
+/* Each word of breaks is put together by several invocations: what one of them loses makes things
+ * wider or narrower than they are. */
+static void things_are_as_thick_as_the_reference_has_them(void **state)
+{
+    (void)state;
+    const struct scene scenes[] = {things, scene_fence(), scene_posts()};
+    for (size_t i = 0; i < sizeof scenes / sizeof scenes[0]; ++i) {
+        struct picture p;
+        char what[80];
+        picture_make(&p, VKAO_STAGE_SSAO, &scenes[i]);
+        p.ssao.radius = 0.6f;
+        snprintf(what, sizeof what, "scene %zu against the reference", i);
+        check_ssao(&p, ref_vbao, what);
+        picture_free(&p);
+    }
+}
+
 /* What bars of a texel hide of a wall behind them that ends where they do, before the sky. The wall
  * is half the picture; so many columns of sky lie between two bars. */
 static double hidden_by_bars(size_t gap, vkao_quality quality)
@@ -155,6 +173,7 @@ static void bars_before_the_sky_are_thin(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {gpu_test(resolution_does_not_matter),
+                                       gpu_test(things_are_as_thick_as_the_reference_has_them),
                                        gpu_test(what_is_hidden_goes_on),
                                        gpu_test(bars_before_the_sky_are_thin)};
     return fixture_run(tests);
