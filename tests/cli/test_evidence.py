@@ -236,10 +236,6 @@ def bent_depth_is_said(scratch, _, bend, said):
             check('looks like' not in warnings, warnings)
 
 
-TONES = [('reinhard', lambda z: 6 * z / (6 + z), True), ('strong', lambda z: 2 * z / (2 + z), True),
-         ('exponential', lambda z: 9 * (1 - np.exp(-z / 9)), True), ('none', lambda z: z, False)]
-
-
 @case
 def bent_depth_of_a_type_that_is_told_is_said(scratch):
     scene = Scene()
@@ -260,6 +256,10 @@ def steps_of_halves_bend_nothing(scratch):
     for options in (), ('--depth-type', 'planar'):
         said = str(inspect(scratch, '--fov', 58, *options)['warnings'])
         check('looks like' not in said and 'flat only' not in said, said)
+
+
+TONES = [('reinhard', lambda z: 6 * z / (6 + z), True), ('strong', lambda z: 2 * z / (2 + z), True),
+         ('exponential', lambda z: 9 * (1 - np.exp(-z / 9)), True), ('none', lambda z: z, False)]
 
 
 @cases(TONES)
