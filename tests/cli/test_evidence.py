@@ -7,11 +7,10 @@ import re
 
 import numpy as np
 
-from cli import (CHANNELS, case, cases, check, corpus, equal, main, matches, read_ao, read_parts,
-                 write_exr)
+from cli import CHANNELS, case, cases, check, equal, main, matches, read_ao, write_exr
 from evidence import (OPTIONS, check_same, clean, depth_of, hidden, inspect, rotation_header,
                       run)
-from scene import FAR, FOV, MOVE, NEAR, TURN, Scene, write_camera
+from scene import CORNER, FAR, FOV, MOVE, NEAR, TURN, Scene, boxes_along_axes, write_camera
 
 # --- Kinds of depth ---
 
@@ -110,74 +109,6 @@ def negative_z_is_turned(scratch, _, background):
     check((ao[scene.sky] == 1).all(), 'the sky is not 1')
 
 
-RANGES = [('black near', 1.5, 9.0, ''), ('white near', 1.5, 9.0, ',inverted'),
-          ('from the eye', 0.0, 40.0, ''), ('in cm', 150.0, 900.0, ',inverted')]
-
-
-@cases(RANGES)
-def normalised_depth_needs_its_range(scratch, _, near, far, inverted):
-    scene, unit = Scene(), 100.0 if near > 100 else 1.0
-    options = ('--radius', 0.5 * unit)
-    wanted, _ = clean(scratch, scene, *options, unit=unit, normals=False)
-    depth = np.where(scene.sky, 1, (scene.z * unit - near) / (far - near))
-    depth = (1 - depth if inverted else depth).astype(np.float32)
-    write_exr(scratch.path('in.exr'), {'ZDepth.R': depth})
-    scratch.fails(CHANNELS, "in.exr: depth 'ZDepth.R' is from .* normalised.* not in scene units",
-                  'in.exr', '-o', 'x.exr', '--fov', FOV, hint='--depth-range NEAR,FAR')
-    scratch.fails(CHANNELS, 'normalised depth .* needs its range', 'in.exr', '-o', 'x.exr',
-                  '--depth-type', 'normalized', hint='--depth-range NEAR,FAR')
-    ao, _ = run(scratch, {'ZDepth.R': depth}, '--fov', FOV, '--depth-type', 'normalized',
-                '--depth-range', f'{near},{far}{inverted}', *options)
-    check_same(ao, wanted, 'normalised')
-    # The record holds the range.
-    scratch.render('in.exr', '-o', 'again.exr', '--like', 'ao.exr')
-    check((read_ao(scratch.path('again.exr')) == ao).all(), '--like gives other AO')
-
-
-@case
-def another_depth_is_named_where_one_is_refused(scratch):
-    scene = Scene()
-    grey = np.where(scene.sky, 1, (scene.z - 1.5) / 7.5).astype(np.float32)
-    write_exr(scratch.path('in.exr'), {'depth.R': grey, 'Z': scene.depth()})
-    scratch.fails(CHANNELS, "in.exr: depth 'depth.R' is from .* normalised", 'in.exr', '-o',
-                  'x.exr', '--fov', FOV, hint="--depth 'Z', which is called depth too")
-
-
-@case
-def normalised_depth_may_be_radial(scratch):
-    scene, far = Scene(fov=95), 20.0
-    wanted, _ = clean(scratch, scene, fov=95, normals=False)
-    depth = np.where(scene.sky, 1, scene.z * scene.stretch / far).astype(np.float32)
-    options = ('--fov', 95, '--depth-type', 'normalized', '--depth-range', f'0,{far}')
-    ao, said = run(scratch, {'Z': depth}, *options)
-    check_same(ao, wanted, 'normalised distances from the eye')
-    matches('taken for distances from the eye', said, 'stderr')
-    planar = np.where(scene.sky, 1, scene.z / far).astype(np.float32)
-    check('from the eye' not in run(scratch, {'Z': planar}, *options)[1], 'planar is called radial')
-
-
-TOLD_RANGES = [('right', '1.5,9', 1, None), ('right, rounded', '1.52,9.05', 1, None),
-               ('other near', '0,9', 1, r'0,9 is not that of .* as if NEAR were 1\.[45]'),
-               ('nearer', '2.5,9', 1, r'2\.5,9 is not that of .* as if NEAR were 1\.[45]'),
-               ('other way', '1.5,9,inverted', 1, r'counts the other way .*--depth-range 1\.5,9\)'),
-               ('of a picture', '1.5,9', 1 / 2.2, 'flat only as its power of about 2.2'),
-               ('made linear', '1.5,9', 2.2, 'flat only as its power of about 0.45')]
-
-
-@cases(TOLD_RANGES)
-def flat_things_contradict_a_range(scratch, _, told, gamma, message):
-    scene = Scene(320, 180)
-    depth = np.where(scene.sky, 1, ((scene.z - 1.5) / 7.5) ** gamma).astype(np.float32)
-    for normals in {}, scene.normals():
-        write_exr(scratch.path('in.exr'), {'Z': depth, **normals})
-        said = str(inspect(scratch, '--fov', FOV, '--depth-type', 'normalized', '--depth-range',
-                           told)['warnings'])
-        if message:
-            matches(message, said, 'the warnings')
-        else:
-            check('flat things' not in said, said)
-
-
 # What depth is, what it is said to be, and the type that helps.
 TOLD_TYPES = [('radial', 'planar', 'radial'), ('planar', 'radial', 'planar'),
               ('planar', 'radial-near', 'planar'), ('planar', 'inverse', 'planar'),
@@ -246,15 +177,19 @@ def bent_depth_of_a_type_that_is_told_is_said(scratch):
         equal('power of about 0.5:' in said, is_said, f'whether it is in {said}')
 
 
-@case
-def steps_of_halves_bend_nothing(scratch):
-    # Of a small room only what bends most is more than they are.
-    ray = read_parts(corpus('m3_cornell_a.exr'), ('dd.y.T',))[0]['dd.y.T'][::2, ::2]
-    view = Scene(640, 360, fov=58)
-    depth = np.where(ray > 0, ray / view.stretch + 0.1, np.inf).astype(np.float16)
+# Boxes in a corner, and the size of the image.
+HALVES = [('one box', [((-2.2, -1.7, -6.7), (-0.3, 0.5, -4.6))], (640, 360)),
+          ('two boxes', [((1.8, -2.4, -6.3), (4, -1.1, -4.9)),
+                         ((-1.3, -3.1, -7), (-0.2, -2, -6.1))], (320, 180))]
+
+
+@cases(HALVES)
+def steps_of_halves_bend_nothing(scratch, _, boxes, size):
+    # Only what bends most is more than they are.
+    depth = boxes_along_axes(CORNER + boxes, *size, turn=np.eye(3))['Z'].astype(np.float16)
     write_exr(scratch.path('in.exr'), {'Z': depth})
     for options in (), ('--depth-type', 'planar'):
-        said = str(inspect(scratch, '--fov', 58, *options)['warnings'])
+        said = str(inspect(scratch, '--fov', FOV, *options)['warnings'])
         check('looks like' not in said and 'flat only' not in said, said)
 
 
@@ -342,52 +277,6 @@ def positions_come_before_parts_of_a_range(scratch):
                 'stderr')
     scratch.fails(CHANNELS, "depth 'Z' is from .* normalised", 'in.exr', '-o', 'x.exr', '--depth',
                   'Z', hint="or --depth 'P', which are positions")
-
-
-@cases(['1', '1,', '5,1', '-1,5', '1,5,upside', '1,5,', 'a,b', '1,inf'])
-def bad_ranges_are_refused(scratch, argument):
-    write_exr(scratch.path('in.exr'), {'Z': Scene().depth()})
-    scratch.fails(2, '--depth-range is .*, want NEAR,FAR', 'in.exr', '-o', 'x.exr',
-                  '--depth-range', argument)
-
-
-@cases([('device', ('--near', NEAR, '--far', FAR)), ('reversed', ('--near', FAR, '--far', NEAR))])
-def device_depth_is_not_taken_for_distances(scratch, kind, planes):
-    scene = Scene()
-    wanted, _ = clean(scratch, scene, normals=False)
-    write_exr(scratch.path('in.exr'), {'depth': scene.depth(kind)})
-    scratch.fails(CHANNELS, "in.exr: depth 'depth' is from ", 'in.exr', '-o', 'x.exr', '--fov',
-                  FOV, hint='--near')
-    for options in (('--depth-type', 'device'), ()):
-        ao, said = run(scratch, {'depth': scene.depth(kind)}, '--fov', FOV, *options, *planes)
-        check_same(ao, wanted, kind)
-        equal('taken for a depth buffer (--depth-type' in said, not options, said)
-
-
-@case
-def told_ends_say_the_type_of_depth_from_0_to_1(scratch):
-    scene, ends = Scene(), ('--depth-range', '0,20')
-    wanted, _ = clean(scratch, scene)
-    parts = {'Z': depth_of(scene, 1, 1 / 20), **scene.normals(space='world')}
-    ao, said = run(scratch, parts, '--fov', FOV, *ends)
-    check_same(ao, wanted, said)
-    matches('--depth-range is given: taken for parts of that range', said, 'stderr')
-    # Of other depth planes are told as well, and a range is a mistake.
-    for unit, sky, options, want in (
-            (1, 1e10, ('--near', 0.1, '--far', 100), ''),
-            (0.01, 0, ('--near', 0.001, '--far', 1), ''),
-            (1, 1e10, ends, "--depth-range is left aside: depth 'Z' is taken for ")):
-        write_exr(scratch.path('in.exr'),
-                  {'Z': depth_of(scene, sky, unit), **scene.normals(space='world')})
-        view = inspect(scratch, '--fov', FOV, *options)
-        said = str(view['warnings'])
-        equal(view['conventions']['depth_type'], 'planar', said)
-        equal('left aside' in said, bool(want), said)
-        matches(want, said, 'what is said')
-    # Normals may know better.
-    write_exr(scratch.path('in.exr'), {'Z': scene.depth('device'), **scene.normals()})
-    matches("--depth-range says that depth 'Z' is normalized, but by normals 'N' it is device",
-            str(inspect(scratch, '--fov', FOV, *ends)['warnings']), 'what is said')
 
 
 @case
@@ -531,66 +420,6 @@ def depth_without_shape_is_an_error(scratch, _, value):
     equal('is nan everywhere' in result.stderr, bool(np.isnan(value)), result.stderr)
     said = scratch.render('in.exr', '-o', 'x.exr', '--depth-type', 'planar').stderr
     matches("warning: in.exr: depth 'Z' is .*AO is 1 everywhere", said, 'stderr')
-
-
-UINTS = [('32 bits', 2 ** 32 - 1, 'uint32'), ('24 bits', 2 ** 24 - 1, 'uint32')]
-
-
-@cases(UINTS)
-def whole_numbers_of_a_range_are_refused(scratch, _, most, kind):
-    scene, near, far = Scene(), 1.5, 9.0
-    options = ('--fov', FOV, '--radius', 0.5)
-    wanted, _ = clean(scratch, scene, *options, normals=False)
-    depth = np.where(scene.sky, 1, (scene.z - near) / (far - near)) * most
-    write_exr(scratch.path('in.exr'), {'Z': depth.astype(kind)})
-    scratch.fails(CHANNELS, "in.exr: depth 'Z' is whole numbers up to .*: parts of a range",
-                  'in.exr', '-o', 'x.exr', '--fov', FOV, hint='--depth-type normalized')
-    ao, _ = run(scratch, {'Z': depth.astype(kind)}, '--depth-type', 'normalized', '--depth-range',
-                f'{near},{far}', *options)
-    check_same(ao, wanted, 'with its range')
-    device = (scene.depth('device').astype(np.float64) * most).astype(kind)
-    ao, _ = run(scratch, {'Z': device}, '--depth-type', 'device', '--near', NEAR, '--far', FAR,
-                *options)
-    check_same(ao, wanted, 'a depth buffer')
-
-
-def as_parts(scene, near, far, most):
-    return (np.where(scene.sky, 1, (scene.z - near) / (far - near)) * most).round()
-
-
-@cases([('16 bits', 2 ** 16 - 1), ('12 bits', 2 ** 12 - 1), ('10 bits', 1023), ('8 bits', 255)])
-def whole_numbers_that_show_no_distances_are_refused(scratch, _, most):
-    scene = Scene()
-    depth = as_parts(scene, 1.5, 9.0, most).astype('uint32')
-    write_exr(scratch.path('in.exr'), {'Z': depth})
-    for options in (), ('--fov', FOV):
-        scratch.fails(CHANNELS, f"in.exr: depth 'Z' is whole numbers up to {most}, and nothing "
-                      'shows distances', 'in.exr', '-o', 'x.exr', *options,
-                      hint=f'take {255 if most == 255 else 65535} for 1')
-
-
-@cases([('as it is', ''), ('inverted', ',inverted')])
-def bits_that_are_no_bytes_are_said(scratch, _, inverted):
-    scene, near, far, most = Scene(), 1.5, 9.0, 2 ** 14 - 1
-    options = ('--fov', FOV, '--radius', 0.5, '--depth-type', 'normalized', '--depth-range')
-    if inverted:
-        near, far = far, near
-    depth = as_parts(scene, near, far, most).astype('uint32')
-    _, said = run(scratch, {'Z': depth}, *options, f'1.5,9{inverted}')
-    warned = f'whole numbers up to {most}, and parts of 65535 are read: if {most} is 1, distances'
-    check(warned in said, said)
-    remedy = re.findall(r'or --depth-range (\S+)', said)
-    if inverted:
-        equal(remedy, [], 'a range that ends behind the eye')
-        return
-    wanted, _ = clean(scratch, scene, *options[:4], normals=False)
-    scene_only = np.where(scene.sky, 0, depth).astype('uint32')
-    ao, _ = run(scratch, {'Z': scene_only}, *options, remedy[0])
-    check_same(ao, wanted, 'with the range that is said')
-    for bits in (8, 16, 24):
-        _, said = run(scratch, {'Z': as_parts(scene, near, far, 2 ** bits - 1).astype('uint32')},
-                      *options, '1.5,9')
-        check('parts of' not in said, said)
 
 
 @case

@@ -107,6 +107,22 @@ static void expected(const struct picture *p, double *out)
     }
 }
 
+/* Runs the picture. Light is that of the AO and the bent normals that come out, where other stages
+ * make them. */
+static void check_formulas(struct picture *p, const char *what)
+{
+    const size_t count = picture_texels(p) * 4;
+    double *want = test_alloc(count, sizeof *want);
+    picture_run(p);
+    expected(p, want);
+    /* acos of single precision near 1, divided by the size of a narrow lobe */
+    const bool cones = p->composite.specular == VKAO_SPECULAR_FROM_BENT &&
+                       p->composite.mode != VKAO_COMPOSITE_AO_ONLY;
+    check_close(what, p->values[SLOT_OUTPUT], want, count, cones ? 1e-4 : 1e-6, cones ? 2e-3 : 1e-5,
+                cones ? 1e-2 : 1e-5);
+    free(want);
+}
+
 static void every_mode_follows_its_formulas(void **state)
 {
     (void)state;
@@ -118,18 +134,10 @@ static void every_mode_follows_its_formulas(void **state)
         p.composite.mode = (vkao_composite_mode)(i % 3);
         p.composite.multi_bounce = i / 3 % 2 ? VK_TRUE : VK_FALSE;
         p.composite.specular = (vkao_specular)(i / 6 % 3);
-        double *want = test_alloc(picture_texels(&p) * 4, sizeof *want);
-        expected(&p, want);
-        picture_run(&p);
         snprintf(what, sizeof what, "mode %d, multi-bounce %u, specular %d, %s",
                  (int)p.composite.mode, p.composite.multi_bounce, (int)p.composite.specular,
                  orthographic ? "orthographic" : "perspective");
-        /* acos of single precision near 1, divided by the size of a narrow lobe */
-        bool cones = p.composite.specular == VKAO_SPECULAR_FROM_BENT &&
-                     p.composite.mode != VKAO_COMPOSITE_AO_ONLY;
-        check_close(what, p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4, cones ? 1e-4 : 1e-6,
-                    cones ? 2e-3 : 1e-5, cones ? 1e-2 : 1e-5);
-        free(want);
+        check_formulas(&p, what);
         picture_free(&p);
     }
 }
@@ -153,14 +161,9 @@ static void other_sides_and_hidden_places_reflect(void **state)
         p.view.bent_encoding = apart ? VKAO_NORMALS_XYZ_UNORM : VKAO_NORMALS_FROM_DEPTH;
         for (size_t v = 0; v < picture_texels(&p) * 4 && apart; ++v)
             p.values[SLOT_BENT][v] = 0.5 * p.values[SLOT_BENT][v] + 0.5;
-        double *want = test_alloc(picture_texels(&p) * 4, sizeof *want);
-        expected(&p, want);
-        picture_run(&p);
         snprintf(what, sizeof what, "%s, %s%s", cones ? "cones" : "AO",
                  orthographic ? "orthographic" : "perspective", apart ? ", encoded apart" : "");
-        check_close(what, p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4, cones ? 1e-4 : 1e-6,
-                    cones ? 2e-3 : 1e-5, cones ? 1e-2 : 1e-5);
-        free(want);
+        check_formulas(&p, what);
         picture_free(&p);
     }
 }
@@ -176,12 +179,7 @@ static void specular_light_is_seen_from_the_eye_at_half_resolution(void **state)
         p.stages = VKAO_STAGE_ALL;
         p.half_resolution = true;
         p.composite.specular = cones ? VKAO_SPECULAR_FROM_BENT : VKAO_SPECULAR_FROM_AO;
-        picture_run(&p);
-        double *want = test_alloc(picture_texels(&p) * 4, sizeof *want);
-        expected(&p, want); /* of the AO and the bent normals that came out */
-        check_close(cones ? "cones" : "AO", p.values[SLOT_OUTPUT], want, picture_texels(&p) * 4,
-                    cones ? 1e-4 : 1e-6, cones ? 2e-3 : 1e-5, cones ? 1e-2 : 1e-5);
-        free(want);
+        check_formulas(&p, cones ? "cones" : "AO");
         picture_free(&p);
     }
 }

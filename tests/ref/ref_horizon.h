@@ -49,7 +49,7 @@ double ref_falloff(const struct ao_ssao *params, double distance);
 /* What params->thickness is relative to, falloff and all. */
 double ref_thickness_scale(const struct ao_ssao *params);
 
-/* Integrals from a to b over theta, by Simpson's rule: of the measure without L, and of the measure
+/* Integrals from a to b over theta: of the measure without L, and of the measure
  * times (sin theta, cos theta). */
 double ref_slice_integral(double n, double a, double b);
 void ref_slice_moment(double n, double a, double b, double out[2]);

@@ -65,7 +65,8 @@ static void visibility(const struct ref_scene *scene, const struct ao_ssao *para
 {
     const struct ref_noise noise = ref_noise(x, y, 1, params->noise_index);
     const double guard = ref_guard(scene, params, p[2]);
-    double t[3], b[3];
+    double eye[3], t[3], b[3];
+    ref_view_eye(&scene->view, p, eye);
     ref_basis(n, t, b);
     out[0] = out[1] = out[2] = out[3] = 0.0;
     for (uint32_t k = 0; k < params->sample_count; ++k) {
@@ -73,10 +74,10 @@ static void visibility(const struct ref_scene *scene, const struct ao_ssao *para
         double r = sqrt((k + noise.jitter) / params->sample_count), height = sqrt(1.0 - r * r);
         double angle = k * golden_angle + two_pi * noise.turn;
         struct ray ray = {.jitter = ref_fract(ref_golden(k) + noise.jitter), .guard = guard};
-        ref_view_eye(&scene->view, p, ray.eye);
         for (int i = 0; i < 3; ++i) {
             ray.p[i] = p[i];
             ray.n[i] = n[i];
+            ray.eye[i] = eye[i];
             ray.direction[i] = r * cos(angle) * t[i] + r * sin(angle) * b[i] + height * n[i];
         }
         double seen = (1.0 - first_hit(scene, params, &ray)) / params->sample_count;

@@ -328,7 +328,7 @@ static bool check_range(const struct gbuffer *g, const struct gbuffer_options *o
     const char *label = g->roles.kind[ROLE_DEPTH].label;
     const struct depth_range *r = &g->depth_range;
     const double near_end = fmin(r->zero, r->one), far_end = fmax(r->zero, r->one);
-    const double c = g->planes.offset;
+    const double c = g->planes.offset; /* both ends lie on one side of the eye with it */
     const bool is_inverted = r->one < r->zero;
     double gamma;
     if (options->is_type_recorded || g->planes.count < GBUFFER_ENOUGH_TRIPLES)
@@ -342,7 +342,7 @@ static bool check_range(const struct gbuffer *g, const struct gbuffer_options *o
                     path, label, gamma);
     else if (listen(g, &g->planes) != SAY_OFFSET)
         return true;
-    else if (near_end + c < 0 && far_end + c <= 0)
+    else if (far_end + c <= 0)
         report_warn(report, "told range",
                     "%s: normalised depth '%s' counts the other way than --depth-range says: flat "
                     "things are flat only then, and AO is wrong (--depth-range %.6g,%.6g%s)",
@@ -400,19 +400,16 @@ static bool is_as_told(const struct gbuffer *g, enum planes_say say)
 static bool check_told(struct gbuffer *g, const struct gbuffer_options *options, const char *path,
                        struct report *report, struct tool_error *err)
 {
-    static const char *const seen[] = {
-        [SAY_PLANAR] = "as distances along the view axis",
-        [SAY_RADIAL] = "as distances from the eye",
-        [SAY_LINEAR] = "as 1/z or a depth buffer, or without perspective",
-        [SAY_OFFSET] = "if something is added",
-        [SAY_INVERSE] = "as 1/z",
-    };
-    static const char *const remedies[] = {
-        [SAY_PLANAR] = "--depth-type planar",
-        [SAY_RADIAL] = "--depth-type radial",
-        [SAY_LINEAR] = "--depth-type inverse, device with --near and --far, or --ortho WIDTH",
-        [SAY_OFFSET] = "--depth-type normalized with --depth-range, or radial-near with --near",
-        [SAY_INVERSE] = "--depth-type inverse",
+    static const struct {
+        const char *seen, *remedy;
+    } words[] = {
+        [SAY_PLANAR] = {"as distances along the view axis", "--depth-type planar"},
+        [SAY_RADIAL] = {"as distances from the eye", "--depth-type radial"},
+        [SAY_LINEAR] = {"as 1/z or a depth buffer, or without perspective",
+                        "--depth-type inverse, device with --near and --far, or --ortho WIDTH"},
+        [SAY_OFFSET] = {"if something is added",
+                        "--depth-type normalized with --depth-range, or radial-near with --near"},
+        [SAY_INVERSE] = {"as 1/z", "--depth-type inverse"},
     };
     if (g->normals || options->is_type_recorded)
         return true;
@@ -424,8 +421,8 @@ static bool check_told(struct gbuffer *g, const struct gbuffer_options *options,
                     "%s: %s says that depth '%s' is %s, but flat things are flat only %s: %s is "
                     "taken (%s overrides)",
                     path, gbuffer_teller_of_type(g, options), g->roles.kind[ROLE_DEPTH].label,
-                    depth_type_name(g->depth_type), seen[say], depth_type_name(g->depth_type),
-                    remedies[say]);
+                    depth_type_name(g->depth_type), words[say].seen, depth_type_name(g->depth_type),
+                    words[say].remedy);
     return true;
 }
 

@@ -119,19 +119,26 @@ static double share_with_offset(const struct triple *triples, size_t count, doub
     return (double)near_it / (double)count;
 }
 
-/* Depth that lacks something, or counts down from 1 or from a far plane. None is longer than the
- * distance, but that of a range whose ends are told may be. */
-static double best_offset(const struct triple *triples, size_t count, bool may_be_longer,
-                          double *offset)
+/* May so much be missing from a depth? None is longer than the distance, or all count down from 1
+ * or from a far plane. A range whose ends are told, or NULL, lies before the eye as a whole. */
+static bool is_likely(const struct depth_range *range, double depth, double offset)
+{
+    if (!isfinite(offset) || !range)
+        return isfinite(offset) && (offset > 0 || depth + offset < 0);
+    return fmin(range->zero, range->one) + offset >= 0 ||
+           fmax(range->zero, range->one) + offset <= 0;
+}
+
+static double best_offset(const struct triple *triples, size_t count,
+                          const struct depth_range *range, double *offset)
 {
     double best = 0;
     *offset = 0;
     for (size_t k = 0; k < OFFSETS; k++) {
         const struct triple *t = &triples[k * count / OFFSETS];
         const double c = t->depth * (1.0 / t->planar - 1.0);
-        const bool counts_down = t->depth + c < 0;
-        const bool is_likely = isfinite(c) && (c > 0 || counts_down || may_be_longer);
-        const double share = is_likely ? share_with_offset(triples, count, c) : 0;
+        const double share =
+            is_likely(range, t->depth, c) ? share_with_offset(triples, count, c) : 0;
         if (share > best) {
             best = share;
             *offset = c;
@@ -189,7 +196,8 @@ static bool read_planes(const struct gbuffer *g, double gamma, struct depth_plan
         planes->linear = share_near(triples, count, 0.0, false);
         planes->radial = share_near(triples, count, 1.0, true);
         planes->offset_share =
-            best_offset(triples, count, g->depth_type == DEPTH_NORMALIZED, &planes->offset);
+            best_offset(triples, count, g->depth_type == DEPTH_NORMALIZED ? &g->depth_range : NULL,
+                        &planes->offset);
         read_curves(triples, count, planes);
     }
     planes->count = count;
@@ -223,11 +231,13 @@ bool gbuffer_find_gamma(const struct gbuffer *g, double *gamma)
     return true;
 }
 
-/* Steps of halves leave only what bends most, which says nothing of all else. */
+/* Steps of halves leave only what bends most, which says nothing of all else: one in SPARSE of what
+ * is looked at is not enough. */
 static size_t few_of(const struct gbuffer *g)
 {
+    enum { SPARSE = 200 };
     const size_t all = gbuffer_texels(g) * 2;
-    return (all < MOST_TRIPLES ? all : MOST_TRIPLES) / 200;
+    return (all < MOST_TRIPLES ? all : MOST_TRIPLES) / SPARSE;
 }
 
 bool gbuffer_warn_of_curve(struct gbuffer *g, const char *path, struct report *report)
