@@ -177,6 +177,8 @@ vkao_result vkao_context_create(const vkao_context_info *caller_info, vkao_conte
     ctx->physical_device = info.physical_device;
     ctx->has_16bit_storage = has_16bit_storage(info.enabled_features);
     ctx->live = &ctx->live_count;
+    ctx->shared = &ctx->shared_pipelines;
+    atomic_flag_clear(&ctx->shared->is_busy);
     if (info.allocator) {
         ctx->allocator_copy = *info.allocator;
         ctx->allocator = &ctx->allocator_copy;

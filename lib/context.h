@@ -9,6 +9,12 @@
 
 #include <stdatomic.h>
 
+/* Of all effects of a context, see pipelines.h. The flag is set by who goes through the list. */
+struct vkao_shared_pipelines {
+    atomic_flag is_busy;
+    struct vkao_pipelines *first;
+};
+
 struct vkao_context {
     struct vk_table vk;
     struct vkao_logger log;
@@ -25,9 +31,10 @@ struct vkao_context {
     VkDeviceSize granularity;               /* between images and buffers in one memory */
     bool is_cpu;                            /* and can do what the CPU's passes want */
     bool has_16bit_storage;
-    /* Effects and frames that live. The only member that changes; a pointer, so that contexts can
-     * be const. */
+    /* Effects and frames that live, and what effects share. Members that change are behind pointers,
+     * so that contexts can be const. */
     atomic_uint *live, live_count;
+    struct vkao_shared_pipelines *shared, shared_pipelines;
 };
 
 /* Host memory through the caller's callbacks, zeroed; NULL when there is none. */

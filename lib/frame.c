@@ -4,6 +4,7 @@
 #include "cpu/cpu.h"
 #include "formats.h"
 #include "parameters.h"
+#include "pipelines.h"
 #include "slots.h"
 #include "stages.h"
 
@@ -196,7 +197,7 @@ static vkao_result create_sets(vkao_frame *frame)
     uint32_t counts[TYPES] = {program->count};
     for (uint32_t i = 0; i < program->count; ++i) {
         const struct vkao_step *step = &program->steps[i];
-        layouts[i] = step->set_layout;
+        layouts[i] = step->pipelines->set_layout;
         for (uint32_t k = 0; k < step->use_count; ++k) {
             for (int t = 0; t < TYPES; ++t)
                 counts[t] += vkao_use_type(&step->uses[k]) == types[t];

@@ -85,6 +85,7 @@ enum { VKAO_MOST_USES = 12, VKAO_MOST_PASSES = 16, VKAO_MOST_FORMS = 4 };
 enum { VKAO_FORM_TONED = 1, VKAO_FORM_COPIED = 2 };
 
 struct vkao_recording;
+struct vkao_pipelines;
 
 struct vkao_pass {
     const char *name;  /* of its objects: "vkao blur x" */
@@ -115,9 +116,7 @@ struct vkao_step {
     /* the row's, with resources that the effect puts in their place */
     struct vkao_use uses[VKAO_MOST_USES + 1];
     uint32_t use_count;
-    VkDescriptorSetLayout set_layout;
-    VkPipelineLayout layout;
-    _Atomic(VkPipeline) forms[VKAO_MOST_FORMS]; /* those that some frame may need; others are 0 */
+    struct vkao_pipelines *pipelines; /* NULL before vkao_program_compile */
 };
 
 struct vkao_program {
@@ -126,7 +125,6 @@ struct vkao_program {
     bool is_cpu, is_packed;    /* of the CPU's passes; AO goes through the buffer */
     bool has_codes;            /* of an image: AO_NOISY is CODES */
     uint32_t constants[VKAO_SETTING_COUNT];
-    VkSampler nearest; /* if any row names it; its coordinates are texels */
     uint32_t count;
     struct vkao_step steps[VKAO_MOST_PASSES];
     /* VKAO_BIT of the resources that may be; for others of the rows there are stand-ins */
@@ -153,7 +151,7 @@ void vkao_program_lifetime(const struct vkao_program *program, enum vkao_resourc
 /* How a shader sees a use. */
 VkDescriptorType vkao_use_type(const struct vkao_use *use);
 
-/* Sampler, layouts and pipelines of all rows. On failure the rest is for vkao_program_destroy. */
+/* Layouts and pipelines of all rows. On failure the rest is for vkao_program_destroy. */
 vkao_result vkao_program_compile(struct vkao_program *program);
 /* Of all rows the form, VKAO_FORM_*, where it is still missing, and on a GPU that with a tone too;
  * vkao_program_compile begins with COPIED. Any number of threads at a time. */

@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "recording.h"
 
+#include "pipelines.h"
+
 struct vkao_rect vkao_area(const struct vkao_recording *r, enum vkao_area area)
 {
     const vkao_effect_info *e = &r->frame->program->settings;
@@ -51,13 +53,12 @@ void vkao_barrier(const struct vkao_recording *r, enum vkao_access before, enum 
 void vkao_bind(const struct vkao_recording *r, uint32_t pass, const void *push, size_t bytes)
 {
     const struct vk_table *vk = &r->frame->ctx->vk;
-    const struct vkao_step *step = &r->frame->program->steps[pass];
+    const struct vkao_pipelines *p = r->frame->program->steps[pass].pipelines;
     vk->CmdBindPipeline(r->cmd, VK_PIPELINE_BIND_POINT_COMPUTE,
-                        step->forms[r->form & (step->row->forms - 1)]);
-    vk->CmdBindDescriptorSets(r->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, step->layout, 0, 1,
+                        p->forms[r->form & (p->row->forms - 1)]);
+    vk->CmdBindDescriptorSets(r->cmd, VK_PIPELINE_BIND_POINT_COMPUTE, p->layout, 0, 1,
                               &r->frame->sets[pass], 0, NULL);
-    vk->CmdPushConstants(r->cmd, step->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, (uint32_t)bytes,
-                         push);
+    vk->CmdPushConstants(r->cmd, p->layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, (uint32_t)bytes, push);
 }
 
 void vkao_dispatch(const struct vkao_recording *r, uint32_t pass, struct vkao_rect rect)

@@ -416,9 +416,10 @@ VKAO_DEFAULT(vkao_effect_info)
  * effects and use one at once; destroying it is the exception. */
 typedef struct vkao_effect vkao_effect;
 
-/* Compiles the passes of exactly these settings, counts known and choices made. Takes
- * milliseconds to seconds, so call it while loading or in a thread. Errors: INVALID_ARGUMENT,
- * UNSUPPORTED, OUT_OF_*_MEMORY, VULKAN. */
+/* Compiles the passes of exactly these settings, counts known and choices made. Passes that a
+ * living effect of the context has alike are shared with it, and not looked for in pipeline_cache.
+ * Takes milliseconds to seconds, so call it while loading or in a thread. Errors:
+ * INVALID_ARGUMENT, UNSUPPORTED, OUT_OF_*_MEMORY, VULKAN. */
 VKAO_API VKAO_MUST_CHECK vkao_result vkao_effect_create(const vkao_context *ctx,
                                                         const vkao_effect_info *info,
                                                         vkao_effect **out);

@@ -226,17 +226,33 @@ FAKE_CREATE(Sampler, SAMPLER, {
 FAKE_DESTROY(Sampler, SAMPLER)
 FAKE_DESTROY(Pipeline, PIPELINE)
 
-/* What a pipeline is made of. */
+/* By their ids, as bits, those that the SPIR-V says it has. */
+static uint32_t constants_of(const uint32_t *code)
+{
+    enum { HEADER = 5, DECORATE = 71, FUNCTION = 54, SPEC_ID = 1 };
+    uint32_t mask = 0;
+    for (code += HEADER; (code[0] & 0xffff) != FUNCTION; code += code[0] >> 16) {
+        if ((code[0] & 0xffff) == DECORATE && code[2] == SPEC_ID)
+            mask |= 1u << code[3];
+    }
+    return mask;
+}
+
+/* What a pipeline is made of: a value for each constant of its shader, and for no other. */
 static void keep_constants(struct fake_vulkan *fake, struct fake_object *object,
                            const VkSpecializationInfo *info)
 {
+    const uint32_t wanted = constants_of(object->code);
     for (uint32_t i = 0; info && i < info->mapEntryCount; ++i) {
         const VkSpecializationMapEntry *e = &info->pMapEntries[i];
         if (e->constantID >= FAKE_CONSTANTS || e->size != 4 || e->offset + e->size > info->dataSize)
             fake_misuse(fake, "vkCreateComputePipelines: constant %u", e->constantID);
         else
             memcpy(&object->constants[e->constantID], (const char *)info->pData + e->offset, 4);
+        object->given |= 1u << e->constantID;
     }
+    if (object->given != wanted)
+        fake_misuse(fake, "vkCreateComputePipelines: constants %#x of %#x", object->given, wanted);
 }
 
 static VKAPI_ATTR VkResult VKAPI_CALL fake_CreateComputePipelines(

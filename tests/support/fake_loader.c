@@ -32,10 +32,12 @@ static VKAPI_ATTR void VKAPI_CALL fake_GetPhysicalDeviceFormatProperties(VkPhysi
                                                                          VkFormat format,
                                                                          VkFormatProperties *out)
 {
-    const struct fake_vulkan *fake = fake_of(device);
+    struct fake_vulkan *fake = fake_of(device);
     const VkFormatFeatureFlags all =
         VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
-    fake_note(fake_of(device), "vkGetPhysicalDeviceFormatProperties");
+    pthread_mutex_lock(&fake->lock);
+    fake_note(fake, "vkGetPhysicalDeviceFormatProperties");
+    pthread_mutex_unlock(&fake->lock);
     *out = (VkFormatProperties){.optimalTilingFeatures = all,
                                 .linearTilingFeatures = all,
                                 .bufferFeatures = fake->buffer_features};

@@ -83,6 +83,7 @@ struct fake_object {
     uint64_t views[FAKE_WRITES];        /* descriptors of a set, by binding */
     const uint32_t *code;               /* SPIR-V of a module, and of a pipeline */
     uint32_t constants[FAKE_CONSTANTS]; /* of a pipeline, by their ids */
+    uint32_t given;                     /* bits of those that it was given */
 };
 
 struct fake_vulkan {

@@ -5,6 +5,7 @@
 #include "effect.h"
 #include "world.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -88,22 +89,95 @@ static void settings_reach_the_shaders(void **state)
     w.effect_info.blur_normal_power = 8.0f;
     w.effect_info.falloff = VKAO_FALLOFF_THRESHOLD;
     assert_int_equal(create(&w), VKAO_SUCCESS);
-    unsigned pipelines = 0;
-    for (size_t i = 0; i < w.fake.object_count; ++i) {
-        const struct fake_object *o = &w.fake.objects[i];
-        float power;
-        if (o->type != VK_OBJECT_TYPE_PIPELINE)
-            continue;
-        ++pipelines;
-        memcpy(&power, &o->constants[VKAO_SETTING_BLUR_NORMAL_POWER], sizeof power);
-        assert_int_equal(o->constants[VKAO_SETTING_SLICES], 3);
-        assert_int_equal(o->constants[VKAO_SETTING_STEPS], 5);
-        assert_int_equal(o->constants[VKAO_SETTING_BLUR_RADIUS], 7);
-        assert_int_equal(o->constants[VKAO_SETTING_NORMAL_ENCODING], VKAO_NORMALS_OCT_UNORM);
-        assert_int_equal(o->constants[VKAO_SETTING_THRESHOLD], 1);
-        assert_true(power == 8.0f);
+    const float power = 8.0f;
+    uint32_t power_bits;
+    memcpy(&power_bits, &power, sizeof power_bits);
+    const uint32_t wanted[][2] = {
+        {VKAO_SETTING_SLICES, 3},      {VKAO_SETTING_STEPS, 5},
+        {VKAO_SETTING_BLUR_RADIUS, 7}, {VKAO_SETTING_NORMAL_ENCODING, VKAO_NORMALS_OCT_UNORM},
+        {VKAO_SETTING_THRESHOLD, 1},   {VKAO_SETTING_BLUR_NORMAL_POWER, power_bits},
+    };
+    for (size_t k = 0; k < sizeof wanted / sizeof wanted[0]; ++k) {
+        unsigned given = 0;
+        for (size_t i = 0; i < w.fake.object_count; ++i) {
+            const struct fake_object *o = &w.fake.objects[i];
+            if (o->type != VK_OBJECT_TYPE_PIPELINE || !(o->given >> wanted[k][0] & 1u))
+                continue;
+            ++given;
+            assert_int_equal(o->constants[wanted[k][0]], wanted[k][1]);
+        }
+        assert_true(given > 0);
     }
-    assert_int_equal(pipelines, 6); /* the last of the blur in two forms */
+    /* the last of the blur in two forms */
+    assert_int_equal(fake_live_of(&w.fake, VK_OBJECT_TYPE_PIPELINE), 6);
+    world_close(&w);
+}
+
+/* A driver compiles what two effects want alike once, and keeps it for as long as either lives. */
+static void effects_share_what_they_want_alike(void **state)
+{
+    (void)state;
+    for (int cpu = 0; cpu < 2; ++cpu) {
+        struct world w;
+        vkao_effect *other, *same;
+        open_for(&w, VKAO_STAGE_ALL, cpu, true);
+        assert_int_equal(create(&w), VKAO_SUCCESS);
+        const size_t all = fake_live_of(&w.fake, VK_OBJECT_TYPE_PIPELINE);
+        const size_t layouts = fake_live_of(&w.fake, VK_OBJECT_TYPE_PIPELINE_LAYOUT);
+        assert_int_equal(vkao_effect_create(w.ctx, &w.effect_info, &same), VKAO_SUCCESS);
+        assert_int_equal(fake_live_of(&w.fake, VK_OBJECT_TYPE_PIPELINE), all);
+        w.effect_info.composite_mode = VKAO_COMPOSITE_AO_ONLY; /* of the last pass alone */
+        assert_int_equal(vkao_effect_create(w.ctx, &w.effect_info, &other), VKAO_SUCCESS);
+        assert_int_equal(fake_live_of(&w.fake, VK_OBJECT_TYPE_PIPELINE), all + 1);
+        assert_int_equal(fake_live_of(&w.fake, VK_OBJECT_TYPE_PIPELINE_LAYOUT), layouts + 1);
+        assert_int_equal(fake_count(&w.fake, "vkCreateComputePipelines"), all + 1);
+        vkao_effect_destroy(w.effect);
+        assert_int_equal(fake_live_of(&w.fake, VK_OBJECT_TYPE_PIPELINE), all + 1);
+        vkao_effect_destroy(same);
+        assert_int_equal(fake_live_of(&w.fake, VK_OBJECT_TYPE_PIPELINE), all);
+        w.effect = other;
+        world_close(&w);
+    }
+}
+
+struct maker {
+    struct world *world;
+    vkao_effect *effect;
+    vkao_result result;
+};
+
+static void *make(void *data)
+{
+    struct maker *maker = data;
+    maker->result =
+        vkao_effect_create(maker->world->ctx, &maker->world->effect_info, &maker->effect);
+    return NULL;
+}
+
+/* Neither waits for what the other compiles: that of one of them goes. */
+static void two_threads_compile_the_same(void **state)
+{
+    (void)state;
+    struct world w;
+    pthread_barrier_t compiling;
+    assert_int_equal(pthread_barrier_init(&compiling, NULL, 2), 0);
+    open_for(&w, VKAO_STAGE_ALL, false, true);
+    w.fake.compiling = &compiling;
+    struct maker makers[2] = {{&w, NULL, VKAO_SUCCESS}, {&w, NULL, VKAO_SUCCESS}};
+    pthread_t threads[2];
+    for (int i = 0; i < 2; ++i)
+        assert_int_equal(pthread_create(&threads[i], NULL, make, &makers[i]), 0);
+    for (int i = 0; i < 2; ++i) {
+        pthread_join(threads[i], NULL);
+        assert_int_equal(makers[i].result, VKAO_SUCCESS);
+    }
+    w.fake.compiling = NULL;
+    pthread_barrier_destroy(&compiling);
+    const size_t live = fake_live_of(&w.fake, VK_OBJECT_TYPE_PIPELINE);
+    assert_int_equal(fake_count(&w.fake, "vkCreateComputePipelines"), 2 * live);
+    vkao_effect_destroy(makers[0].effect);
+    assert_int_equal(fake_live_of(&w.fake, VK_OBJECT_TYPE_PIPELINE), live);
+    w.effect = makers[1].effect;
     world_close(&w);
 }
 
@@ -325,6 +399,8 @@ int main(void)
         cmocka_unit_test(every_effect_stays_within_the_limits_of_vulkan_1_1),
         cmocka_unit_test(stages_compile_their_own_passes_only),
         cmocka_unit_test(settings_reach_the_shaders),
+        cmocka_unit_test(effects_share_what_they_want_alike),
+        cmocka_unit_test(two_threads_compile_the_same),
         cmocka_unit_test(toned_recordings_use_their_own_form),
         cmocka_unit_test(failing_nth_call_leaks_nothing),
         cmocka_unit_test(failing_nth_host_allocation_leaks_nothing),

@@ -2,6 +2,7 @@
  *
  * What recording leaves in the command buffer: barriers, dispatches, push constants, and nothing
  * else. */
+#include "pipelines.h"
 #include "recording.h"
 #include "world.h"
 
@@ -27,7 +28,7 @@ static const struct vkao_step *step_of(const struct world *w, uint64_t pipeline)
     const struct vkao_program *program = w->frame->program;
     for (uint32_t i = 0; i < program->count; ++i) {
         for (uint32_t form = 0; form < VKAO_MOST_FORMS; ++form) {
-            if (pipeline && (uint64_t)program->steps[i].forms[form] == pipeline)
+            if (pipeline && (uint64_t)program->steps[i].pipelines->forms[form] == pipeline)
                 return &program->steps[i];
         }
     }

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT
+ *
+ * What a device compiles of rows. Effects of one context share those that they want alike: effects
+ * differ in few of their passes, and a driver takes milliseconds to seconds for each. */
+#ifndef VKAO_PIPELINES_H_
+#define VKAO_PIPELINES_H_
+
+#include "passes.h"
+
+/* A row, compiled. */
+struct vkao_pipelines {
+    const struct vkao_pass *row;
+    /* What else makes it what it is: descriptors, constants and which forms there are from the
+     * start. Of constants those that the shader uses; more are declared. */
+    VkDescriptorType types[VKAO_MOST_USES];
+    uint32_t use_count;
+    uint32_t declared, used, constants[VKAO_SETTING_COUNT];
+    bool is_cpu;
+    VkSampler nearest; /* if the row names it; its coordinates are texels */
+    VkDescriptorSetLayout set_layout;
+    VkPipelineLayout layout;
+    _Atomic(VkPipeline) forms[VKAO_MOST_FORMS]; /* those that some frame may need; others are 0 */
+    uint32_t users;                             /* steps of effects */
+    struct vkao_pipelines *next;
+};
+
+/* Those of the step, with layouts; of pipelines what there is. *out is NULL on failure, else for
+ * vkao_pipelines_return. Any number of threads at a time. */
+vkao_result vkao_pipelines_take(const struct vkao_program *program, const struct vkao_step *step,
+                                struct vkao_pipelines **out);
+/* As vkao_program_complete, of one row. */
+vkao_result vkao_pipelines_complete(const vkao_context *ctx, struct vkao_pipelines *p,
+                                    uint32_t form, VkPipelineCache cache);
+/* The last user destroys them. p: may be NULL. */
+void vkao_pipelines_return(const vkao_context *ctx, struct vkao_pipelines *p);
+
+#endif
