@@ -3,6 +3,7 @@
 
 #include "cpu/cpu.h"
 #include "parameters.h"
+#include "pipelines.h"
 #include "stages.h"
 
 #include <string.h>

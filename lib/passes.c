@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "passes.h"
 
-#include "pipelines.h"
-
 #include <assert.h>
 #include <stddef.h>
 
@@ -104,56 +102,4 @@ VkDescriptorType vkao_use_type(const struct vkao_use *use)
         return use->texels ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
                            : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     return use->writes ? VK_DESCRIPTOR_TYPE_STORAGE_IMAGE : VK_DESCRIPTOR_TYPE_SAMPLED_IMAGE;
-}
-
-vkao_result vkao_program_complete(struct vkao_program *program, uint32_t form)
-{
-    vkao_result result = VKAO_SUCCESS;
-    for (uint32_t i = 0; result == VKAO_SUCCESS && i < program->count; ++i)
-        result = vkao_pipelines_complete(program->ctx, program->steps[i].pipelines, form,
-                                         VK_NULL_HANDLE);
-    return result;
-}
-
-/* What a job of vkao_program_compile works on. */
-struct compilation {
-    struct vkao_program *program;
-    vkao_result results[VKAO_MOST_PASSES];
-};
-
-static void compile_step(void *data, uint32_t i)
-{
-    struct compilation *c = data;
-    const struct vkao_program *program = c->program;
-    struct vkao_step *step = &c->program->steps[i];
-    c->results[i] = vkao_pipelines_take(program, step, &step->pipelines);
-    if (c->results[i] == VKAO_SUCCESS)
-        c->results[i] = vkao_pipelines_complete(program->ctx, step->pipelines, VKAO_FORM_COPIED,
-                                                program->settings.pipeline_cache);
-}
-
-vkao_result vkao_program_compile(struct vkao_program *program)
-{
-    struct compilation compilation = {.program = program};
-    const vkao_effect_info *info = &program->settings;
-    if (info->parallel) {
-        info->parallel(info->parallel_user_data, program->count, compile_step, &compilation);
-    } else {
-        for (uint32_t i = 0; i < program->count; ++i) {
-            compile_step(&compilation, i);
-            if (compilation.results[i] != VKAO_SUCCESS)
-                break;
-        }
-    }
-    for (uint32_t i = 0; i < program->count; ++i) {
-        if (compilation.results[i] != VKAO_SUCCESS)
-            return compilation.results[i];
-    }
-    return VKAO_SUCCESS;
-}
-
-void vkao_program_destroy(struct vkao_program *program)
-{
-    for (uint32_t i = 0; i < program->count; ++i)
-        vkao_pipelines_return(program->ctx, program->steps[i].pipelines);
 }

@@ -116,7 +116,7 @@ struct vkao_step {
     /* the row's, with resources that the effect puts in their place */
     struct vkao_use uses[VKAO_MOST_USES + 1];
     uint32_t use_count;
-    struct vkao_pipelines *pipelines; /* NULL before vkao_program_compile */
+    struct vkao_pipelines *pipelines; /* see pipelines.h */
 };
 
 struct vkao_program {
@@ -150,12 +150,5 @@ void vkao_program_lifetime(const struct vkao_program *program, enum vkao_resourc
 
 /* How a shader sees a use. */
 VkDescriptorType vkao_use_type(const struct vkao_use *use);
-
-/* Layouts and pipelines of all rows. On failure the rest is for vkao_program_destroy. */
-vkao_result vkao_program_compile(struct vkao_program *program);
-/* Of all rows the form, VKAO_FORM_*, where it is still missing, and on a GPU that with a tone too;
- * vkao_program_compile begins with COPIED. Any number of threads at a time. */
-vkao_result vkao_program_complete(struct vkao_program *program, uint32_t form);
-void vkao_program_destroy(struct vkao_program *program);
 
 #endif

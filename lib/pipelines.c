@@ -182,8 +182,9 @@ static uint32_t missing_forms(const struct vkao_pipelines *p, uint32_t form)
     return missing;
 }
 
-vkao_result vkao_pipelines_complete(const vkao_context *ctx, struct vkao_pipelines *p,
-                                    uint32_t form, VkPipelineCache cache)
+/* As vkao_program_complete, of one row. */
+static vkao_result create_forms(const vkao_context *ctx, struct vkao_pipelines *p, uint32_t form,
+                                VkPipelineCache cache)
 {
     VkShaderModule module = VK_NULL_HANDLE;
     const uint32_t missing = missing_forms(p, form);
@@ -257,8 +258,9 @@ static void destroy(const vkao_context *ctx, struct vkao_pipelines *p)
     vkao_free(ctx->allocator, p);
 }
 
-vkao_result vkao_pipelines_take(const struct vkao_program *program, const struct vkao_step *step,
-                                struct vkao_pipelines **out)
+/* Those of the step, with layouts; of pipelines what there is. *out is NULL on failure. */
+static vkao_result take(const struct vkao_program *program, const struct vkao_step *step,
+                        struct vkao_pipelines **out)
 {
     const vkao_context *ctx = program->ctx;
     struct vkao_pipelines *own = vkao_calloc(ctx->allocator, sizeof *own);
@@ -278,7 +280,8 @@ vkao_result vkao_pipelines_take(const struct vkao_program *program, const struct
     return result;
 }
 
-void vkao_pipelines_return(const vkao_context *ctx, struct vkao_pipelines *p)
+/* The last user destroys them. p: may be NULL. */
+static void give_back(const vkao_context *ctx, struct vkao_pipelines *p)
 {
     if (!p)
         return;
@@ -292,4 +295,57 @@ void vkao_pipelines_return(const vkao_context *ctx, struct vkao_pipelines *p)
     unlock(ctx->shared);
     if (is_last)
         destroy(ctx, p);
+}
+
+/* --- All of an effect --- */
+
+vkao_result vkao_program_complete(struct vkao_program *program, uint32_t form)
+{
+    vkao_result result = VKAO_SUCCESS;
+    for (uint32_t i = 0; result == VKAO_SUCCESS && i < program->count; ++i)
+        result = create_forms(program->ctx, program->steps[i].pipelines, form, VK_NULL_HANDLE);
+    return result;
+}
+
+/* What a job of vkao_program_compile works on. */
+struct compilation {
+    struct vkao_program *program;
+    vkao_result results[VKAO_MOST_PASSES];
+};
+
+static void compile_step(void *data, uint32_t i)
+{
+    struct compilation *c = data;
+    const struct vkao_program *program = c->program;
+    struct vkao_step *step = &c->program->steps[i];
+    c->results[i] = take(program, step, &step->pipelines);
+    if (step->pipelines)
+        c->results[i] = create_forms(program->ctx, step->pipelines, VKAO_FORM_COPIED,
+                                     program->settings.pipeline_cache);
+}
+
+vkao_result vkao_program_compile(struct vkao_program *program)
+{
+    struct compilation compilation = {.program = program};
+    const vkao_effect_info *info = &program->settings;
+    if (info->parallel) {
+        info->parallel(info->parallel_user_data, program->count, compile_step, &compilation);
+    } else {
+        for (uint32_t i = 0; i < program->count; ++i) {
+            compile_step(&compilation, i);
+            if (compilation.results[i] != VKAO_SUCCESS)
+                break;
+        }
+    }
+    for (uint32_t i = 0; i < program->count; ++i) {
+        if (compilation.results[i] != VKAO_SUCCESS)
+            return compilation.results[i];
+    }
+    return VKAO_SUCCESS;
+}
+
+void vkao_program_destroy(struct vkao_program *program)
+{
+    for (uint32_t i = 0; i < program->count; ++i)
+        give_back(program->ctx, program->steps[i].pipelines);
 }

@@ -24,14 +24,11 @@ struct vkao_pipelines {
     struct vkao_pipelines *next;
 };
 
-/* Those of the step, with layouts; of pipelines what there is. *out is NULL on failure, else for
- * vkao_pipelines_return. Any number of threads at a time. */
-vkao_result vkao_pipelines_take(const struct vkao_program *program, const struct vkao_step *step,
-                                struct vkao_pipelines **out);
-/* As vkao_program_complete, of one row. */
-vkao_result vkao_pipelines_complete(const vkao_context *ctx, struct vkao_pipelines *p,
-                                    uint32_t form, VkPipelineCache cache);
-/* The last user destroys them. p: may be NULL. */
-void vkao_pipelines_return(const vkao_context *ctx, struct vkao_pipelines *p);
+/* Layouts and pipelines of all rows. On failure the rest is for vkao_program_destroy. */
+vkao_result vkao_program_compile(struct vkao_program *program);
+/* Of all rows the form, VKAO_FORM_*, where it is still missing, and on a GPU that with a tone too;
+ * vkao_program_compile begins with COPIED. Any number of threads at a time. */
+vkao_result vkao_program_complete(struct vkao_program *program, uint32_t form);
+void vkao_program_destroy(struct vkao_program *program);
 
 #endif

@@ -6,6 +6,7 @@
 #include "cpu/cpu.h"
 #include "formats.h"
 #include "parameters.h"
+#include "pipelines.h"
 #include "stages.h"
 
 #include <string.h>

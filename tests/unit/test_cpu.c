@@ -3,6 +3,7 @@
  * The CPU's passes: where they are chosen, how the blur goes down the image in strips, which tiles
  * are looked at, when AO is copied, and what becomes of frames that its buffers cannot hold. */
 #include "cpu/cpu.h"
+#include "pipelines.h"
 #include "world.h"
 
 #include "cpu/layout.h"
