@@ -31,8 +31,8 @@ struct vkao_context {
     VkDeviceSize granularity;               /* between images and buffers in one memory */
     bool is_cpu;                            /* and can do what the CPU's passes want */
     bool has_16bit_storage;
-    /* Effects and frames that live, and what effects share. What changes is behind pointers, so that
-     * contexts can be const. */
+    /* Effects and frames that live, and what effects share. What changes is behind pointers, so
+     * that contexts can be const. */
     atomic_uint *live, live_count;
     struct vkao_shared_pipelines *shared, shared_pipelines;
 };
