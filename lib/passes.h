@@ -45,7 +45,7 @@ enum vkao_resource {
     VKAO_RESOURCE_CONSTANTS = VKAO_IMAGE_COUNT,
     VKAO_RESOURCE_CPU,
     VKAO_RESOURCE_COUNT = VKAO_RESOURCE_CPU + 9,
-    VKAO_RESOURCE_SAMPLER = VKAO_RESOURCE_COUNT /* the program's, in the layouts themselves */
+    VKAO_RESOURCE_SAMPLER = VKAO_RESOURCE_COUNT /* in the layouts themselves */
 };
 
 #define VKAO_BIT(resource) (1u << (resource))

@@ -35,9 +35,6 @@ static void describe(const struct vkao_program *program, const struct vkao_step 
 {
     p->row = step->row;
     p->is_cpu = program->is_cpu;
-    p->use_count = step->use_count;
-    for (uint32_t i = 0; i < step->use_count; ++i)
-        p->types[i] = vkao_use_type(&step->uses[i]);
     find_constants(step->row, &p->declared, &p->used);
     memcpy(p->constants, program->constants, sizeof p->constants);
     p->constants[VKAO_SETTING_VERTICAL] = step->row->vertical;
@@ -45,12 +42,10 @@ static void describe(const struct vkao_program *program, const struct vkao_step 
 
 static bool is_alike(const struct vkao_pipelines *a, const struct vkao_pipelines *b)
 {
-    for (uint32_t i = 0; i < VKAO_SETTING_COUNT; ++i) {
-        if (a->used >> i & 1u && a->constants[i] != b->constants[i])
-            return false;
-    }
-    return a->row == b->row && a->is_cpu == b->is_cpu && a->use_count == b->use_count &&
-           memcmp(a->types, b->types, sizeof a->types) == 0;
+    bool alike = a->row == b->row && a->is_cpu == b->is_cpu;
+    for (uint32_t i = 0; alike && i < VKAO_SETTING_COUNT; ++i)
+        alike = !(a->used >> i & 1u) || a->constants[i] == b->constants[i];
+    return alike;
 }
 
 /* --- Layouts --- */
@@ -81,14 +76,16 @@ static vkao_result create_layouts(const vkao_context *ctx, struct vkao_pipelines
         .descriptorCount = 1,
         .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
     }};
-    for (uint32_t i = 0; i < p->use_count; ++i) {
-        const bool is_sampler = p->types[i] == VK_DESCRIPTOR_TYPE_SAMPLER;
+    uint32_t count = 1;
+    for (const struct vkao_use *use = p->row->uses; use->binding; ++use) {
+        const VkDescriptorType type = vkao_use_type(use);
+        const bool is_sampler = type == VK_DESCRIPTOR_TYPE_SAMPLER;
         vkao_result result = is_sampler ? create_sampler(ctx, p) : VKAO_SUCCESS;
         if (result != VKAO_SUCCESS)
             return result;
-        bindings[i + 1] = (VkDescriptorSetLayoutBinding){
-            .binding = p->row->uses[i].binding,
-            .descriptorType = p->types[i],
+        bindings[count++] = (VkDescriptorSetLayoutBinding){
+            .binding = use->binding,
+            .descriptorType = type,
             .descriptorCount = 1,
             .stageFlags = VK_SHADER_STAGE_COMPUTE_BIT,
             .pImmutableSamplers = is_sampler ? &p->nearest : NULL,
@@ -98,7 +95,7 @@ static vkao_result create_layouts(const vkao_context *ctx, struct vkao_pipelines
         ctx->device,
         &(VkDescriptorSetLayoutCreateInfo){
             .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
-            .bindingCount = p->use_count + 1,
+            .bindingCount = count,
             .pBindings = bindings,
         },
         ctx->allocator, &p->set_layout);

@@ -9,13 +9,11 @@
 
 /* A row, compiled. */
 struct vkao_pipelines {
-    const struct vkao_pass *row;
-    /* What else makes it what it is: descriptors, constants and which forms there are from the
-     * start. Of constants those that the shader uses; more are declared. */
-    VkDescriptorType types[VKAO_MOST_USES];
-    uint32_t use_count;
-    uint32_t declared, used, constants[VKAO_SETTING_COUNT];
-    bool is_cpu;
+    const struct vkao_pass *row; /* what an effect puts in place of its uses are images too */
+    bool is_cpu;                 /* the effect runs on the CPU's passes: which forms come first */
+    /* Bits of the settings that the shader declares, and of those of them that it uses. */
+    uint32_t declared, used;
+    uint32_t constants[VKAO_SETTING_COUNT];
     VkSampler nearest; /* if the row names it; its coordinates are texels */
     VkDescriptorSetLayout set_layout;
     VkPipelineLayout layout;
