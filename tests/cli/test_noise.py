@@ -18,7 +18,7 @@ from cli import cases, check, check_ao, corpus, main, read_ao, read_parts, write
 TILE, CLIMB = 4, 1 / 1.32471795724474602596 / 4
 WAVES = [(i / TILE, j / TILE + k * CLIMB, i > 0 or k == 0) for k in range(-3, 4)
          for i in range(TILE) for j in range(TILE) if i or j or k]
-# Before the blur they are plain to see in a few.
+# Before the blur they are plain to see in a few. Of a render that names none it is the first.
 PATTERNS, NOISY_PATTERNS = range(8), range(3)
 
 SIZE, STRIDE, WINDOWS = 64, 32, 16
@@ -127,7 +127,7 @@ def darkest(windows, ao):
     return sorted(windows, key=lambda w: ao[w].mean())[:WINDOWS]
 
 
-def render_patterns(scratch, name, patterns, *options):
+def render_patterns(scratch, patterns, *options):
     """Frames of one run, which finds out about them and compiles once: what ao.exr was made with,
     but for the options. What frames do not share lies in records of their own."""
     record = json.loads(read_parts(scratch.path('ao.exr'))[0].attributes['vkao/params'])
@@ -139,11 +139,14 @@ def render_patterns(scratch, name, patterns, *options):
             os.link(scratch.path('in.exr'), scratch.path(f'in.{pattern}.exr'))
     scratch.render('in.@.exr', '-o', 'ao.@.exr', '--like', 'like.@.exr', '--overwrite', 'always',
                    '--frames', f'{patterns[0]}-{patterns[-1]}', *options)
-    images = [read_ao(scratch.path(f'ao.{pattern}.exr')).astype(np.float64) for pattern in patterns]
+    return [read_ao(scratch.path(f'ao.{pattern}.exr')) for pattern in patterns]
+
+
+def stacked(images, name):
     for i, image in enumerate(images):
         check_ao(image, name)
         check(i == 0 or (image != images[0]).any(), f'{name}: patterns of frames are the same')
-    return np.stack(images)
+    return np.stack(images).astype(np.float64)
 
 
 def spectrum_of(images, windows):
@@ -163,8 +166,9 @@ def no_pattern_of_the_noise_is_left(scratch, _, name, quality):
     write_exr(scratch.path('in.exr'), planes_of(name), compression='none')
     scratch.render('in.exr', '-o', 'ao.exr', '--camera', corpus(f'{name}.camera.json'), '--radius',
                    radius, '--pixel-type', 'float', '--compression', 'none', '--quality', quality)
-    blurred = render_patterns(scratch, name, PATTERNS)
-    noisy = render_patterns(scratch, name, NOISY_PATTERNS, '--blur', 0)
+    first = read_ao(scratch.path('ao.exr'))
+    blurred = stacked([first, *render_patterns(scratch, PATTERNS[1:])], name)
+    noisy = stacked(render_patterns(scratch, NOISY_PATTERNS, '--blur', 0), name)
     windows = darkest(flat_windows(name), blurred.mean(0))
     before = Waves(spectrum_of(noisy, windows), quality == 'fast')
     after = Waves(spectrum_of(blurred, windows), quality == 'fast')
