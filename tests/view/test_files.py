@@ -247,6 +247,20 @@ def empty_frame_tells_no_radius(scratch):
     same_picture(shown, preview(scratch, 'in.2.exr', *options), 'AO')
 
 
+def below_gain(picture):
+    """Of the panel in the view of the difference."""
+    panel = picture[:, :PANEL_WIDTH].astype(int)
+    is_yellow = ((panel[..., 0] > 200) & (panel[..., 2] < 120)).any(axis=1)
+    lower = int(np.nonzero(is_yellow)[0].max(initial=37)) - 37  # than without a warning
+    return panel[112 + lower:130 + lower, 8:30]
+
+
+def tells_an_error(picture):
+    """White letters, where the blue mark of side A stands if there is no error to tell."""
+    rows = below_gain(picture)
+    return (rows.min(axis=-1) > 200).any() and (rows[..., 2] - rows[..., 0]).max() < 100
+
+
 @case
 def reference_with_holes_is_measured_where_it_is_known(scratch):
     truth = SCENE.depth() * 0 + np.float32(0.5)
@@ -254,17 +268,25 @@ def reference_with_holes_is_measured_where_it_is_known(scratch):
     write_exr(scratch.path('in.gt.exr'), {'AO': truth})
     size = (WIDTH + PANEL_WIDTH, 700)
     with opened(scratch, '--show', 'difference', size=size) as viewer:
-        def below_gain():
-            panel = screen(scratch, viewer, size)[:, :PANEL_WIDTH].astype(int)
-            is_yellow = ((panel[..., 0] > 200) & (panel[..., 2] < 120)).any(axis=1)
-            lower = int(np.nonzero(is_yellow)[0].max(initial=37)) - 37  # than without a warning
-            return panel[112 + lower:130 + lower, 8:30]
         viewer.wait_title('- Difference -')
-        # White letters, where the blue mark of side A stands if there is no error to tell.
-        until(lambda: (below_gain().min(axis=-1) > 200).any(), 'error')
-        check((below_gain()[..., 2] - below_gain()[..., 0]).max() < 100, 'no error is told')
+        until(lambda: tells_an_error(screen(scratch, viewer, size)), 'error')
         viewer.finish()
         check('are not finite' in viewer.err, f'nothing is said:\n{viewer.err}')
+
+
+@case
+def damaged_reference_is_said_and_not_measured(scratch):
+    write_exr(scratch.path('in.gt.exr'), {'AO': SCENE.depth()})
+    whole = scratch.bytes('in.gt.exr')
+    scratch.write('in.gt.exr', whole[:-200] + bytes(200))
+    size = (WIDTH + PANEL_WIDTH, 700)
+    with opened(scratch, '--show', 'difference', size=size) as viewer:
+        viewer.wait_title('- Difference -')
+        time.sleep(1)
+        shown = viewer.finish()
+        check('in.gt.exr' in viewer.err, f'nothing is said:\n{viewer.err}')
+    blue = below_gain(shown)
+    check((blue[..., 2] - blue[..., 0]).max() >= 100, 'an error is told')
 
 
 if __name__ == '__main__':

@@ -126,7 +126,6 @@ static bool read_reference(struct gpu *gpu, struct loaded_frame *l, struct repor
         memcpy(values + (row + l->placement.top) * extent.width + l->placement.left,
                l->reference_values + row * g->width, g->width * sizeof *values);
     ok = ok && upload(gpu, &l->reference, VK_FORMAT_R32_SFLOAT, extent, values, err);
-    l->reference_radius = reference_radius(&info);
     size_t unknown = 0;
     for (size_t i = 0; ok && i < (size_t)g->width * g->height; i++)
         unknown += isfinite(l->reference_values[i]) ? 0 : 1;
@@ -134,8 +133,13 @@ static bool read_reference(struct gpu *gpu, struct loaded_frame *l, struct repor
         report_warn(report, "reference values",
                     "%s: %zu texels of '%s' are not finite: RMSE is of the others", info.path,
                     unknown, channel);
-    if (ok)
+    if (ok) {
+        l->reference_radius = reference_radius(&info);
         snprintf(l->reference_channel, sizeof l->reference_channel, "%s", channel);
+    } else {
+        free(l->reference_values);
+        l->reference_values = NULL;
+    }
     free(values);
     exr_info_free(&info);
     return ok;
