@@ -122,7 +122,7 @@ static const char *const requirers[VKAO_SLOT_COUNT] = {
 };
 
 static vkao_result check_slot(const struct vkao_program *program, uint32_t i,
-                              const vkao_image *image, bool reads, bool writes)
+                              const vkao_image *image, bool reads, bool writes, bool need_views)
 {
     const vkao_context *ctx = program->ctx;
     const char *name = slots[i].name;
@@ -148,7 +148,9 @@ static vkao_result check_slot(const struct vkao_program *program, uint32_t i,
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT,
                            "%s.format is %s, but effect.ao_format is %s", name, is,
                            vkao_format_name(program->settings.ao_format, other));
-    if (writes ? image->layout != VK_IMAGE_LAYOUT_GENERAL : reads && !read_layout(image->layout))
+    const bool fits =
+        writes ? image->layout == VK_IMAGE_LAYOUT_GENERAL : !reads || read_layout(image->layout);
+    if (need_views && !fits)
         return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s.layout is %s, want %s", name,
                            vkao_layout_name(image->layout, other),
                            writes ? "GENERAL" : "a read-only one or GENERAL");
@@ -166,6 +168,9 @@ static vkao_result check_slot(const struct vkao_program *program, uint32_t i,
                            writes && vkao_format_is_srgb(image->format)
                                ? ": make the image with MUTABLE_FORMAT, give a UNORM view of it"
                                : "");
+    if (need_views && (reads || writes) && !image->view)
+        return vkao_refuse(&ctx->log, VKAO_ERROR_INVALID_ARGUMENT, "%s.view is VK_NULL_HANDLE",
+                           name);
     return VKAO_SUCCESS;
 }
 
@@ -199,12 +204,9 @@ vkao_result vkao_slots_check(const struct vkao_program *program, const vkao_imag
         const vkao_image *image = vkao_slot_image(images, i);
         const bool reads = vkao_program_reads(program, (enum vkao_resource)i),
                    writes = vkao_program_writes(program, (enum vkao_resource)i);
-        vkao_result result = check_slot(program, i, image, reads, writes);
+        vkao_result result = check_slot(program, i, image, reads, writes, need_views);
         if (result != VKAO_SUCCESS)
             return result;
-        if (need_views && image->format && (reads || writes) && !image->view)
-            return vkao_refuse(log, VKAO_ERROR_INVALID_ARGUMENT, "%s.view is VK_NULL_HANDLE",
-                               slots[i].name);
     }
     return VKAO_SUCCESS;
 }

@@ -11,7 +11,7 @@ const vkao_image *vkao_slot_image(const vkao_images *images, uint32_t slot);
 const char *vkao_slot_name(uint32_t slot);
 
 /* What the program needs is there, and what is there can be used. need_views: views must not be
- * null. */
+ * null, and layouts must fit. */
 vkao_result vkao_slots_check(const struct vkao_program *program, const vkao_images *images,
                              bool need_views);
 /* Says what SSAO would read or write by other settings. Stages may share a vkao_images, so that

@@ -169,8 +169,10 @@ static void scratch_query_is_the_one_allocation(void **state)
         open_for(&w, stages, true);
         w.frame_info.extent = (VkExtent2D){37, 23}; /* sizes that need alignment */
         vkao_images without_views = w.images;
-        for (size_t i = 0; i < SLOT_COUNT; ++i)
+        for (size_t i = 0; i < SLOT_COUNT; ++i) {
             world_slot(&without_views, i)->view = VK_NULL_HANDLE;
+            world_slot(&without_views, i)->layout = VK_IMAGE_LAYOUT_UNDEFINED;
+        }
         w.frame_info.images = &without_views;
         size_t before = fake_live(&w.fake);
         VkMemoryRequirements query;

@@ -92,8 +92,7 @@ void engine_destroy(struct engine *e)
 
 static vkao_image slot(VkFormat format, const struct gpu_image *image)
 {
-    vkao_image empty = {.layout = VK_IMAGE_LAYOUT_GENERAL, .format = format};
-    return image ? gpu_image_slot(image) : empty;
+    return image ? gpu_image_slot(image) : (vkao_image){.format = format};
 }
 
 void engine_frame_info(struct engine_features features, VkExtent2D extent,
