@@ -513,8 +513,9 @@ vkao_result vkao_params_check(const struct vkao_logger *log, const vkao_params *
                               vkao_params *out)
 {
     vkao_result result = vkao_import(log, VKAO_STRUCT_PARAMS, "params", in, out);
-    if (result == VKAO_SUCCESS)
-        result = check_all(log, "params", VK_FALSE, out);
+    if (result != VKAO_SUCCESS)
+        return result;
+    result = check_all(log, "params", VK_FALSE, out);
     fill_zeros(VK_FALSE, out);
     return result;
 }

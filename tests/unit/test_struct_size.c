@@ -283,6 +283,18 @@ static void defaults_fit_the_callers_struct(void **state)
     assert_int_equal(((const unsigned char *)&settings)[8], 0xa5);
 }
 
+/* The caller has not initialised it. */
+static void nothing_is_made_of_what_is_refused(void **state)
+{
+    (void)state;
+    const struct vkao_logger log = {0};
+    vkao_params given = vkao_params_default(), params = {0};
+    const vkao_params untouched = {0};
+    given.struct_size = 0;
+    assert_int_equal(vkao_params_check(&log, &given, &params), VKAO_ERROR_INVALID_ARGUMENT);
+    assert_memory_equal(&params, &untouched, sizeof params);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -294,6 +306,7 @@ int main(void)
         cmocka_unit_test(missing_bytes_of_an_earlier_version_are_zero),
         cmocka_unit_test(defaults_set_their_size),
         cmocka_unit_test(defaults_fit_the_callers_struct),
+        cmocka_unit_test(nothing_is_made_of_what_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
