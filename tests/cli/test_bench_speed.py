@@ -357,6 +357,8 @@ def values_are_checked(scratch, option, values, message):
     (('--size', ','), 'names nothing'),
     (('folder',), "'folder' is no option"),
     (('--fast',), "unknown option '--fast'"),
+    (('--text=1',), "option '--text=1' takes no argument"),
+    (('--text', '-zq'), "unknown option '-z'"),
 ]])
 def wrong_use_is_refused(scratch, _, arguments, message):
     fails(scratch, USAGE, message, *arguments, hint='vkao-bench speed --help')

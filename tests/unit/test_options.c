@@ -257,6 +257,7 @@ static void misspelt_options_get_a_suggestion(void **state)
            "unknown option '--depth-tpye' (did you mean --depth-type?)");
     refuse("i.exr -o o.exr --zzzzzzzz", "unknown option '--zzzzzzzz'");
     refuse("i.exr -o o.exr -z", "unknown option '-z'");
+    refuse("--bent-normals -zq i.exr -o o.exr", "unknown option '-z'");
     refuse("i.exr -o o.exr --radius", "option '--radius' needs an argument");
     refuse("i.exr -o o.exr --quiet=1", "option '--quiet=1' takes no argument");
     refuse("inpsect i.exr", "unknown command 'inpsect' (did you mean inspect?)");

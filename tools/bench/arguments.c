@@ -10,7 +10,8 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { MAX_ARGUMENTS = 32, COLUMNS = 80, HELP_COLUMN = 26 };
+/* Long options carry FIRST_LONG and their row. */
+enum { MAX_ARGUMENTS = 32, COLUMNS = 80, HELP_COLUMN = 26, FIRST_LONG = 256 };
 
 static const struct argument help = {"help", NULL, "print this", ARGUMENT_FLAG, 0, 0, 0, NULL};
 
@@ -101,6 +102,16 @@ static bool apply(const struct argument *row, const char *value, void *target,
     return true;
 }
 
+/* getopt leaves optopt at 0 for unknown names, and has not passed a word of several letters yet. */
+static bool fail_option(char **argv, struct tool_error *err)
+{
+    if (optopt == 0)
+        return fail(err, EXIT_USAGE, "unknown option '%s'", argv[optind - 1]);
+    if (optopt >= FIRST_LONG)
+        return fail(err, EXIT_USAGE, "option '%s' takes no argument", argv[optind - 1]);
+    return fail(err, EXIT_USAGE, "unknown option '-%c'", optopt);
+}
+
 /* The words that are no options are left, from optind on. */
 static bool parse_options(const struct argument_list *list, int argc, char **argv, void *target,
                           bool *wants_help, struct tool_error *err)
@@ -114,19 +125,19 @@ static bool parse_options(const struct argument_list *list, int argc, char **arg
         longs[i] = (struct option){
             .name = list->rows[i].name,
             .has_arg = list->rows[i].value ? required_argument : no_argument,
-            .val = 256 + (int)i,
+            .val = FIRST_LONG + (int)i,
         };
-    longs[list->count] = (struct option){.name = help.name, .val = 256 + (int)list->count};
+    longs[list->count] = (struct option){.name = help.name, .val = FIRST_LONG + (int)list->count};
     optind = 0; /* glibc and musl: start afresh */
     opterr = 0;
     while ((code = getopt_long(argc, argv, ":", longs, NULL)) != -1) {
         if (code == ':')
             return fail(err, EXIT_USAGE, "option '%s' needs an argument", argv[optind - 1]);
-        if (code < 256)
-            return fail(err, EXIT_USAGE, "unknown option '%s'", argv[optind - 1]);
-        if (code - 256 == (int)list->count)
+        if (code == '?')
+            return fail_option(argv, err);
+        if (code - FIRST_LONG == (int)list->count)
             *wants_help = true;
-        else if (!apply(&list->rows[code - 256], optarg, target, err))
+        else if (!apply(&list->rows[code - FIRST_LONG], optarg, target, err))
             return false;
     }
     return true;

@@ -43,12 +43,16 @@ static bool fail_unknown(const char *argument, struct tool_error *err)
     return fail(err, EXIT_USAGE, "unknown option '--%s'", name);
 }
 
-/* getopt says '?' for unknown and for ambiguous names, and leaves optopt at 0 for long ones. */
+/* Long options carry it and their row, so that those without a letter differ. */
+enum { FIRST_LONG = 256 };
+
+/* getopt says '?' for unknown and for ambiguous names, and leaves optopt at 0 for long ones. A word
+ * of several letters it has not passed yet. */
 static bool fail_option(char **argv, struct tool_error *err)
 {
-    if (optopt == 0 || optopt >= MAX_OPTIONS * 256)
+    if (optopt == 0)
         return fail_unknown(argv[optind - 1], err);
-    if (strncmp(argv[optind - 1], "--", 2) == 0) {
+    if (optopt >= FIRST_LONG) {
         fail_hint(err, "%s", options_example);
         return fail(err, EXIT_USAGE, "option '%s' takes no argument", argv[optind - 1]);
     }
@@ -62,8 +66,7 @@ static bool fail_argument(char **argv, struct tool_error *err)
     return fail(err, EXIT_USAGE, "option '%s' needs an argument", argv[optind - 1]);
 }
 
-/* Long options carry 256 + their row, so that those without a letter differ. */
-static size_t build_getopt(struct option *longs, char *shorts)
+static void build_getopt(struct option *longs, char *shorts)
 {
     size_t s = 0;
     shorts[s++] = ':';
@@ -71,7 +74,7 @@ static size_t build_getopt(struct option *longs, char *shorts)
         const struct option_row *row = &option_table[i];
         longs[i] = (struct option){.name = row->name,
                                    .has_arg = row->argument ? required_argument : no_argument,
-                                   .val = 256 + (int)i};
+                                   .val = FIRST_LONG + (int)i};
         if (row->letter) {
             shorts[s++] = row->letter;
             if (row->argument)
@@ -80,13 +83,12 @@ static size_t build_getopt(struct option *longs, char *shorts)
     }
     longs[option_table_count] = (struct option){0};
     shorts[s] = '\0';
-    return option_table_count;
 }
 
 static const struct option_row *row_of(int code)
 {
-    if (code >= 256)
-        return &option_table[code - 256];
+    if (code >= FIRST_LONG)
+        return &option_table[code - FIRST_LONG];
     for (size_t i = 0; i < option_table_count; i++)
         if (option_table[i].letter == code)
             return &option_table[i];
