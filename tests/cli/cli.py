@@ -169,6 +169,24 @@ def beside_vkao(*names):
     return os.path.join(os.path.dirname(_settings.vkao), *names)
 
 
+def rename_shim():
+    """For the environment: stops or kills a run before a rename, as rename_shim.c says."""
+    shim = beside_vkao('..', '..', 'tests', 'cli', 'libvkao_rename_shim.so')
+    if not os.path.exists(shim):
+        skip(f'{shim} is not built')
+    return {'LD_PRELOAD': os.path.abspath(shim)}
+
+
+def wait_for_stop(process):
+    end = time.monotonic() + TIMEOUT
+    while process.poll() is None and time.monotonic() < end:
+        with open(f'/proc/{process.pid}/stat', encoding='ascii') as file:
+            if file.read().rsplit(')', 1)[1].split()[0] == 'T':
+                return
+        time.sleep(0.001)
+    check(False, f'it has not stopped: {process.returncode}')
+
+
 class Scratch:
     """A directory of one case; commands run in it."""
 

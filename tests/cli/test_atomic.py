@@ -9,8 +9,8 @@ import time
 
 import numpy as np
 
-from cli import (INTERRUPTED, OK, OUTPUT, TERMINATED, TIMEOUT, beside_vkao, case, cases, check,
-                 check_ao, equal, main, matches, read_ao, skip, write_exr)
+from cli import (INTERRUPTED, OK, OUTPUT, TERMINATED, TIMEOUT, case, cases, check, check_ao, equal,
+                 main, matches, read_ao, rename_shim, wait_for_stop, write_exr)
 from exr_raw import read_raw
 from scene import Scene
 
@@ -124,13 +124,6 @@ def stereo(scratch):
                   ({'Z': depth}, {'name': 'Z.r', 'view': 'r'}))
 
 
-def rename_shim():
-    shim = beside_vkao('..', '..', 'tests', 'cli', 'libvkao_rename_shim.so')
-    if not os.path.exists(shim):
-        skip(f'{shim} is not built')
-    return {'LD_PRELOAD': os.path.abspath(shim)}
-
-
 PAIR = ('in.@.exr', '-o', 'out.@.exr', '--view', 'all', '--fov', 60, '--radius', 0.5)
 
 
@@ -158,16 +151,6 @@ def kill_between_renames_is_mended_by_the_next_run(scratch, _, folder, number):
         os.remove(scratch.path(folder if '.png.' in name else '', name))
     scratch.render(*line)
     equal(outputs(scratch), wanted, 'what the next run makes of it')
-
-
-def wait_for_stop(process):
-    end = time.monotonic() + TIMEOUT
-    while process.poll() is None and time.monotonic() < end:
-        with open(f'/proc/{process.pid}/stat', encoding='ascii') as file:
-            if file.read().rsplit(')', 1)[1].split()[0] == 'T':
-                return
-        time.sleep(0.001)
-    check(False, f'it has not stopped: {process.returncode}')
 
 
 @cases([*((f'{n}, the other all', n, 7) for n in range(1, 7)), ('1 and 2', 1, 2),

@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: MIT
 """What vkao-view's Save writes, and that vkao makes the same by the command in it."""
 import shlex
+import signal
 
 import view  # first: it knows where cli.py lies
-from cli import case, cases, check, check_close, equal, np, read_parts, write_exr
+from cli import (case, cases, check, check_close, equal, is_sanitized, np, read_parts, rename_shim,
+                 skip, wait_for_stop, write_exr)
 from scene import HEIGHT, WIDTH
 from view import READ, WHOLE, Viewer, gbuffer, opened, read_png, same_picture, script
 
@@ -94,6 +96,24 @@ def save_that_fails_is_said_and_leaves_nothing(scratch):
         viewer.finish()
         check('vkao: nowhere/x.' in viewer.err, f'nothing is said:\n{viewer.err}')
     equal(scratch.files(), ['in.exr', 'last.png'], 'files')
+
+
+@cases([('AO', '2', 'in'), ('depth', '4', 'in'), ('live', '2', 'room')])
+def save_that_fails_at_the_last_file_leaves_nothing(scratch, kind, key, name):
+    """Somebody else makes a file of its name meanwhile."""
+    if is_sanitized(view.VIEWER):
+        skip('sanitizers want to be loaded first')
+    files, line = (3, ('in.exr', *READ)) if name == 'in' else (5, ('--scene', name, '--time', 1))
+    env = {**rename_shim(), 'VKAO_STOP_AT': str(files)}
+    write_exr(scratch.path('in.exr'), gbuffer())
+    with Viewer(scratch, *line, *WHOLE, env=env) as viewer:
+        viewer.key(key, 's')
+        wait_for_stop(viewer.process)
+        scratch.write(f'{name}.view.sh', 'of somebody else')
+        viewer.process.send_signal(signal.SIGCONT)
+        viewer.finish()
+        check(f'vkao: {name}.view.sh: exists' in viewer.err, f'nothing is said:\n{viewer.err}')
+    equal(scratch.files(), sorted(['in.exr', f'{name}.view.sh', 'last.png']), 'files')
 
 
 if __name__ == '__main__':

@@ -379,3 +379,18 @@ void atomic_file_abort(struct atomic_file *file)
     file->slot = -1;
     file->temp[0] = '\0';
 }
+
+size_t atomic_files_commit(struct atomic_file *files, size_t count, struct tool_error *err)
+{
+    size_t done = 0;
+    while (done < count && atomic_file_commit(&files[done], err))
+        done++;
+    return done;
+}
+
+void atomic_files_withdraw(const struct atomic_file *files, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        if (!files[i].replace)
+            unlink(files[i].target);
+}

@@ -45,6 +45,10 @@ bool atomic_file_commit(struct atomic_file *file, struct tool_error *err);
 /* Closes and removes the temporary file. Harmless on a zeroed, failed, committed or aborted file.
  * */
 void atomic_file_abort(struct atomic_file *file);
+/* Commits one after another until one fails: how many there are then. */
+size_t atomic_files_commit(struct atomic_file *files, size_t count, struct tool_error *err);
+/* Removes those of the committed files that were not there before. */
+void atomic_files_withdraw(const struct atomic_file *files, size_t count);
 /* For main(): signals that end the process remove the temporary files of all threads first, and its
  * exit code is 128 + number. A limit of file sizes (ulimit -f) becomes an error of
  * atomic_file_write. What is ignored already, as nohup and shells do, stays ignored. */

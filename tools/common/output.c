@@ -8,7 +8,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { NAME_BYTES = 512, STRINGS = 3 };
 
@@ -366,26 +365,33 @@ static bool prepare_previews(const struct options *o, const struct plan_frame *f
 static bool commit_all(const struct options *o, const struct plan_frame *frame,
                        struct atomic_file *files, size_t count, struct tool_error *err)
 {
-    for (size_t i = 0; i < count; i++) {
-        if (atomic_file_commit(&files[i], err))
-            continue;
-        /* Where somebody else has made the frame meanwhile, its previews are as good as theirs. */
-        for (size_t done = 0; done < i && !plan_leaves(o, frame->output); done++)
-            if (!files[done].replace)
-                unlink(files[done].target);
-        return false;
-    }
-    return true;
+    const size_t done = atomic_files_commit(files, count, err);
+    /* Where somebody else has made the frame meanwhile, its previews are as good as theirs. */
+    if (done < count && !plan_leaves(o, frame->output))
+        atomic_files_withdraw(files, done);
+    return done == count;
 }
 
-/* files: the previews and the EXR file. */
+static size_t count_previews(const struct plan_frame *frame, const struct frame_source *source)
+{
+    return frame->preview ? source->view_count : 0;
+}
+
+bool output_prepare(const struct options *options, const struct plan_frame *frame,
+                    const struct frame_source *source, const struct rendered_view *views,
+                    const char *device, struct atomic_file *files, struct tool_error *err)
+{
+    const size_t previews = count_previews(frame, source);
+    return (!previews || prepare_previews(options, frame, source, views, files, err)) &&
+           prepare_exr(options, frame, source, views, device, &files[previews], err);
+}
+
 static bool write_files(const struct options *o, const struct plan_frame *frame,
                         const struct frame_source *source, const struct rendered_view *views,
                         const char *device, struct atomic_file *files, size_t previews,
                         struct tool_error *err)
 {
-    const bool ok = (!previews || prepare_previews(o, frame, source, views, files, err)) &&
-                    prepare_exr(o, frame, source, views, device, &files[previews], err) &&
+    const bool ok = output_prepare(o, frame, source, views, device, files, err) &&
                     commit_all(o, frame, files, previews + 1, err);
     for (size_t i = 0; i <= previews; i++)
         atomic_file_abort(&files[i]);
@@ -406,7 +412,7 @@ bool output_write(const struct options *options, const struct plan_frame *frame,
                   const struct frame_source *source, const struct rendered_view *views,
                   const char *device, struct tool_error *err)
 {
-    const size_t previews = frame->preview ? source->view_count : 0;
+    const size_t previews = count_previews(frame, source);
     struct atomic_file *files = calloc(previews + 1, sizeof *files);
     if (!files)
         return fail(err, EXIT_MEMORY, "%s: out of memory", frame->output);

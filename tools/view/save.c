@@ -18,6 +18,9 @@
 
 enum { SAVE_STEM_MAX = ATOMIC_FILE_PATH_MAX - 32 }; /* leaves room for number and extension */
 
+/* The files of a save in the order in which they appear; the first two are of live scenes. */
+enum { SAVE_GBUFFER, SAVE_CAMERA, SAVE_PNG, SAVE_EXR, SAVE_SCRIPT, SAVE_FILES };
+
 /* Of one save. */
 struct save_names {
     char exr[ATOMIC_FILE_PATH_MAX], png[ATOMIC_FILE_PATH_MAX], script[ATOMIC_FILE_PATH_MAX];
@@ -191,10 +194,20 @@ static bool build_command(const struct viewer *v, const struct save_names *n, st
            fail(err, EXIT_MEMORY, "%s: out of memory", n->script);
 }
 
-static bool write_script(const struct viewer *v, const struct save_names *n, const char *command,
-                         const char *unsaid, struct tool_error *err)
+/* Frees the text. */
+static bool prepare_text(struct atomic_file *file, const char *path, struct text *text,
+                         struct tool_error *err)
 {
-    struct atomic_file *file = calloc(1, sizeof *file);
+    bool ok = !text->out_of_memory || fail(err, EXIT_MEMORY, "%s: out of memory", path);
+    ok = ok && atomic_file_open(file, path, false, err) &&
+         atomic_file_write(file, text->data, text->length, err);
+    text_free(text);
+    return ok;
+}
+
+static bool prepare_script(const struct viewer *v, const struct save_names *n, const char *command,
+                           const char *unsaid, struct atomic_file *file, struct tool_error *err)
+{
     struct text text = {0};
     text_add(&text, "#!/bin/sh\n");
     if (!vkao_draws(v) && shows_colour(v))
@@ -206,27 +219,15 @@ static bool write_script(const struct viewer *v, const struct save_names *n, con
     if (unsaid)
         text_add(&text, "# Set in the viewer, and without an option of vkao: %s\n", unsaid);
     text_add(&text, "%s\n", command);
-    bool ok = file && !text.out_of_memory;
-    if (!ok)
-        fail(err, EXIT_MEMORY, "%s: out of memory", n->script);
-    ok = ok && atomic_file_open(file, n->script, false, err);
-    if (ok && atomic_file_write(file, text.data, text.length, err))
-        ok = atomic_file_commit(file, err);
-    else if (ok)
-        ok = false;
-    if (file)
-        atomic_file_abort(file);
-    text_free(&text);
-    free(file);
-    return ok;
+    return prepare_text(file, n->script, &text, err);
 }
 
 /* --- Pictures --- */
 
 /* The picture as the display shows it, of values without padding: width and height are those of the
  * G-buffer. */
-static bool write_picture(struct viewer *viewer, const struct rendered_view *view, const char *path,
-                          struct tool_error *err)
+static bool prepare_picture(struct viewer *viewer, const struct rendered_view *view,
+                            const char *path, struct atomic_file *file, struct tool_error *err)
 {
     const struct gbuffer *g = &view->gbuffer;
     const size_t texels = (size_t)g->width * g->height;
@@ -241,7 +242,7 @@ static bool write_picture(struct viewer *viewer, const struct rendered_view *vie
             rgb[i * 3 + c] = byte_of(color[c]);
     }
     const struct png_picture picture = {g->width, g->height, 3, rgb, NULL, NULL};
-    bool ok = png_file_write(path, &picture, false, err);
+    bool ok = png_file_prepare(file, path, &picture, false, err);
     free(rgb);
     return ok;
 }
@@ -265,13 +266,13 @@ static struct options output_options(const struct viewer *v, const struct save_n
     return o;
 }
 
-static bool save_file_values(struct viewer *viewer, const struct save_names *names,
-                             struct tool_error *err)
+static bool prepare_file_values(struct viewer *viewer, const struct save_names *names,
+                                struct atomic_file *files, struct tool_error *err)
 {
     struct viewer *v = viewer;
     struct loaded_frame *l = &v->source.now;
     struct options options = output_options(v, names);
-    struct frame_source files = *l->files;
+    struct frame_source source = *l->files;
     struct rendered_view r;
     char device[VK_MAX_PHYSICAL_DEVICE_NAME_SIZE], input[ATOMIC_FILE_PATH_MAX];
     char exr[ATOMIC_FILE_PATH_MAX], png[ATOMIC_FILE_PATH_MAX];
@@ -284,16 +285,17 @@ static bool save_file_values(struct viewer *viewer, const struct save_names *nam
     snprintf(png, sizeof png, "%s", names->png);
     snprintf(device, sizeof device, "%s", v->gpu.properties.deviceName);
     device[strcspn(device, "(") > 1 ? strcspn(device, "(") - 1 : 0] = '\0';
-    files.views[0] = l->files->views[l->view];
-    files.view_count = 1;
-    r.name = files.views[0].name;
+    source.views[0] = l->files->views[l->view];
+    source.view_count = 1;
+    r.name = source.views[0].name;
     r.setting = options.setting;
     ao_view_describe(&l->gbuffer.view, &r.setting.effect);
     const struct plan_frame frame = {
         .input = input, .output = exr, .preview = vkao_draws(v) ? png : NULL};
-    ok = ok && (vkao_draws(v) || write_picture(v, &r, names->png, err)) &&
+    ok = ok && (vkao_draws(v) || prepare_picture(v, &r, names->png, &files[SAVE_PNG], err)) &&
          placement_widen(&r.gbuffer, &r.result, err) &&
-         output_write(&options, &frame, &files, &r, device, err);
+         output_prepare(&options, &frame, &source, &r, device,
+                        &files[vkao_draws(v) ? SAVE_PNG : SAVE_EXR], err);
     values_free(&r);
     return ok;
 }
@@ -429,8 +431,9 @@ static bool take_gbuffer(struct viewer *v, const struct inputs *inputs, struct l
     return ok;
 }
 
-static bool write_live_exr(const char *path, uint32_t width, uint32_t height,
-                           const struct exr_write *channels, size_t count, struct tool_error *err)
+static bool prepare_live_exr(struct atomic_file *file, const char *path, uint32_t width,
+                             uint32_t height, const struct exr_write *channels, size_t count,
+                             struct tool_error *err)
 {
     const struct exr_box box = {0, 0, (int32_t)width - 1, (int32_t)height - 1};
     const struct exr_new_part part = {
@@ -442,10 +445,11 @@ static bool write_live_exr(const char *path, uint32_t width, uint32_t height,
         .channels = channels,
         .channel_count = count,
     };
-    return exr_write_file(path, NULL, &part, 1, false, err);
+    return exr_prepare_file(file, path, NULL, &part, 1, false, err);
 }
 
-static bool write_gbuffer(const char *path, const struct live_values *g, struct tool_error *err)
+static bool prepare_gbuffer(struct atomic_file *file, const char *path, const struct live_values *g,
+                            struct tool_error *err)
 {
     const struct exr_write channels[] = {
         {"R", EXR_HALF, g->color, 3},          {"G", EXR_HALF, g->color + 1, 3},
@@ -453,16 +457,15 @@ static bool write_gbuffer(const char *path, const struct live_values *g, struct 
         {"N.X", EXR_FLOAT, g->normals, 3},     {"N.Y", EXR_FLOAT, g->normals + 1, 3},
         {"N.Z", EXR_FLOAT, g->normals + 2, 3},
     };
-    return write_live_exr(path, g->width, g->height, channels, sizeof channels / sizeof *channels,
-                          err);
+    return prepare_live_exr(file, path, g->width, g->height, channels,
+                            sizeof channels / sizeof *channels, err);
 }
 
-static bool write_camera(const char *path, const struct orbit *camera, VkExtent2D used,
-                         struct tool_error *err)
+static bool prepare_camera(struct atomic_file *file, const char *path, const struct orbit *camera,
+                           VkExtent2D used, struct tool_error *err)
 {
     const double aspect = (double)used.width / used.height, degrees = 45 / atan(1);
     const double half = tan(camera->fov_y / 2) * aspect;
-    struct atomic_file *file = calloc(1, sizeof *file);
     struct text text = {0};
     if (camera->orthographic)
         text_add(&text, "{\"type\": \"orthographic\", \"ortho_width\": %.17g}\n",
@@ -470,29 +473,25 @@ static bool write_camera(const char *path, const struct orbit *camera, VkExtent2
     else
         text_add(&text, "{\"type\": \"perspective\", \"fov_x_deg\": %.17g}\n",
                  2 * atan(half) * degrees);
-    bool ok = (file && !text.out_of_memory) || fail(err, EXIT_MEMORY, "%s: out of memory", path);
-    ok = ok && atomic_file_open(file, path, false, err) &&
-         atomic_file_write(file, text.data, text.length, err) && atomic_file_commit(file, err);
-    if (file)
-        atomic_file_abort(file);
-    text_free(&text);
-    free(file);
-    return ok;
+    return prepare_text(file, path, &text, err);
 }
 
-static bool write_results(struct viewer *v, const struct save_names *names, struct tool_error *err)
+static bool prepare_results(struct viewer *v, const struct save_names *names,
+                            struct atomic_file *files, struct tool_error *err)
 {
     struct rendered_view r;
     bool ok = values_take(v, v->active, &r, err);
     const struct exr_write channel = {"AO", EXR_FLOAT, r.result.ao, 1};
-    ok = ok && write_live_exr(names->exr, r.gbuffer.width, r.gbuffer.height, &channel, 1, err) &&
-         write_picture(v, &r, names->png, err);
+    ok = ok &&
+         prepare_live_exr(&files[SAVE_EXR], names->exr, r.gbuffer.width, r.gbuffer.height, &channel,
+                          1, err) &&
+         prepare_picture(v, &r, names->png, &files[SAVE_PNG], err);
     values_free(&r);
     return ok;
 }
 
-static bool save_live_values(struct viewer *viewer, const struct save_names *names,
-                             struct tool_error *err)
+static bool prepare_live_values(struct viewer *viewer, const struct save_names *names,
+                                struct atomic_file *files, struct tool_error *err)
 {
     struct live *live = viewer->live;
     const uint32_t frame = last_frame(viewer);
@@ -501,9 +500,9 @@ static bool save_live_values(struct viewer *viewer, const struct save_names *nam
     struct live_values values = {.width = used.width, .height = used.height};
     live_scene_view(&live->shown[frame], used, &inputs.view);
     bool ok = take_gbuffer(viewer, &inputs, &values, err) &&
-              write_gbuffer(names->gbuffer, &values, err) &&
-              write_camera(names->camera, &live->shown[frame], used, err) &&
-              write_results(viewer, names, err);
+              prepare_gbuffer(&files[SAVE_GBUFFER], names->gbuffer, &values, err) &&
+              prepare_camera(&files[SAVE_CAMERA], names->camera, &live->shown[frame], used, err) &&
+              prepare_results(viewer, names, files, err);
     free(values.z);
     free(values.normals);
     free(values.color);
@@ -519,6 +518,29 @@ static bool check_saveable(const struct viewer *v, struct tool_error *err)
     return fail(err, EXIT_INPUT, "there is no picture that could be saved");
 }
 
+/* The script is the last: where it is, the save is whole. */
+static bool write_all(struct viewer *v, const struct save_names *names, const char *command,
+                      const char *unsaid, struct tool_error *err)
+{
+    const size_t first = v->live ? SAVE_GBUFFER : SAVE_PNG, count = SAVE_FILES - first;
+    struct atomic_file *files = calloc(SAVE_FILES, sizeof *files);
+    if (!files)
+        return fail(err, EXIT_MEMORY, "%s: out of memory", names->script);
+    bool ok = (v->live ? prepare_live_values(v, names, files, err)
+                       : prepare_file_values(v, names, files, err)) &&
+              prepare_script(v, names, command, unsaid, &files[SAVE_SCRIPT], err);
+    if (ok) {
+        const size_t done = atomic_files_commit(files + first, count, err);
+        ok = done == count;
+        if (!ok)
+            atomic_files_withdraw(files + first, done);
+    }
+    for (size_t i = 0; i < SAVE_FILES; i++)
+        atomic_file_abort(&files[i]);
+    free(files);
+    return ok;
+}
+
 bool viewer_save(struct viewer *viewer, struct tool_error *err)
 {
     struct viewer *v = viewer;
@@ -526,8 +548,7 @@ bool viewer_save(struct viewer *viewer, struct tool_error *err)
     struct text command = {0}, unsaid = {0};
     bool ok = (names || fail(err, EXIT_MEMORY, "out of memory")) && check_saveable(v, err) &&
               choose_names(v, names, err) && build_command(v, names, &command, &unsaid, err) &&
-              (v->live ? save_live_values(v, names, err) : save_file_values(v, names, err)) &&
-              write_script(v, names, command.data, unsaid.data, err);
+              write_all(v, names, command.data, unsaid.data, err);
     if (ok) {
         viewer_say(v, "saved %s, .exr and .png\n%s", names->script, command.data);
         ok = report_text(command.data, err);
