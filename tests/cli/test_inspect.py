@@ -190,6 +190,16 @@ def damaged_files_are_errors(scratch):
     equal((run.code, run.stdout), (INPUT, ''), 'exit code and stdout')
 
 
+@case
+def damaged_file_of_depth_is_an_error(scratch):
+    """Sanitizers find what was read of the other file and not freed."""
+    write_exr(scratch.path('in.exr'), {'Z': SCENE.depth()})
+    scratch.write('z.exr', 'no')
+    run = scratch.run('inspect', 'in.exr', '--depth-file', 'z.exr')
+    equal((run.code, run.stdout), (INPUT, ''), 'exit code and stdout')
+    matches(r'vkao: z\.exr: ', run.stderr, 'stderr')
+
+
 @cases(['b5_suzannes_stereo', 'm3_statues_tiny', 'b5_suzannes_ortho'])
 def files_of_renderers_are_understood(scratch, name):
     facts = inspect_json(scratch, corpus(f'{name}.exr'), '--camera',

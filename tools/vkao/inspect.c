@@ -298,8 +298,10 @@ static cJSON *describe(const struct options *options, const struct plan_frame *f
     struct frame_source source = {0};
     struct tool_error views_err = {0};
     if (!frame_source_read_header(frame->input, &source, err) ||
-        !frame_source_read_files((const char *const *)frame->file, &source, err))
+        !frame_source_read_files((const char *const *)frame->file, &source, err)) {
+        frame_source_close(&source);
         return NULL;
+    }
     const unsigned begun = json_begin();
     cJSON *root = cJSON_CreateObject();
     cJSON_AddStringToObject(root, "file", frame->input);
