@@ -5,6 +5,7 @@
 
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +15,38 @@
 
 #include <sys/stat.h>
 #include <unistd.h>
+
+/* Of this program and what it is linked with, the C library left out. */
+static struct {
+    unsigned total;   /* allocations ever tried */
+    unsigned fail_at; /* 1 = the first fails; 0 = none */
+    size_t live;
+} memory;
+
+void *__real_realloc(void *old, size_t size);
+void __real_free(void *block);
+void *__wrap_malloc(size_t size);
+void *__wrap_realloc(void *old, size_t size);
+void __wrap_free(void *block);
+
+void *__wrap_realloc(void *old, size_t size)
+{
+    if (++memory.total == memory.fail_at)
+        return NULL;
+    memory.live += old ? 0 : 1;
+    return __real_realloc(old, size);
+}
+
+void *__wrap_malloc(size_t size)
+{
+    return __wrap_realloc(NULL, size);
+}
+
+void __wrap_free(void *block)
+{
+    memory.live -= block ? 1 : 0;
+    __real_free(block);
+}
 
 static void expect_frames(const char *spec, const int64_t *numbers, size_t count)
 {
@@ -203,6 +236,33 @@ static void scan_finds_any_padding_in_order_and_prefers_the_pattern(void **state
     frame_pattern_free(&p);
 }
 
+static void failing_nth_allocation_of_a_scan_leaks_nothing(void **state)
+{
+    struct frame_pattern p;
+    struct frame_list list;
+    struct tool_error err = {0};
+    char pattern[128];
+    bool ok = false;
+    (void)state;
+    touch("x.3.exr");
+    touch("x.0003.exr");
+    touch("x.12345.exr");
+    snprintf(pattern, sizeof pattern, "%s/x.####.exr", directory);
+    assert_true(frame_pattern_parse(pattern, &p, &err));
+    const size_t before = memory.live;
+    for (unsigned n = 1; !ok; n++) {
+        memory.fail_at = memory.total + n;
+        ok = frame_pattern_scan(&p, &list, &err);
+        memory.fail_at = 0;
+        if (ok)
+            frame_list_free(&list);
+        else
+            assert_int_equal(err.code, EXIT_MEMORY);
+        assert_int_equal(memory.live, before);
+    }
+    frame_pattern_free(&p);
+}
+
 static void description_joins_runs_and_stays_in_its_buffer(void **state)
 {
     struct frame_list list;
@@ -231,6 +291,8 @@ int main(void)
         TEST(tokens_count_in_the_last_path_component_only),
         TEST(mixed_and_repeated_tokens_are_refused),
         cmocka_unit_test_setup_teardown(scan_finds_any_padding_in_order_and_prefers_the_pattern,
+                                        make_directory, remove_directory),
+        cmocka_unit_test_setup_teardown(failing_nth_allocation_of_a_scan_leaks_nothing,
                                         make_directory, remove_directory),
         TEST(description_joins_runs_and_stays_in_its_buffer),
     };

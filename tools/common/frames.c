@@ -335,6 +335,7 @@ static bool merge_paddings(const struct frame_pattern *pattern, struct frame_lis
     if (list->count == 0)
         return true;
     qsort(list->frames, list->count, sizeof *list->frames, compare_frames);
+    bool ok = true;
     size_t kept = 0;
     for (size_t i = 0; i < list->count; i++) {
         struct frame *last = kept ? &list->frames[kept - 1] : NULL;
@@ -348,13 +349,10 @@ static bool merge_paddings(const struct frame_pattern *pattern, struct frame_lis
         if (better)
             last->path = list->frames[i].path;
         free(exact);
-        if (!exact) {
-            list->count = kept;
-            return fail(err, EXIT_MEMORY, "out of memory for a list of frames");
-        }
+        ok = ok && exact;
     }
     list->count = kept;
-    return true;
+    return ok || fail(err, EXIT_MEMORY, "out of memory for a list of frames");
 }
 
 static bool scan_directory(const struct frame_pattern *pattern, DIR *dir, size_t dir_length,
