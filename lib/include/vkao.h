@@ -147,7 +147,7 @@ typedef enum vkao_log_level {
     VKAO_LOG_DEFAULT = 0, /* in vkao_context_info: VKAO_LOG_WARNING */
     VKAO_LOG_ERROR = 1,   /* a call is about to return an error */
     VKAO_LOG_WARNING = 2, /* the result is right but probably not what was meant */
-    VKAO_LOG_INFO = 3,    /* chosen formats, memory sizes; at creation only */
+    VKAO_LOG_INFO = 3,    /* scratch memory that a frame allocates; at creation only */
     VKAO_LOG_LEVEL_MAX_ENUM = 0x7fffffff
 } vkao_log_level;
 
@@ -241,9 +241,12 @@ VKAO_API void vkao_context_destroy(vkao_context *ctx);
 /* --- Effect: settings that select code, compiled --- */
 
 typedef uint32_t vkao_stage_flags;
-#define VKAO_STAGE_SSAO 0x1u      /* reads depth, normals;             writes ao_noisy */
-#define VKAO_STAGE_BLUR 0x2u      /* reads ao_noisy, depth, normals;   writes ao */
-#define VKAO_STAGE_COMPOSITE 0x4u /* reads ao, color, direct;          writes output */
+/* What they read and write of vkao_images; settings say which of it there is. */
+#define VKAO_STAGE_SSAO 0x1u /* reads depth, normals, thickness, second_depth; writes ao_noisy */
+#define VKAO_STAGE_BLUR 0x2u /* reads ao_noisy, depth, normals; writes ao, bent_normals */
+/* reads ao, color, direct, albedo, specular, normals, bent_normals, to show it ao_noisy; writes
+ * output */
+#define VKAO_STAGE_COMPOSITE 0x4u
 #define VKAO_STAGE_ALL 0x7u
 /* For vkao_cmd_stage only: effects with SSAO or BLUR have it. Depth -> view z in scratch. */
 #define VKAO_STAGE_PREPARE 0x8u
@@ -505,9 +508,9 @@ typedef struct vkao_frame vkao_frame;
 typedef struct vkao_frame_info {
     uint32_t struct_size;
     uint32_t padding; /* zero */
-    /* texels; size of every image, at least 1, at most maxImageDimension2D; 8 columns and 2 rows
-     * less where scratch is images, which have a border: on a GPU, and on a CPU where a buffer
-     * would be larger than maxStorageBufferRange */
+    /* texels; size of every image, at least 1, at most 65,535 and maxImageDimension2D; 8 columns
+     * and 2 rows less than the latter where scratch is images, which have a border: on a GPU, and
+     * on a CPU where a buffer would be larger than maxStorageBufferRange */
     VkExtent2D extent;
     const vkao_images *images; /* read during the call only */
     /* Place scratch here instead of allocating: DEVICE_LOCAL memory satisfying
