@@ -106,7 +106,7 @@ static void separate(const struct vkao_recording *r, uint32_t pass)
                                          images);
 }
 
-/* name: "vkao ssao"; NULL ends the label. */
+/* To debuggers, and to whoever asked the context for marks. */
 static void label(const struct vkao_recording *r, const char *stage, bool begins)
 {
     const vkao_context *ctx = r->frame->ctx;
