@@ -144,7 +144,7 @@ static void check_lengths(const struct gbuffer *g, const struct layer_signs *sig
     else if (surface > 0 && known == 0)
         report_warn(report, "thickness-channel",
                     "%s: --thickness-channel '%s' is nowhere above 0: no thickness is known, and "
-                    "things go on backwards without end; is it the right channel?",
+                    "all is taken to be 1.5 radii thick; is it the right channel?",
                     role->info->path, role->label);
 }
 
