@@ -24,7 +24,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* --- Command line --- */
 
@@ -424,8 +423,7 @@ static bool prepare(struct bench *b, struct tool_error *err)
     struct quality *q = &b->quality;
     const struct config yardstick = config_yardstick();
     const struct gpu_options gpu = {.device = o->device};
-    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    exr_set_threads(processors > 1 ? (int)(processors < 64 ? processors : 64) : 0);
+    exr_set_threads(0);
     if (!configs_choose("--methods", o->methods, &q->configs, err))
         return false;
     if (!o->no_raymarch) {

@@ -22,6 +22,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <map>
+#include <unistd.h>
 
 using namespace exr;
 
@@ -417,11 +418,12 @@ bool exr_read_channels(const struct exr_info *info, size_t part, const struct ex
                      [&] { read_channels(info, part, reads, count); });
 }
 
-void exr_set_threads(int count)
+void exr_set_threads(unsigned count)
 {
+    const long threads = count ? long(count) : sysconf(_SC_NPROCESSORS_ONLN);
     /* The pool stays as it is if its threads cannot be made: slower, not wrong. */
     try {
-        Imf::setGlobalThreadCount(count < 0 ? 0 : count);
+        Imf::setGlobalThreadCount(threads > 1 ? int(std::min(threads, long{EXR_MOST_THREADS})) : 0);
     } catch (...) {
     }
 }

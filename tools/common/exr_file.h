@@ -141,8 +141,10 @@ bool exr_write_file(const char *path, const struct exr_info *copy_from,
 
 /* "OpenEXR 3.1.5" */
 const char *exr_library_version(void);
-/* Threads that OpenEXR may use, 0 = none but the caller. Once, before the first file is opened. */
-void exr_set_threads(int count);
+enum { EXR_MOST_THREADS = 256 };
+/* Threads that OpenEXR may use, 0 = one for each processor, 1 = none but the caller. Once, before
+ * the first file is opened. */
+void exr_set_threads(unsigned count);
 
 #ifdef __cplusplus
 }

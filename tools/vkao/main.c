@@ -5,7 +5,6 @@
 #include "vector_width.h"
 
 #include <stdio.h>
-#include <unistd.h>
 
 static void print_version(void)
 {
@@ -30,12 +29,6 @@ static int print_help(void)
     return EXIT_OK;
 }
 
-static int processors(void)
-{
-    long count = sysconf(_SC_NPROCESSORS_ONLN);
-    return count < 1 ? 1 : count > 64 ? 64 : (int)count;
-}
-
 static int run(const struct options *options)
 {
     struct report report = {.verbosity = options->verbosity};
@@ -48,8 +41,7 @@ static int run(const struct options *options)
     choose_vector_width();
     if (options->command == COMMAND_DEVICES)
         return command_devices(options);
-    int threads = options->threads > 0 ? (int)options->threads : processors();
-    exr_set_threads(threads > 1 ? threads : 0);
+    exr_set_threads(options->threads);
     return options->command == COMMAND_INSPECT ? command_inspect(options, &report)
                                                : command_render(options, &report);
 }
