@@ -129,7 +129,8 @@ static bool resolve_links(struct atomic_file *file, struct tool_error *err)
 static bool fail_exists(const struct atomic_file *file, struct tool_error *err)
 {
     fail(err, EXIT_OUTPUT, "%s: exists, not overwritten", file->path);
-    return fail_hint(err, "--overwrite always replaces existing files");
+    return fail_hint(err, "name another file, or remove this one; vkao replaces it with "
+                          "--overwrite always");
 }
 
 /* *mode becomes the permission bits to give the new file, or 0 for those of a newly created one. */
