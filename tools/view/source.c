@@ -79,7 +79,7 @@ static VkExtent2D padded_extent(const struct gbuffer *g, const struct placement 
 
 /* --- The reference --- */
 
-/* AO by the names that vkao, the harness and renderers use; else the first channel of the file. */
+/* AO by the names that vkao, the harness and renderers use; false if the file has none of them. */
 static bool find_reference(const struct exr_info *info, size_t *part, const char **channel)
 {
     static const char *const names[] = {"AO_falloff", "AO", "ao", "AO.Y", "Y", "R"};
