@@ -221,12 +221,11 @@ static void add_verdict(cJSON *object, const struct options *options, const stru
     cJSON_AddBoolToObject(entry, "can_be_processed", ok);
     if (!ok)
         return;
-    const bool is_auto = options->radius_is_auto;
-    const float radius =
-        is_auto ? relative_radius_of(&options->relative_radius, g) : options->setting.params.radius;
+    /* It takes neither --radius nor --like. */
+    const float radius = relative_radius_of(&options->relative_radius, g);
     check_radius(g, radius, report);
     cJSON_AddNumberToObject(entry, "radius", (double)radius);
-    cJSON_AddBoolToObject(entry, "radius_is_auto", is_auto);
+    cJSON_AddTrueToObject(entry, "radius_is_auto");
     cJSON_AddNumberToObject(entry, "bias",
                             (double)automatic_bias(g, radius, options->setting.params.bias));
 }

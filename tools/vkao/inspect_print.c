@@ -149,11 +149,9 @@ static void print_verdict(const cJSON *view, bool is_unchosen)
         printf("  warning   %s\n", item->valuestring);
     }
     if (cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(v, "can_be_processed")))
-        printf("  vkao      can process it, with %s%s%s--radius %g%s --bias %.3g\n",
+        printf("  vkao      can process it, with %s%s%s--radius %g (auto) --bias %.3g\n",
                is_unchosen ? "--view " : "", is_unchosen ? text_of(view, "name") : "",
-               is_unchosen ? " " : "", number_of(v, "radius"),
-               cJSON_IsTrue(cJSON_GetObjectItemCaseSensitive(v, "radius_is_auto")) ? " (auto)" : "",
-               number_of(v, "bias"));
+               is_unchosen ? " " : "", number_of(v, "radius"), number_of(v, "bias"));
 }
 
 static void print_problem(const cJSON *object)
