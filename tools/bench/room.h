@@ -10,10 +10,8 @@
 
 #include <stdint.h>
 
-/* View z lies in [ROOM_NEAR, ROOM_FAR], that of sky at ROOM_SKY, beyond the far plane. Its median
- * is 7, where a radius of 0.5 is 120 texels of an image 1920 wide. */
-#define ROOM_NEAR 2.0f
-#define ROOM_FAR 9.0f
+/* View z lies in [2, 9], that of sky at ROOM_SKY, beyond the far plane. Its median is 7, where a
+ * radius of 0.5 is 120 texels of an image 1920 wide. */
 #define ROOM_SKY 1000.0f
 #define ROOM_RADIUS 0.5f
 

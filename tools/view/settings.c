@@ -127,12 +127,6 @@ bool choice_is_open(const struct param *param, uint32_t choice, unsigned there)
     return (choice_needs(param, choice) & ~there) == 0;
 }
 
-bool param_is_default(const struct param *param, const struct setting *setting)
-{
-    const struct setting standard = setting_default();
-    return parameter_equals(param->parameter, setting, &standard);
-}
-
 void param_reset(const struct param *param, struct setting *setting)
 {
     const struct setting standard = setting_default();

@@ -53,7 +53,6 @@ bool choice_is_open(const struct param *param, uint32_t choice, unsigned there);
 /* The last of the choices that the panel offers: what comes after it are views of their own. */
 uint32_t last_choice(const struct param *param);
 
-bool param_is_default(const struct param *param, const struct setting *setting);
 void param_reset(const struct param *param, struct setting *setting);
 
 /* What is computed for a view: the setting, but without thickness and second layer where the method
