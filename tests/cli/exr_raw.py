@@ -21,14 +21,6 @@ class RawPart:
     def box(self, name):
         return struct.unpack('<4i', self.attributes[name][1])
 
-    def channel_names(self):
-        data, at, names = self.attributes['channels'][1], 0, []
-        while data[at]:
-            end = data.index(0, at)
-            names.append(data[at:end].decode())
-            at = end + 1 + 16
-        return names
-
 
 def _text(data, at):
     end = data.index(0, at)

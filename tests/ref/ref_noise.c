@@ -8,7 +8,7 @@ uint32_t ref_fixed_point(double c)
     return (uint32_t)(uint64_t)floor(c * 4294967296.0 + 0.5);
 }
 
-uint32_t ref_golden_phase(uint32_t i)
+static uint32_t ref_golden_phase(uint32_t i)
 {
     return i * ref_fixed_point((sqrt(5.0) - 1.0) / 2.0);
 }

@@ -9,8 +9,6 @@
 /* Fixed-point constants as the definition has them: round(c * 2^32). */
 uint32_t ref_fixed_point(double c);
 
-uint32_t ref_golden_phase(uint32_t i);
-
 /* The upper 24 bits as a fraction. */
 double ref_unit(uint32_t phase);
 double ref_fract(double v);

@@ -8,7 +8,7 @@
  * number. */
 static const double endless = 1.0e12;
 
-bool ref_invert(const double m[16], double out[16])
+static bool ref_invert(const double m[16], double out[16])
 {
     double a[4][8] = {{0}};
     for (int row = 0; row < 4; ++row) {

@@ -35,7 +35,6 @@ struct ref_scene {
     const double *seen; /* ref_width_image, for what asks for it more than once a texel */
 };
 
-bool ref_invert(const double m[16], double out[16]);
 void ref_view_init(struct ref_view *view, const struct ao_view *from, uint32_t width,
                    uint32_t height, VkFormat depth_format);
 /* View z of a stored depth; NAN = background. Texel centres are integers. */

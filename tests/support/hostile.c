@@ -36,7 +36,11 @@ double chance_magnitude(struct chance *chance, double low, double high)
     return exp(chance_between(chance, log(low), log(high)));
 }
 
-double hostile_value(uint32_t i)
+/* Zero, infinities, NaN, a negative number, the smallest and the largest floats, and some that
+ * squares or cubes push out of the range of floats. */
+enum { HOSTILE_VALUES = 18 };
+
+static double hostile_value(uint32_t i)
 {
     static const double values[HOSTILE_VALUES] = {
         /* the least denormal */

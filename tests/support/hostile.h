@@ -20,11 +20,6 @@ bool chance_yes(struct chance *chance, double share);
 double chance_between(struct chance *chance, double low, double high);
 double chance_magnitude(struct chance *chance, double low, double high);
 
-/* Zero, infinities, NaN, a negative number, the smallest and the largest floats, and some that
- * squares or cubes push out of the range of floats. */
-enum { HOSTILE_VALUES = 18 };
-double hostile_value(uint32_t i);
-
 /* How hostile values lie among others. */
 enum hostile_pattern {
     HOSTILE_CHECKERS, /* every second texel has one and the same */

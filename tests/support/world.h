@@ -71,8 +71,6 @@ void world_be_cpu(struct world *w);
 /* Destroys frame, effect and context, and checks that nothing was left and the API was not
  * misused. */
 void world_close(struct world *w);
-/* Nothing that the library made is alive, on the device or on the host. */
-void world_check_empty(const struct world *w);
 void world_forget_log(struct world *w);
 VkCommandBuffer world_cmd(struct world *w);
 

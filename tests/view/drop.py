@@ -10,7 +10,6 @@ from cli import Failed, skip
 
 CLIENT_MESSAGE, SELECTION_REQUEST, SELECTION_NOTIFY = 33, 30, 31
 PROP_MODE_REPLACE, CURRENT_TIME = 0, 0
-XA_ATOM = 4
 
 
 class ClientMessage(ctypes.Structure):
