@@ -70,20 +70,14 @@ static bool apply_name(struct options *options, const struct option_row *row, co
     return apply_text(options, row, argument, err);
 }
 
-static bool ends_in(const char *path, const char *extension)
-{
-    const size_t length = strlen(path), end = strlen(extension);
-    return length > end && text_equal_nocase(path + length - end, extension);
-}
-
 /* What the name of a file says of its contents must be true. */
 bool apply_exr(struct options *options, const struct option_row *row, const char *argument,
                struct tool_error *err)
 {
-    if (!ends_in(argument, ".exr")) {
+    if (!text_has_extension(argument, ".exr")) {
         const char *name = strrchr(argument, '/') ? strrchr(argument, '/') + 1 : argument;
         const size_t stem = strcspn(name, ".");
-        if (ends_in(argument, ".png"))
+        if (text_has_extension(argument, ".png"))
             fail_hint(err, "-o %.*s.exr --preview %s writes both", (int)stem, name, argument);
         else if (stem > 0 && strcmp(argument, "-") != 0)
             fail_hint(err, "-o %s.exr; oiiotool and ImageMagick make other formats of it",

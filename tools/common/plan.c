@@ -413,19 +413,13 @@ static bool check_distinct(const struct plan *plan, struct tool_error *err)
     return ok;
 }
 
-static bool ends_in(const char *path, const char *extension)
-{
-    const size_t length = strlen(path), end = strlen(extension);
-    return length > end && text_equal_nocase(path + length - end, extension);
-}
-
 /* What the name of a file says of its contents must be true, as of OUTPUT. */
 static bool check_names(const struct options *o, struct tool_error *err)
 {
     for (int k = 0; k < PATH_KINDS; k++) {
         const char *path = given_path(o, (enum path_kind)k);
         const char *extension = path_table[k].extension;
-        if (!path || !extension || ends_in(path, extension))
+        if (!path || !extension || text_has_extension(path, extension))
             continue;
         fail_hint(err, "%s %s%s", path_table[k].name, path, extension);
         return fail(err, EXIT_USAGE,

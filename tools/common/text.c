@@ -201,6 +201,12 @@ bool text_ends_with(const char *string, const char *suffix)
     return length >= end && strcmp(string + length - end, suffix) == 0;
 }
 
+bool text_has_extension(const char *path, const char *extension)
+{
+    const size_t length = strlen(path), end = strlen(extension);
+    return length > end && text_equal_nocase(path + length - end, extension);
+}
+
 bool text_to_number(const char *string, double *number)
 {
     char *end;

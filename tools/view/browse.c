@@ -15,12 +15,6 @@ static char lower(char c)
     return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
 
-static bool ends_in(const char *name, const char *extension)
-{
-    const size_t length = strlen(name), end = strlen(extension);
-    return length > end && text_equal_nocase(name + length - end, extension);
-}
-
 static bool contains(const char *name, const char *part)
 {
     for (; *name; name++) {
@@ -54,7 +48,8 @@ static bool is_offered(const char *folder, const char *name, bool *is_folder)
     *is_folder = S_ISDIR(s.st_mode);
     if (*is_folder)
         return strcmp(name, "..") == 0 || name[0] != '.';
-    return S_ISREG(s.st_mode) && (ends_in(name, ".exr") || ends_in(name, ".json"));
+    return S_ISREG(s.st_mode) &&
+           (text_has_extension(name, ".exr") || text_has_extension(name, ".json"));
 }
 
 static int compare(const void *a, const void *b)
