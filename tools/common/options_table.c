@@ -75,7 +75,7 @@ bool apply_exr(struct options *options, const struct option_row *row, const char
                struct tool_error *err)
 {
     if (!text_has_extension(argument, ".exr")) {
-        const char *name = strrchr(argument, '/') ? strrchr(argument, '/') + 1 : argument;
+        const char *name = text_base_name(argument);
         const size_t stem = strcspn(name, ".");
         if (text_has_extension(argument, ".png"))
             fail_hint(err, "-o %.*s.exr --preview %s writes both", (int)stem, name, argument);

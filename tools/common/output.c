@@ -167,12 +167,6 @@ bool output_check_names(const struct options *options, const struct plan_frame *
 
 /* --- EXR --- */
 
-static const char *file_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 static uint32_t window_width(const struct exr_box *w)
 {
     return (uint32_t)((int64_t)w->x_max - w->x_min + 1);
@@ -261,7 +255,7 @@ static bool fill_part(const struct options *o, const struct frame_source *source
         return fail(err, EXIT_MEMORY, "%s: out of memory", source->info.path);
     storage->strings[0] = (struct exr_string){"vkao/version", storage->version};
     storage->strings[1] = (struct exr_string){"vkao/params", storage->params};
-    storage->strings[2] = (struct exr_string){"vkao/source", file_name(source->info.path)};
+    storage->strings[2] = (struct exr_string){"vkao/source", text_base_name(source->info.path)};
     if (o->mode == OUTPUT_COMP)
         color_part_name(o, view, source->view_count, storage->name);
     const struct ao_names names = name_ao(o, &source->info, &g->roles.kind[ROLE_DEPTH], view->name);

@@ -296,12 +296,6 @@ static char *directory_of(const char *path)
     return text_copy(path, slash == path ? 1 : (size_t)(slash - path));
 }
 
-static const char *name_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* Which file a path of a frame leads to. */
 struct place {
     dev_t device;
@@ -323,7 +317,7 @@ static bool find_place(struct plan_frame *frame, enum path_kind kind, struct pla
         if (!directory)
             return fail(err, EXIT_MEMORY, "%s: out of memory", path);
         const bool is_there = stat(directory, &s) == 0;
-        place->name = is_there ? name_of(path) : path;
+        place->name = is_there ? text_base_name(path) : path;
         if (!is_there)
             s = (struct stat){0};
         free(directory);

@@ -52,11 +52,10 @@ static void add_way(const char *from, const char *to, struct text *way)
 char *preview_owner(const char *preview, const char *output)
 {
     struct text way = {0};
-    const char *slash = strrchr(output, '/');
     char *from = real_directory(preview), *to = real_directory(output);
     if (from && to) {
         add_way(from, to, &way);
-        text_add(&way, "%s", slash ? slash + 1 : output);
+        text_add(&way, "%s", text_base_name(output));
     }
     free(from);
     free(to);

@@ -321,8 +321,7 @@ static bool take_positions(struct roles *roles)
 
 static bool is_named_depth(const char *path)
 {
-    const char *name = strrchr(path, '/');
-    name = name ? name + 1 : path;
+    const char *name = text_base_name(path);
     return role_name_has(name, "depth") && !role_name_has(name, "depthoffield") &&
            !role_name_has(name, "depth_of_field");
 }

@@ -201,6 +201,12 @@ bool text_ends_with(const char *string, const char *suffix)
     return length >= end && strcmp(string + length - end, suffix) == 0;
 }
 
+const char *text_base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
 bool text_has_extension(const char *path, const char *extension)
 {
     const size_t length = strlen(path), end = strlen(extension);

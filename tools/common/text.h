@@ -38,6 +38,8 @@ char *text_copy(const char *string, size_t length); /* NULL if memory runs out *
 bool text_equal_nocase(const char *a, const char *b);
 bool text_starts_with(const char *string, const char *prefix);
 bool text_ends_with(const char *string, const char *suffix);
+/* What stands behind the last slash of a path. */
+const char *text_base_name(const char *path);
 /* Of a path: ".exr" in letters of any case, behind something. */
 bool text_has_extension(const char *path, const char *extension);
 

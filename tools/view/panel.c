@@ -160,13 +160,6 @@ static void presets(struct viewer *v)
 
 /* --- Files, views, sides --- */
 
-/* Names, since paths are long; those stand in the help. */
-static const char *name_of(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* Those of the file less its path, which stands above them. */
 static void warning_rows(const struct viewer *v)
 {
@@ -213,7 +206,8 @@ static void file_rows(struct viewer *v)
         ui_text("no file: drop one here, or Ctrl+O");
         return;
     }
-    ui_paragraph(UI_PLAIN, name_of(l->path));
+    /* Names, since paths are long; those stand in the help. */
+    ui_paragraph(UI_PLAIN, text_base_name(l->path));
     ui_help(l->path);
     ui_text("%u x %u", l->gbuffer.width, l->gbuffer.height);
     struct text summary = {0};
@@ -224,7 +218,7 @@ static void file_rows(struct viewer *v)
         ui_help(summary.data);
     text_free(&summary);
     if (l->camera_path)
-        ui_paragraph(UI_DIM, name_of(l->camera_path));
+        ui_paragraph(UI_DIM, text_base_name(l->camera_path));
     warning_rows(v);
     radius_warnings(v);
     if (s->plan.count > 1) {

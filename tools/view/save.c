@@ -50,7 +50,7 @@ static bool choose_names(const struct viewer *v, struct save_names *n, struct to
 {
     char stem[SAVE_STEM_MAX];
     const char *path = v->live ? live_scene_name(v->live->kind) : v->source.now.path;
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
+    const char *name = text_base_name(path);
     size_t length = strlen(name);
     if (text_ends_with(name, ".exr"))
         length -= strlen(".exr");

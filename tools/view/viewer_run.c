@@ -6,18 +6,12 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* What is shown, in a form that other programs can read too. */
 static void update_title(struct viewer *v)
 {
     char title[sizeof v->title], a[64], b[64], frame[64] = "";
     const char *name = v->live                        ? live_scene_name(v->live->kind)
-                       : source_is_loaded(&v->source) ? base_name(v->source.now.path)
+                       : source_is_loaded(&v->source) ? text_base_name(v->source.now.path)
                                                       : "no file";
     side_title(v, v->wipe ? SIDE_A : v->active, a, sizeof a);
     side_title(v, SIDE_B, b, sizeof b);
