@@ -85,9 +85,6 @@ bool stage_clock_read(const struct stage_clock *clock, double wall_ms, double ms
 {
     const struct gpu *gpu = clock->gpu;
     uint64_t ticks[STAGE_CLOCK_MARKS];
-    uint64_t mask =
-        gpu->timestamp_bits < 64 ? (UINT64_C(1) << gpu->timestamp_bits) - 1 : UINT64_MAX;
-    double ms_per_tick = (double)gpu->properties.limits.timestampPeriod * 1e-6;
     for (int s = 0; s < STAGES; s++)
         ms[s] = 0;
     ms[STAGE_TOTAL] = wall_ms;
@@ -100,10 +97,9 @@ bool stage_clock_read(const struct stage_clock *clock, double wall_ms, double ms
                                             VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
     if (result != VK_SUCCESS)
         return fail(err, EXIT_DEVICE, "vkGetQueryPoolResults failed with VkResult %d", (int)result);
-    /* Masked after the subtraction: the counter may have wrapped in between. */
     for (int i = 0; i + 1 < clock->marks; i++)
         if (clock->after[i] != STAGE_TOTAL)
-            ms[clock->after[i]] += (double)((ticks[i + 1] - ticks[i]) & mask) * ms_per_tick;
-    ms[STAGE_TOTAL] = (double)((ticks[clock->marks - 1] - ticks[0]) & mask) * ms_per_tick;
+            ms[clock->after[i]] += gpu_ms_between(gpu, ticks[i], ticks[i + 1]);
+    ms[STAGE_TOTAL] = gpu_ms_between(gpu, ticks[0], ticks[clock->marks - 1]);
     return true;
 }

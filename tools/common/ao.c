@@ -237,16 +237,13 @@ static double now_ms(void)
 static bool read_timestamps(struct ao_session *session, double *ms, struct tool_error *err)
 {
     const struct gpu *gpu = session->gpu;
-    uint64_t ticks[2],
-        mask = gpu->timestamp_bits < 64 ? (UINT64_C(1) << gpu->timestamp_bits) - 1 : UINT64_MAX;
+    uint64_t ticks[2];
     VkResult result =
         vkGetQueryPoolResults(gpu->device, session->timestamps, 0, 2, sizeof ticks, ticks,
                               sizeof ticks[0], VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT);
     if (!gpu_ok(err, "vkGetQueryPoolResults", result))
         return false;
-    /* Masked after the subtraction: the counter may have wrapped in between. */
-    *ms = (double)((ticks[1] - ticks[0]) & mask) * (double)gpu->properties.limits.timestampPeriod *
-          1e-6;
+    *ms = gpu_ms_between(gpu, ticks[0], ticks[1]);
     return true;
 }
 

@@ -109,6 +109,8 @@ void gpu_buffer_destroy(struct gpu *gpu, struct gpu_buffer *buffer);
 /* A command buffer in recording state; gpu_submit ends, runs, waits for and frees it. */
 VkCommandBuffer gpu_begin(struct gpu *gpu, struct tool_error *err);
 bool gpu_submit(struct gpu *gpu, VkCommandBuffer cmd, struct tool_error *err);
+/* Milliseconds between two timestamps of the queue. */
+double gpu_ms_between(const struct gpu *gpu, uint64_t first, uint64_t second);
 /* Makes every earlier write visible to every later access on the queue. */
 void gpu_full_barrier(VkCommandBuffer cmd);
 

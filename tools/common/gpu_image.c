@@ -91,6 +91,15 @@ bool gpu_submit(struct gpu *gpu, VkCommandBuffer cmd, struct tool_error *err)
     return ok;
 }
 
+double gpu_ms_between(const struct gpu *gpu, uint64_t first, uint64_t second)
+{
+    const uint64_t mask =
+        gpu->timestamp_bits < 64 ? (UINT64_C(1) << gpu->timestamp_bits) - 1 : UINT64_MAX;
+    /* Masked after the subtraction: the counter may have wrapped in between. */
+    return (double)((second - first) & mask) * (double)gpu->properties.limits.timestampPeriod *
+           1e-6;
+}
+
 void gpu_full_barrier(VkCommandBuffer cmd)
 {
     vkCmdPipelineBarrier(

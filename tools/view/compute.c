@@ -175,16 +175,12 @@ bool read_stage_times(const struct gpu *gpu, VkQueryPool pool, uint32_t query,
                       struct stage_times *times, struct tool_error *err)
 {
     uint64_t ticks[STAGES + 1];
-    uint64_t mask =
-        gpu->timestamp_bits < 64 ? (UINT64_C(1) << gpu->timestamp_bits) - 1 : UINT64_MAX;
     VkResult result = vkGetQueryPoolResults(gpu->device, pool, query, STAGES + 1, sizeof ticks,
                                             ticks, sizeof ticks[0], VK_QUERY_RESULT_64_BIT);
     if (result == VK_NOT_READY || !gpu_ok(err, "vkGetQueryPoolResults", result))
         return false;
-    /* Masked after the subtraction: the counter may have wrapped in between. */
     for (int i = 0; i < STAGES; i++)
-        times->ms[i] = (double)((ticks[i + 1] - ticks[i]) & mask) *
-                       (double)gpu->properties.limits.timestampPeriod * 1e-6;
+        times->ms[i] = gpu_ms_between(gpu, ticks[i], ticks[i + 1]);
     return true;
 }
 
