@@ -5,6 +5,7 @@
 #include "commands.h"
 
 #include "arguments.h"
+#include "clock.h"
 #include "driver.h"
 #include "gpu.h"
 #include "json.h"
@@ -109,9 +110,9 @@ static bool copy_once(struct copy_bench *b, const struct block *from, const stru
     stage_clock_start(&b->clock, cmd);
     vkCmdCopyBuffer(cmd, from->buffer, to->buffer, 1, &(VkBufferCopy){.size = from->bytes});
     stage_clock_stop(&b->clock);
-    const double start = runs_now_ms();
+    const double start = now_ms();
     const bool submitted = gpu_submit(&b->gpu, cmd, err);
-    const double wall = runs_now_ms() - start;
+    const double wall = now_ms() - start;
     if (!submitted || !stage_clock_read(&b->clock, wall, stages, err))
         return false;
     *ms = stages[STAGE_TOTAL];

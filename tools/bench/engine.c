@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "engine.h"
 
+#include "clock.h"
 #include "parallel.h"
-#include "runs.h"
 
 #include <string.h>
 #include <vulkan/vulkan.h>
@@ -62,7 +62,7 @@ bool engine_compile(struct engine *e, const struct config *configs, size_t count
     vkao_context_info info = gpu_context_info(&e->gpu);
     info.mark = stage_clock_mark;
     info.mark_user_data = &e->clock;
-    double start = runs_now_ms();
+    double start = now_ms();
     e->ctx = gpu_context_create(&info, err);
     if (!e->ctx)
         return false;
@@ -73,7 +73,7 @@ bool engine_compile(struct engine *e, const struct config *configs, size_t count
         result = vkao_effect_create(e->ctx, &effect, &e->effects[i]);
         e->effect_count += result == VKAO_SUCCESS;
     }
-    e->compile_ms = runs_now_ms() - start;
+    e->compile_ms = now_ms() - start;
     return result == VKAO_SUCCESS || gpu_library_failed(err, "vkao_effect_create", result);
 }
 
@@ -254,9 +254,9 @@ bool engine_run(struct engine *e, const struct engine_images *images, const stru
     vkao_result result =
         engine_record(frame_of(e, images, config), images->extent, config, radius, cmd);
     stage_clock_stop(&e->clock);
-    double start = runs_now_ms();
+    double start = now_ms();
     bool submitted = gpu_submit(&e->gpu, cmd, err);
-    double wall = runs_now_ms() - start;
+    double wall = now_ms() - start;
     if (result != VKAO_SUCCESS)
         return gpu_library_failed(err, "vkao_cmd_record", result);
     return submitted && stage_clock_read(&e->clock, wall, ms, err);

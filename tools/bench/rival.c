@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "rival.h"
 
+#include "clock.h"
 #include "text.h"
 
 #include <cjson/cJSON.h>
@@ -17,14 +18,14 @@ static bool run_command(const char *command, struct text *output, double *ms,
 {
     char buffer[4096];
     size_t length;
-    double start = runs_now_ms();
+    double start = now_ms();
     FILE *pipe = popen(command, "r");
     if (!pipe)
         return fail(err, EXIT_INPUT, "--vs: '%s': %s", command, strerror(errno));
     while ((length = fread(buffer, 1, sizeof buffer, pipe)) > 0)
         text_add(output, "%.*s", (int)length, buffer);
     int status = pclose(pipe);
-    *ms = runs_now_ms() - start;
+    *ms = now_ms() - start;
     if (status < 0)
         return fail(err, EXIT_INPUT, "--vs: '%s': %s", command, strerror(errno));
     if (WIFSIGNALED(status))

@@ -5,14 +5,6 @@
 
 #include <math.h>
 #include <stdio.h>
-#include <time.h>
-
-double runs_now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
 
 double runs_median(const float *values, size_t count)
 {

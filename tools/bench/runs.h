@@ -1,15 +1,12 @@
 /* SPDX-License-Identifier: MIT
  *
- * What is measured in several runs: the clock, and what is made of many times. */
+ * What is made of the times of several runs. */
 #ifndef VKAO_BENCH_RUNS_H_
 #define VKAO_BENCH_RUNS_H_
 
 #include <stddef.h>
 
 enum { MAX_RUNS = 1000 };
-
-/* Of a clock that nobody sets. */
-double runs_now_ms(void);
 
 /* Linear between ranks, of the values that are not NaN, at most MAX_RUNS; NaN if there is none. */
 double runs_median(const float *values, size_t count);

@@ -2,6 +2,7 @@
 #define _XOPEN_SOURCE 700 /* nftw */
 #include "start.h"
 
+#include "clock.h"
 #include "engine.h"
 #include "json.h"
 #include "runs.h"
@@ -29,12 +30,12 @@ static bool run_frames(struct engine *e, const struct config *config, const stru
     double ms[STAGES], start;
     if (!engine_images_create(e, room, &images, err))
         return false;
-    start = runs_now_ms();
+    start = now_ms();
     bool ok = engine_run(e, &images, config, ROOM_RADIUS, ms, err);
-    times->first = runs_now_ms() - start;
-    start = runs_now_ms();
+    times->first = now_ms() - start;
+    start = now_ms();
     ok = ok && engine_run(e, &images, config, ROOM_RADIUS, ms, err);
-    times->second = runs_now_ms() - start;
+    times->second = now_ms() - start;
     engine_images_destroy(e, &images);
     return ok;
 }
@@ -45,9 +46,9 @@ static void run_child(const char *device, const struct config *config, VkExtent2
     const struct engine_features none = {0};
     struct engine e;
     struct room room = {0};
-    const double start = runs_now_ms();
+    const double start = now_ms();
     bool ok = engine_create(device, none, &e, &m->err);
-    m->times.device = runs_now_ms() - start;
+    m->times.device = now_ms() - start;
     if (ok && engine_compile(&e, config, 1, &m->err) && engine_check_size(&e, extent, &m->err) &&
         room_create(extent.width, extent.height, 0, &room, &m->err)) {
         snprintf(m->device, sizeof m->device, "%s", e.gpu.properties.deviceName);

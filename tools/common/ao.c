@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 #include "ao.h"
 
+#include "clock.h"
 #include "parallel.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <vulkan/vulkan.h>
 
 /* The caller's images, in the order of vkao_images. */
@@ -225,13 +225,6 @@ static bool upload_behind(struct ao_session *session, const struct ao_job *job, 
             upload(session, IMAGE_SECOND_DEPTH, job->second_depth, texels, err)) &&
            (!effect->multi_bounce || upload(session, IMAGE_ALBEDO, job->albedo, texels, err)) &&
            (!effect->specular || upload(session, IMAGE_SPECULAR, job->specular, texels, err));
-}
-
-static double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
 static bool read_timestamps(struct ao_session *session, double *ms, struct tool_error *err)

@@ -3,6 +3,7 @@
 
 #include "ao.h"
 #include "automatic.h"
+#include "clock.h"
 #include "gpu.h"
 #include "light.h"
 #include "output.h"
@@ -16,7 +17,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include <unistd.h>
 
 /* What stays from frame to frame. */
@@ -36,13 +36,6 @@ struct session {
 struct times {
     double read, compute, write; /* milliseconds */
 };
-
-static double now_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
-}
 
 /* --- Device --- */
 
