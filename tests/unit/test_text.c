@@ -268,6 +268,17 @@ static void json_keeps_characters_and_spells_those_that_steer(void **state)
     cJSON_Delete(root);
 }
 
+static void paths_have_names_and_extensions(void **state)
+{
+    (void)state;
+    assert_string_equal(text_base_name("a/b.c/d.exr"), "d.exr");
+    assert_string_equal(text_base_name("d.exr"), "d.exr");
+    assert_string_equal(text_base_name("a/"), "");
+    assert_true(text_has_extension("a/d.ExR", ".exr"));
+    assert_false(text_has_extension(".exr", ".exr"));
+    assert_false(text_has_extension("d.exr.png", ".exr"));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -277,6 +288,7 @@ int main(void)
         cmocka_unit_test(cut_text_ends_between_characters),
         cmocka_unit_test(every_string_becomes_json_that_tells_it),
         cmocka_unit_test(json_keeps_characters_and_spells_those_that_steer),
+        cmocka_unit_test(paths_have_names_and_extensions),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
