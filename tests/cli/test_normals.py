@@ -135,6 +135,40 @@ def normals_that_point_inwards_are_said(scratch):
     check_same(ao, wanted, 'AO of both')
 
 
+def to_srgb(v):
+    return np.where(v <= 0.0031308, v * 12.92, 1.055 * np.maximum(v, 0) ** (1 / 2.4) - 0.055)
+
+
+def to_linear(v):
+    return np.where(v <= 0.04045, v / 12.92, ((np.maximum(v, 0) + 0.055) / 1.055) ** 2.4)
+
+
+@cases([('put on', to_srgb), ('taken off', to_linear)])
+def curve_of_colours_is_undone(scratch, name, curve):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene)
+    normals = scene.normals(space='world')
+    for below, curved in (('foot', curve), ('mirror', lambda v: np.sign(v) * curve(np.abs(v)))):
+        parts = {c: curved(v).astype(np.float32) for c, v in normals.items()}
+        parts['Z'] = scene.depth()
+        for options in (), ('--normal-encoding', 'signed'):
+            ao, said = run(scratch, parts, '--fov', FOV, *options, attributes=rotation_header())
+            check_same(ao, wanted, f'{name}, below zero its {below}')
+            matches(f'curve of sRGB had been {name} them: .* 100 % with that undone', said,
+                    'stderr')
+
+
+@case
+def filtered_normals_went_through_no_curve(scratch):
+    fine = Scene(640, 360)
+    for space in 'camera', 'world':
+        normals = {c: v.reshape(90, 4, 160, 4).mean((1, 3))
+                   for c, v in fine.normals(space=space).items()}
+        said = run(scratch, {'Z': Scene().depth(), **normals}, '--fov', FOV,
+                   attributes=rotation_header())[1]
+        check('curve' not in said, said)
+
+
 @case
 def normals_that_were_made_linear_are_refused(scratch):
     scene = Scene()

@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  *
- * How normals are stored: signed or as colours, of unit length or scaled, whole or with their signs
- * lost. No header says; the values do. */
+ * How normals are stored: signed or as colours, of unit length or scaled, through a curve, whole or
+ * with their signs lost. No header says; the values do. */
 #include "gbuffer_internal.h"
 #include "median.h"
+#include "png_file.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -253,6 +254,77 @@ static void decode(struct gbuffer *g)
     }
 }
 
+/* What is written as colours and not as data has the curve of sRGB put on, or taken off, each
+ * component on its own: below zero its mirror image, or its straight foot. */
+struct curve {
+    bool is_on, mirrors;
+};
+
+static double linear_of(double srgb)
+{
+    return srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+static double without_curve(double component, struct curve curve)
+{
+    static const double foot = 12.92;
+    const double size = fabs(component);
+    if (component < 0 && !curve.mirrors)
+        return curve.is_on ? component / foot : component * foot;
+    return copysign(curve.is_on ? linear_of(size) : srgb_of(size), component);
+}
+
+static void take_off(const struct curve *curve, const float *n, float out[3])
+{
+    for (int c = 0; c < 3; c++)
+        out[c] = curve ? (float)without_curve((double)n[c], *curve) : n[c];
+}
+
+/* Share of normals that are of length 1 without the curve; NULL: as they are. */
+static double share_of_ones(const struct gbuffer *g, const struct curve *curve)
+{
+    enum { ENOUGH = 1 << 14 };
+    size_t ones = 0, count = 0;
+    for (size_t i = 0; i < gbuffer_texels(g); i += gbuffer_texels(g) / ENOUGH + 1) {
+        float n[3];
+        take_off(curve, g->normals + i * 4, n);
+        ones += is_one(gbuffer_length(n));
+        count += gbuffer_length(n) > 0;
+    }
+    return count > 0 ? (double)ones / (double)count : 1;
+}
+
+/* Normals along an axis are the same with any curve. Where those that are not of length 1 are so
+ * without one, it is taken off; filters leave lengths that no curve explains. */
+static void undo_curve(struct gbuffer *g, const char *path, struct report *report)
+{
+    static const double few = 0.02, explained = 0.8;
+    static const struct curve curves[] = {
+        {true, true}, {true, false}, {false, true}, {false, false}};
+    const double as_is = share_of_ones(g, NULL);
+    const struct curve *curve = NULL;
+    double most = as_is + explained * (1.0 - as_is);
+    if (1.0 - as_is < few)
+        return;
+    for (size_t k = 0; k < sizeof curves / sizeof *curves; k++) {
+        const double share = share_of_ones(g, &curves[k]);
+        if (share > most) {
+            most = share;
+            curve = &curves[k];
+        }
+    }
+    if (!curve)
+        return;
+    for (size_t i = 0; i < gbuffer_texels(g); i++)
+        take_off(curve, g->normals + i * 4, g->normals + i * 4);
+    report_warn(report, "curved normals",
+                "%s: normals '%s' look as if the curve of sRGB had been %s them: %.0f %% are of "
+                "length 1, and %.0f %% with that undone, as it is; write them as data (raw, "
+                "non-colour)",
+                path, g->roles.kind[ROLE_NORMAL].label, curve->is_on ? "put on" : "taken off",
+                as_is * 100.0, most * 100.0);
+}
+
 bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, const char *path,
                             struct report *report, struct tool_error *err)
 {
@@ -263,6 +335,8 @@ bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, cons
     if (!g->normals)
         return true;
     decode(g);
+    if (g->normal_encoding == NORMAL_ENCODING_SIGNED)
+        undo_curve(g, path, report);
     gbuffer_warn_of_matrix(g, path, report);
     if (g->normal_encoding == NORMAL_ENCODING_SIGNED && !make_unit(g))
         return fail(err, EXIT_MEMORY, "%s: out of memory", path);
