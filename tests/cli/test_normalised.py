@@ -38,9 +38,25 @@ def normalised_depth_needs_its_range(scratch, _, near, far, inverted):
 def another_depth_is_named_where_one_is_refused(scratch):
     scene = Scene()
     grey = np.where(scene.sky, 1, (scene.z - 1.5) / 7.5).astype(np.float32)
-    write_exr(scratch.path('in.exr'), {'depth.R': grey, 'Z': scene.depth()})
+    write_exr(scratch.path('in.exr'), {'depth.R': grey, 'Z': scene.depth('device')})
     scratch.fails(CHANNELS, "in.exr: depth 'depth.R' is from .* normalised", 'in.exr', '-o',
                   'x.exr', '--fov', FOV, hint="--depth 'Z', which is called depth too")
+
+
+@cases([('a range', lambda z: (z - 1.5) / 7.5), ('fog', lambda z: 1 - np.exp(-z / 6))])
+def depth_in_a_unit_is_taken_before_that_from_0_to_1(scratch, _, grey_of):
+    scene = Scene()
+    wanted, _ = clean(scratch, scene)
+    grey = np.where(scene.sky, 1, grey_of(np.where(scene.sky, 1, scene.z))).astype(np.float32)
+    parts = {'Z': scene.depth(), **scene.normals()}
+    ao, said = run(scratch, {**parts, **{f'ZDepth.{c}': grey for c in 'RGB'}}, '--fov', FOV)
+    check_same(ao, wanted, said)
+    matches("'Z' and 'ZDepth.R' differ: 'Z' is taken, since the other is from 0 to 1", said,
+            'stderr')
+    # Of two in units, and for who says the type, the order of the names decides.
+    for other, options in (scene.depth() * 100, ()), (grey, ('--depth-type', 'planar')):
+        said = run(scratch, {**parts, 'ZDepth.R': other}, '--fov', FOV, *options)[1]
+        matches("'ZDepth.R' and 'Z' differ: 'ZDepth.R' is taken .--depth 'Z'", said, 'stderr')
 
 
 @case
