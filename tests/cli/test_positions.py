@@ -1,9 +1,12 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: MIT
 """Position passes: they give the camera and depth without any other image."""
+import json
+
 import numpy as np
 
-from cli import CHANNELS, case, cases, check, check_close, equal, main, matches, read_ao, write_exr
+from cli import (CHANNELS, case, cases, check, check_close, corpus, equal, main, matches, read_ao,
+                 read_parts, write_exr)
 from evidence import hidden, inspect
 from scene import MOVE, NEAR, RADIUS, TURN, Scene, camera, write_camera
 
@@ -159,6 +162,29 @@ def depth_beside_positions_may_begin_at_a_near_plane(scratch, _, told, is_known)
     equal('is not that of the positions' in said, not is_known, f'what is in {said}')
     if is_known:
         equal(view['conventions']['depth_type'], 'radial-near', 'type of depth')
+
+
+@case
+def positions_in_half_floats_tell_the_pixels_width(scratch):
+    """Far off, their steps turn the depth's own normals; the camera is exact all the same."""
+    planes = read_parts(corpus('m3_city_a.exr'))[0].channels
+    with open(corpus('m3_city_a.camera.json'), encoding='utf-8') as file:
+        camera = json.load(file)
+    height, width = planes['dd.y.T'].shape
+    rows, columns = np.mgrid[:height, :width]
+    half = np.tan(np.radians(camera['fov_x_deg'] / 2))
+    ray = half * np.stack([(columns + 0.5) / width * 2 - 1,
+                           (height / 2 - rows - 0.5) * 2 / width], -1)
+    length = np.sqrt(1 + (ray ** 2).sum(-1))
+    z = np.where(planes['dd.y.T'] > 0, planes['dd.y.T'] / length + camera['near'], 0)
+    place = np.stack([ray[..., 0] * z, ray[..., 1] * z, z], -1)[1::3, 1::3]
+    turn = np.diag([1, 1, -1]) @ np.array(camera['world_to_view'])[:3, :3]
+    normal = np.stack([planes[f'nn.{c}'] for c in 'XYZ'], -1)[1::3, 1::3] @ turn.T
+    write_exr(scratch.path('in.exr'), {
+        f'{layer}.{c}': vector[..., i].astype(np.float16)
+        for layer, vector in (('P', place), ('Ns', normal)) for i, c in enumerate('XYZ')})
+    said = str(inspect(scratch)['warnings'])
+    check('times as wide' not in said, said)
 
 
 def bent(scene, by):

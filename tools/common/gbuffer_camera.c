@@ -520,7 +520,8 @@ static bool doubt(struct gbuffer *g, const struct gbuffer_options *options, bool
     }
     const bool is_square = (now == DOUBT_CAMERA && !(seen.pixel_aspect > 0)) ||
                            (told->tone > 0 && told->toned > told->squeezed);
-    if (now != DOUBT_TYPE && !is_square)
+    /* Positions that a camera sees tell both sides of a pixel. */
+    if (now != DOUBT_TYPE && !is_square && !is_exact)
         tell_pixels(g, told, path, report);
     if (now != DOUBT_TYPE)
         tell_tone(g, told, path, report);
