@@ -274,55 +274,75 @@ static double without_curve(double component, struct curve curve)
     return copysign(curve.is_on ? linear_of(size) : srgb_of(size), component);
 }
 
-static void take_off(const struct curve *curve, const float *n, float out[3])
+static void take_off(struct curve curve, const float *n, float out[3])
 {
     for (int c = 0; c < 3; c++)
-        out[c] = curve ? (float)without_curve((double)n[c], *curve) : n[c];
+        out[c] = (float)without_curve((double)n[c], curve);
 }
 
-/* Share of normals that are of length 1 without the curve; NULL: as they are. */
-static double share_of_ones(const struct gbuffer *g, const struct curve *curve)
+/* Of how many normals there are, those of length 1 as they are and without the curve. */
+struct ones {
+    size_t count, as_is, without;
+};
+
+static bool is_explained(const struct ones *o)
 {
-    enum { ENOUGH = 1 << 14 };
-    size_t ones = 0, count = 0;
-    for (size_t i = 0; i < gbuffer_texels(g); i += gbuffer_texels(g) / ENOUGH + 1) {
-        float n[3];
-        take_off(curve, g->normals + i * 4, n);
-        ones += is_one(gbuffer_length(n));
-        count += gbuffer_length(n) > 0;
+    static const double few = 0.02, nearly_all = 0.8;
+    const double lost = (double)(o->count - o->as_is),
+                 found = (double)o->without - (double)o->as_is;
+    return lost > few * (double)o->count && found > nearly_all * lost;
+}
+
+/* Of all, or of those that are like the texel beside them without the curve: others may be means of
+ * a filter. */
+static struct ones count_ones(const struct gbuffer *g, struct curve curve)
+{
+    enum { ENOUGH = 1 << 14, FEW = 1 << 10 };
+    static const float most = 0.02f;
+    struct ones all = {0}, alike = {0};
+    for (size_t i = 0; i + 1 < gbuffer_texels(g); i += gbuffer_texels(g) / ENOUGH + 1) {
+        const float *stored = g->normals + i * 4;
+        float n[3], next[3];
+        if (!(gbuffer_length(stored) > 0))
+            continue;
+        take_off(curve, stored, n);
+        take_off(curve, stored + 4, next);
+        const bool is_alike = fabsf(n[0] - next[0]) < most && fabsf(n[1] - next[1]) < most &&
+                              fabsf(n[2] - next[2]) < most;
+        const bool as_is = is_one(gbuffer_length(stored)), without = is_one(gbuffer_length(n));
+        all = (struct ones){all.count + 1, all.as_is + as_is, all.without + without};
+        if (is_alike)
+            alike = (struct ones){alike.count + 1, alike.as_is + as_is, alike.without + without};
     }
-    return count > 0 ? (double)ones / (double)count : 1;
+    return alike.count > FEW && is_explained(&alike) ? alike : all;
 }
 
 /* Normals along an axis are the same with any curve. Where those that are not of length 1 are so
  * without one, it is taken off; filters leave lengths that no curve explains. */
 static void undo_curve(struct gbuffer *g, const char *path, struct report *report)
 {
-    static const double few = 0.02, explained = 0.8;
     static const struct curve curves[] = {
         {true, true}, {true, false}, {false, true}, {false, false}};
-    const double as_is = share_of_ones(g, NULL);
     const struct curve *curve = NULL;
-    double most = as_is + explained * (1.0 - as_is);
-    if (1.0 - as_is < few)
-        return;
+    double as_is = 0, without = 0;
     for (size_t k = 0; k < sizeof curves / sizeof *curves; k++) {
-        const double share = share_of_ones(g, &curves[k]);
-        if (share > most) {
-            most = share;
-            curve = &curves[k];
-        }
+        const struct ones ones = count_ones(g, curves[k]);
+        if (!is_explained(&ones) || (double)ones.without <= without * (double)ones.count)
+            continue;
+        curve = &curves[k];
+        as_is = (double)ones.as_is / (double)ones.count;
+        without = (double)ones.without / (double)ones.count;
     }
     if (!curve)
         return;
     for (size_t i = 0; i < gbuffer_texels(g); i++)
-        take_off(curve, g->normals + i * 4, g->normals + i * 4);
+        take_off(*curve, g->normals + i * 4, g->normals + i * 4);
     report_warn(report, "curved normals",
                 "%s: normals '%s' look as if the curve of sRGB had been %s them: %.0f %% are of "
                 "length 1, and %.0f %% with that undone, as it is; write them as data (raw, "
                 "non-colour)",
                 path, g->roles.kind[ROLE_NORMAL].label, curve->is_on ? "put on" : "taken off",
-                as_is * 100.0, most * 100.0);
+                as_is * 100.0, without * 100.0);
 }
 
 bool gbuffer_decode_normals(struct gbuffer *g, enum normal_encoding wanted, const char *path,
