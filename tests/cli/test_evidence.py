@@ -27,6 +27,17 @@ def inverse_depth_of_nuke_is_taken_as_such(scratch, _, unit, more):
     matches("warning: .*depth 'depth.Z' is taken as 1/z, as Nuke writes it", said, 'stderr')
 
 
+@cases([('told', ('--depth-type', 'inverse'), []), ('of Nuke', (), [('nuke/version', '15.1v2')])])
+def inverse_of_the_distance_from_the_eye_is_said(scratch, _, options, attributes):
+    scene = Scene(320, 180, fov=95)
+    for stretch, is_wrong in (scene.stretch, True), (1, False):
+        depth = np.where(scene.sky, 0, 1 / (scene.z * stretch)).astype(np.float32)
+        write_exr(scratch.path('in.exr'), {'depth.Z': depth, **scene.normals()},
+                  attributes=attributes)
+        said = str(inspect(scratch, '--fov', 95, *options)['warnings'])
+        equal('by normals \'N\' it is 1 over distances from the eye' in said, is_wrong, said)
+
+
 @case
 def depth_that_passed_through_nuke_stays_what_it_is(scratch):
     scene = Scene()

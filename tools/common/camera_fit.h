@@ -22,6 +22,7 @@ enum fit_model {
     FIT_RADIAL,
     FIT_RADIAL_NEAR, /* radial from the near plane, whose distance is estimated too */
     FIT_INVERSE,
+    FIT_INVERSE_RADIAL, /* 1 over distances from the eye: nobody writes it but by mistake */
     FIT_ORTHO,
     /* Values in [0,1] whose scale the image does not hold; only to be told from the others. */
     FIT_DEVICE,

@@ -29,6 +29,7 @@ const char *fit_model_name(enum fit_model model)
         [FIT_RADIAL] = "radial",
         [FIT_RADIAL_NEAR] = "radial from a near plane",
         [FIT_INVERSE] = "inverse",
+        [FIT_INVERSE_RADIAL] = "inverse radial",
         [FIT_ORTHO] = "orthographic",
         [FIT_DEVICE] = "device",
         [FIT_PLANAR_NORMALIZED] = "normalized planar",
@@ -88,7 +89,8 @@ static void unsqueeze(const struct fit_samples *s, const struct shape *shape,
 
 static bool is_radial(enum fit_model model)
 {
-    return model == FIT_RADIAL || model == FIT_RADIAL_NEAR || model == FIT_RADIAL_NORMALIZED;
+    return model == FIT_RADIAL || model == FIT_RADIAL_NEAR || model == FIT_RADIAL_NORMALIZED ||
+           model == FIT_INVERSE_RADIAL;
 }
 
 /* 1/z of stored values at x and y. Each loop is one that compilers turn into vectors. */
@@ -113,6 +115,10 @@ static void invert(const struct fit_samples *s, const struct shape *shape,
         break;
     case FIT_INVERSE:
         memcpy(w, d, FIT_CHUNK * sizeof *w);
+        break;
+    case FIT_INVERSE_RADIAL:
+        for (int i = 0; i < FIT_CHUNK; i++)
+            w[i] = stretch[i] * d[i];
         break;
     case FIT_DEVICE:
         for (int i = 0; i < FIT_CHUNK; i++)

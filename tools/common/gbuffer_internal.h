@@ -134,6 +134,10 @@ bool gbuffer_find_flip(struct gbuffer *g, const struct gbuffer_options *options,
  * normals say so. False only if memory runs out. */
 bool gbuffer_find_type(const struct gbuffer *g, const struct gbuffer_options *options,
                        const struct fit *told, struct fit *other, struct tool_error *err);
+/* Says of what is taken as 1/z, told or not, that by normals it is 1 over another distance. False
+ * only if memory runs out. */
+bool gbuffer_doubt_inverse(const struct gbuffer *g, const struct gbuffer_options *options,
+                           const char *path, struct report *report, struct tool_error *err);
 /* Who says what depth measures, in words, if somebody does. */
 const char *gbuffer_teller_of_type(const struct gbuffer *g, const struct gbuffer_options *options);
 void gbuffer_tell_type(const struct gbuffer *g, const struct gbuffer_options *options,

@@ -519,7 +519,7 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
     warn_about_whole(g, &seen, report);
     if (is_of_nuke(info, role)) {
         take_from_nuke(g, &seen, say, info->path, report);
-        return true;
+        return gbuffer_doubt_inverse(g, options, info->path, report, err);
     }
     const bool is_seen = (say == SAY_PLANAR || say == SAY_RADIAL) && !is_clamped(&seen);
     if (is_within_one(&seen) && !is_seen && say != SAY_INVERSE && !is_constant(&seen))
@@ -527,5 +527,5 @@ bool gbuffer_resolve_depth_type(struct gbuffer *g, const struct exr_info *info,
     if (is_within_one(&seen) && is_seen)
         warn_small(g, &seen, info->path, report);
     take_seen(g, &seen, say, info->path, report);
-    return true;
+    return gbuffer_doubt_inverse(g, options, info->path, report, err);
 }

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
- * What options or the name of a channel say of depth, held against its normals. Through a camera
- * that is known they are those of one type alone. What is told is believed all the same. */
+ * What options, the name of a channel or the program that wrote it say of depth, held against its
+ * normals. Through a camera that is known they are those of one type alone. What is told is believed
+ * all the same. */
 #include "gbuffer_internal.h"
 
 #include <stdio.h>
@@ -29,7 +30,7 @@ static unsigned other_models(enum depth_type told)
     case DEPTH_RADIAL_NEAR:
         return ALL & ~(unsigned)RADIAL;
     case DEPTH_INVERSE:
-        return ALL & ~(1u << FIT_INVERSE);
+        return (ALL & ~(1u << FIT_INVERSE)) | 1u << FIT_INVERSE_RADIAL;
     case DEPTH_DEVICE:
         return ALL & ~(1u << FIT_DEVICE | 1u << FIT_INVERSE);
     case DEPTH_NORMALIZED:
@@ -43,11 +44,14 @@ bool gbuffer_find_type(const struct gbuffer *g, const struct gbuffer_options *op
                        const struct fit *told, struct fit *other, struct tool_error *err)
 {
     const bool is_told = !gbuffer_type_is_auto(g, options) && g->depth_source == DEPTH_ASSUMED;
+    /* 1/z that planes or a program tell may be that of another distance. */
+    const unsigned models = is_told                          ? other_models(g->depth_type)
+                            : g->depth_type == DEPTH_INVERSE ? 1u << FIT_INVERSE_RADIAL
+                                                             : 0;
     *other = (struct fit){0};
-    if (!is_told || g->camera.type != CAMERA_PERSPECTIVE)
+    if (!models || g->camera.type != CAMERA_PERSPECTIVE)
         return true;
-    const struct camera_search search = {
-        .models = other_models(g->depth_type), .is_known = true, .patch = told->patch};
+    const struct camera_search search = {.models = models, .is_known = true, .patch = told->patch};
     if (!gbuffer_fit_camera(g, &search, other, err))
         return false;
     other->is_sure &= other->agreement - told->agreement >= least_gain;
@@ -97,6 +101,16 @@ void gbuffer_tell_type(const struct gbuffer *g, const struct gbuffer_options *op
 {
     const char *type = depth_type_name(g->depth_type);
     char remedy[REMEDY_BYTES];
+    if (other->model == FIT_INVERSE_RADIAL) {
+        report_warn_of_frame(
+            report, "doubted depth",
+            "%s: depth '%s' is taken as 1/z, but by normals '%s' it is 1 over distances from the "
+            "eye (%.0f %% of them agree then, and %.0f %% as it is taken): AO is wrong; write 1 "
+            "over it, and say --depth-type radial",
+            path, g->roles.kind[ROLE_DEPTH].label, g->roles.kind[ROLE_NORMAL].label,
+            other->agreement * 100.0, told->agreement * 100.0);
+        return;
+    }
     describe_remedy(g, other, remedy);
     report_warn_of_frame(
         report, "doubted depth",
@@ -105,4 +119,18 @@ void gbuffer_tell_type(const struct gbuffer *g, const struct gbuffer_options *op
         path, gbuffer_teller_of_type(g, options), g->roles.kind[ROLE_DEPTH].label, type,
         g->roles.kind[ROLE_NORMAL].label, (int)strcspn(remedy, " "), remedy,
         other->agreement * 100.0, told->agreement * 100.0, type, remedy);
+}
+
+bool gbuffer_doubt_inverse(const struct gbuffer *g, const struct gbuffer_options *options,
+                           const char *path, struct report *report, struct tool_error *err)
+{
+    struct fit told, other;
+    if (g->depth_type != DEPTH_INVERSE || !g->normals || !g->camera.source[0])
+        return true;
+    if (!gbuffer_estimate_known(g, options, FIT_PATCH_ANY, &told, err) ||
+        !gbuffer_find_type(g, options, &told, &other, err))
+        return false;
+    if (other.is_sure)
+        gbuffer_tell_type(g, options, &told, &other, path, report);
+    return true;
 }
