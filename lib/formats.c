@@ -282,14 +282,14 @@ bool vkao_format_is_srgb(VkFormat format)
     return (uint32_t)format < NAME_COUNT && has(format, "_SRGB");
 }
 
-bool vkao_format_is_sampled_float(VkFormat format)
+bool vkao_format_is_color(VkFormat format)
 {
-    /* What later versions and extensions added, and 64-bit components. */
+    /* What later versions and extensions added, 64-bit components, depth and stencil. */
     if (format <= VK_FORMAT_UNDEFINED || (uint32_t)format >= NAME_COUNT ||
-        (format >= VK_FORMAT_R64_UINT && format <= VK_FORMAT_R64G64B64A64_SFLOAT))
+        (format >= VK_FORMAT_R64_UINT && format <= VK_FORMAT_R64G64B64A64_SFLOAT) ||
+        (format >= VK_FORMAT_D16_UNORM && format <= VK_FORMAT_D32_SFLOAT_S8_UINT))
         return false;
-    /* Of a depth format, it is depth that is read. */
-    return vkao_format_is_depth(format) || !(has(format, "_UINT") || has(format, "_SINT"));
+    return !(has(format, "_UINT") || has(format, "_SINT"));
 }
 
 uint32_t vkao_format_components(VkFormat format)
@@ -297,10 +297,21 @@ uint32_t vkao_format_components(VkFormat format)
     uint32_t count = 0;
     for (const char *c = names[format]; *c; ++c)
         count += (*c == 'R' || *c == 'G' || *c == 'B') && c[1] >= '0' && c[1] <= '9';
-    /* Depth and blocks have no letters with sizes. */
-    if (vkao_format_is_depth(format) || has(format, "BC4"))
+    /* Blocks have no letters with sizes. */
+    if (has(format, "BC4"))
         return 1;
     return count ? count : has(format, "BC5") ? 2 : 3;
+}
+
+bool vkao_format_has_alpha(VkFormat format)
+{
+    static const char *const blocks[] = {"BC1_RGBA", "BC2", "BC3", "BC7", "ASTC"};
+    for (size_t i = 0; i < sizeof blocks / sizeof blocks[0]; ++i) {
+        if (has(format, blocks[i]))
+            return true;
+    }
+    const char *a = strchr(names[format], 'A');
+    return a && a[1] >= '0' && a[1] <= '9';
 }
 
 bool vkao_format_is_signed(VkFormat format)

@@ -12,8 +12,8 @@ enum { VKAO_NAME_BYTES = 64 };
 const char *vkao_format_name(VkFormat format, char buffer[VKAO_NAME_BYTES]);
 const char *vkao_layout_name(VkImageLayout layout, char buffer[VKAO_NAME_BYTES]);
 
-/* Formats that texture2D can read: everything but integers, multi-planar and stencil-only. */
-bool vkao_format_is_sampled_float(VkFormat format);
+/* Formats of colour that texture2D can read: neither integers nor multi-planar. */
+bool vkao_format_is_color(VkFormat format);
 bool vkao_format_is_srgb(VkFormat format);
 /* Formats of AO images. */
 bool vkao_format_is_ao(VkFormat format);
@@ -22,9 +22,10 @@ bool vkao_format_is_depth(VkFormat format);
 /* Size of one step of a depth value in [0.5,1), and whether the format floats; 0 for other
  * formats. */
 float vkao_format_depth_step(VkFormat format, bool *floating);
-/* Of formats that texture2D can read: components of colour, 3 for 3 and more, and whether they hold
- * negative numbers. */
+/* Of formats of colour: components without alpha, 3 for 3 and more; is there alpha; can they hold
+ * negative numbers? */
 uint32_t vkao_format_components(VkFormat format);
+bool vkao_format_has_alpha(VkFormat format);
 bool vkao_format_is_signed(VkFormat format);
 
 #endif

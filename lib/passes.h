@@ -15,15 +15,15 @@
  * where the caller gives none. */
 #define VKAO_SLOTS(X)                                                                              \
     X(DEPTH, depth, DEPTH)                                                                         \
-    X(NORMALS, normals, COLOR)                                                                     \
+    X(NORMALS, normals, NORMALS)                                                                   \
     X(AO_NOISY, ao_noisy, AO)                                                                      \
     X(AO, ao, AO)                                                                                  \
     X(COLOR, color, COLOR)                                                                         \
     X(DIRECT, direct, COLOR)                                                                       \
     X(OUTPUT, output, COLOR)                                                                       \
-    X(BENT_NORMALS, bent_normals, COLOR)                                                           \
+    X(BENT_NORMALS, bent_normals, NORMALS)                                                         \
     X(ALBEDO, albedo, COLOR)                                                                       \
-    X(SPECULAR, specular, COLOR)                                                                   \
+    X(SPECULAR, specular, SPECULAR)                                                                \
     X(THICKNESS, thickness, DEPTH)                                                                 \
     X(SECOND_DEPTH, second_depth, DEPTH)
 

@@ -6,7 +6,7 @@
 
 #include <stddef.h>
 
-enum slot_use { SLOT_DEPTH, SLOT_AO, SLOT_COLOR };
+enum slot_use { SLOT_DEPTH, SLOT_AO, SLOT_COLOR, SLOT_NORMALS, SLOT_SPECULAR };
 
 static const struct slot {
     const char *name;
@@ -21,7 +21,9 @@ static const struct slot {
 static const char *const wants[] = {
     [SLOT_DEPTH] = "a depth format, R16_UNORM, R16_SFLOAT or R32_SFLOAT",
     [SLOT_AO] = "R8_UNORM, R16_UNORM, R16_SFLOAT or R32_SFLOAT",
-    [SLOT_COLOR] = "a float, UNORM or SNORM format",
+    [SLOT_COLOR] = "a float, UNORM, SNORM or SRGB format of colour",
+    [SLOT_NORMALS] = "a float, UNORM or SNORM format of colour",
+    [SLOT_SPECULAR] = "a float, UNORM, SNORM or SRGB format with alpha, which is roughness",
 };
 
 const vkao_image *vkao_slot_image(const vkao_images *images, uint32_t slot)
@@ -36,8 +38,12 @@ static bool format_fits(enum slot_use use, VkFormat format)
         return vkao_format_is_depth(format);
     case SLOT_AO:
         return vkao_format_is_ao(format);
+    case SLOT_NORMALS:
+        return vkao_format_is_color(format) && !vkao_format_is_srgb(format);
+    case SLOT_SPECULAR:
+        return vkao_format_is_color(format) && vkao_format_has_alpha(format);
     default:
-        return vkao_format_is_sampled_float(format);
+        return vkao_format_is_color(format);
     }
 }
 

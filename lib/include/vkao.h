@@ -470,13 +470,14 @@ typedef struct vkao_images {
     uint32_t padding; /* zero */
     /* depth-aspect view, or a one-component float format: see vkao_depth_encoding */
     vkao_image depth;
-    /* optional: see vkao_normal_encoding, whose components and sign the format has to have */
+    /* optional: see vkao_normal_encoding, whose components and sign the format has to have. It is
+     * not sRGB, which is decoded as colour is */
     vkao_image normals;
     /* R8/R16 unorm, R16/R32 float. Input of BLUR without SSAO; see effect.noisy_ao */
     vkao_image ao_noisy;
     /* as ao_noisy; unused = scratch if COMPOSITE reads it. Input if only COMPOSITE */
     vkao_image ao;
-    /* lit colour or indirect light, any float or unorm format; MULTIPLY and INDIRECT */
+    /* lit colour or indirect light, float, UNORM, SNORM or sRGB; MULTIPLY and INDIRECT */
     vkao_image color;
     vkao_image direct; /* direct light, INDIRECT only; as color */
     /* storage-capable colour format; may be color's image if both are GENERAL */
@@ -488,7 +489,8 @@ typedef struct vkao_images {
      * (0,0), the code of +z. Input if only COMPOSITE. */
     vkao_image bent_normals;
     vkao_image albedo; /* diffuse reflectance in rgb, for multi_bounce; as color */
-    /* indirect specular light in rgb, roughness in alpha, for effect.specular; as color */
+    /* indirect specular light in rgb, roughness in alpha, for effect.specular; as color, of a
+     * format with alpha */
     vkao_image specular;
     /* For effect.thickness_input, format as depth. What is not above 0, no number, or not behind
      * depth is unknown, and taken to be 1.5 radii, as is what is thicker. params.thickness scales

@@ -255,18 +255,19 @@ static const VkFormat integer_formats[] = {
     VK_FORMAT_G8_B8_R8_3PLANE_420_UNORM,
 };
 
-static void expect_formats(const VkFormat *formats, size_t count, size_t slot, bool fits)
+/* want: how the words begin that say what the slot wants; NULL if the formats fit. */
+static void expect_formats(const VkFormat *formats, size_t count, size_t slot, const char *want)
 {
     struct world w;
     world_open(&w);
     set_case(&w, 2 * VKAO_STAGE_ALL + (slot == BENT_NORMALS));
     const VkFormat was = world_slot(&w.images, slot)->format;
     for (size_t i = 0; i < count; ++i) {
-        char name[64], value[32];
+        char name[64], value[96];
         snprintf(name, sizeof name, "%s.format", world_slot_names[slot]);
-        snprintf(value, sizeof value, "%d", (int)formats[i]);
+        snprintf(value, sizeof value, "(%d), want %s", (int)formats[i], want ? want : "");
         world_slot(&w.images, slot)->format = formats[i];
-        expect_result(&w, fits ? VKAO_SUCCESS : VKAO_ERROR_INVALID_ARGUMENT, name, value);
+        expect_result(&w, want ? VKAO_ERROR_INVALID_ARGUMENT : VKAO_SUCCESS, name, value);
     }
     world_slot(&w.images, slot)->format = was;
     world_close(&w);
@@ -276,7 +277,7 @@ static void integer_formats_fit_no_slot(void **state)
 {
     (void)state;
     for (size_t slot = 0; slot < SLOT_COUNT; ++slot)
-        expect_formats(integer_formats, COUNT(integer_formats), slot, false);
+        expect_formats(integer_formats, COUNT(integer_formats), slot, "");
 }
 
 static void formats_fit_their_slots(void **state)
@@ -313,16 +314,42 @@ static void formats_fit_their_slots(void **state)
         VK_FORMAT_R16G16_SNORM,
         VK_FORMAT_R8_UNORM,
     };
-    expect_formats(depth, COUNT(depth), DEPTH, true);
-    expect_formats(not_depth, COUNT(not_depth), DEPTH, false);
-    expect_formats(ao, COUNT(ao), AO_NOISY, true);
-    expect_formats(not_ao, COUNT(not_ao), AO, false);
-    expect_formats(not_ao, COUNT(not_ao), AO_NOISY, false);
-    expect_formats(colors, COUNT(colors), COLOR, true);
-    expect_formats(colors, COUNT(colors), DIRECT, true);
-    expect_formats(colors, COUNT(colors), OUTPUT, true);
-    expect_formats(colors, COUNT(colors), ALBEDO, true);
-    expect_formats(colors, COUNT(colors), SPECULAR, true);
+    /* Roughness is in alpha. */
+    static const VkFormat with_alpha[] = {
+        VK_FORMAT_R8G8B8A8_UNORM,           VK_FORMAT_B8G8R8A8_SRGB,
+        VK_FORMAT_A2B10G10R10_UNORM_PACK32, VK_FORMAT_A1R5G5B5_UNORM_PACK16,
+        VK_FORMAT_R16G16B16A16_SFLOAT,      VK_FORMAT_R32G32B32A32_SFLOAT,
+        VK_FORMAT_BC1_RGBA_UNORM_BLOCK,     VK_FORMAT_BC2_UNORM_BLOCK,
+        VK_FORMAT_BC3_SRGB_BLOCK,           VK_FORMAT_BC7_UNORM_BLOCK,
+        VK_FORMAT_ASTC_4x4_UNORM_BLOCK,     VK_FORMAT_ETC2_R8G8B8A1_UNORM_BLOCK,
+    };
+    static const VkFormat without_alpha[] = {
+        VK_FORMAT_B10G11R11_UFLOAT_PACK32,
+        VK_FORMAT_E5B9G9R9_UFLOAT_PACK32,
+        VK_FORMAT_R16G16B16_SFLOAT,
+        VK_FORMAT_R8G8B8_SRGB,
+        VK_FORMAT_R16G16_SFLOAT,
+        VK_FORMAT_BC1_RGB_UNORM_BLOCK,
+        VK_FORMAT_BC6H_UFLOAT_BLOCK,
+        VK_FORMAT_EAC_R11G11_UNORM_BLOCK,
+        VK_FORMAT_D32_SFLOAT,
+    };
+    static const size_t of_color[] = {NORMALS, COLOR, DIRECT, OUTPUT, ALBEDO, SPECULAR};
+    enum { DEPTH_ONLY = 6 }; /* of depth, those before formats that colour can have too */
+    expect_formats(depth, COUNT(depth), DEPTH, NULL);
+    expect_formats(not_depth, COUNT(not_depth), DEPTH, "a depth format");
+    expect_formats(ao, COUNT(ao), AO_NOISY, NULL);
+    expect_formats(not_ao, COUNT(not_ao), AO, "R8_UNORM");
+    expect_formats(not_ao, COUNT(not_ao), AO_NOISY, "R8_UNORM");
+    expect_formats(colors, COUNT(colors), COLOR, NULL);
+    expect_formats(colors, COUNT(colors), DIRECT, NULL);
+    expect_formats(colors, COUNT(colors), OUTPUT, NULL);
+    expect_formats(colors, COUNT(colors), ALBEDO, NULL);
+    expect_formats(with_alpha, COUNT(with_alpha), SPECULAR, NULL);
+    expect_formats(without_alpha, COUNT(without_alpha), SPECULAR,
+                   "a float, UNORM, SNORM or SRGB format with alpha, which is roughness");
+    for (size_t i = 0; i < COUNT(of_color); ++i)
+        expect_formats(depth, DEPTH_ONLY, of_color[i], "a float, UNORM");
 }
 
 /* Given and bent normals, which are of the same encoding here. */
@@ -340,15 +367,15 @@ static void normals_fit_their_encoding(void **state)
         VK_FORMAT_R8G8B8A8_SNORM,    VK_FORMAT_A2B10G10R10_SNORM_PACK32,
         VK_FORMAT_BC6H_SFLOAT_BLOCK, VK_FORMAT_R32G32B32A32_SFLOAT,
     };
-    /* Of each format: y it fits, c it has too few components, s it has no sign. */
+    /* Of each format: y it fits, c it has too few components, s it has no sign, g it is sRGB. */
     static const struct {
         vkao_normal_encoding encoding;
         const char *fits, *name, *instead;
     } rows[] = {
-        {VKAO_NORMALS_XYZ_SNORM, "ccccccccsssssyyyyy", "XYZ_SNORM", "XYZ_UNORM"},
-        {VKAO_NORMALS_XYZ_UNORM, "ccccccccyyyyyyyyyy", "XYZ_UNORM", ""},
-        {VKAO_NORMALS_OCT_SNORM, "cccyyssysssssyyyyy", "OCT_SNORM", "OCT_UNORM"},
-        {VKAO_NORMALS_OCT_UNORM, "cccyyyyyyyyyyyyyyy", "OCT_UNORM", ""},
+        {VKAO_NORMALS_XYZ_SNORM, "ccccccccssgssyyyyy", "XYZ_SNORM", "XYZ_UNORM"},
+        {VKAO_NORMALS_XYZ_UNORM, "ccccccccyygyyyyyyy", "XYZ_UNORM", ""},
+        {VKAO_NORMALS_OCT_SNORM, "cccyyssyssgssyyyyy", "OCT_SNORM", "OCT_UNORM"},
+        {VKAO_NORMALS_OCT_UNORM, "cccyyyyyyygyyyyyyy", "OCT_UNORM", ""},
     };
     for (size_t i = 0; i < COUNT(rows) * COUNT(formats) * 2; ++i) {
         const size_t row = i / 2 / COUNT(formats), format = i / 2 % COUNT(formats);
@@ -363,7 +390,10 @@ static void normals_fit_their_encoding(void **state)
         char name[64];
         snprintf(name, sizeof name, "%s.format", world_slot_names[slot]);
         const vkao_result want = fits == 'y' ? VKAO_SUCCESS : VKAO_ERROR_INVALID_ARGUMENT;
-        expect_result(&w, want, name, fits == 's' ? rows[row].instead : rows[row].name);
+        expect_result(&w, want, name,
+                      fits == 'g'   ? "R8G8B8A8_SRGB (43), want a float, UNORM or SNORM"
+                      : fits == 's' ? rows[row].instead
+                                    : rows[row].name);
         world_close(&w);
     }
 }
