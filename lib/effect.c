@@ -143,6 +143,7 @@ vkao_result vkao_effect_create(const vkao_context *ctx, const vkao_effect_info *
         result = vkao_effect_info_check(&ctx->log, info, &settings);
     if (result != VKAO_SUCCESS)
         return result;
+    vkao_effect_info_warn(&ctx->log, &settings);
     vkao_effect *effect = vkao_calloc(ctx->allocator, sizeof *effect);
     if (!effect)
         return vkao_refuse(&ctx->log, VKAO_ERROR_OUT_OF_HOST_MEMORY,

@@ -509,6 +509,31 @@ vkao_result vkao_effect_info_check(const struct vkao_logger *log, const vkao_eff
     return result;
 }
 
+void vkao_effect_info_warn(const struct vkao_logger *log, const vkao_effect_info *e)
+{
+    const bool composites = e->stages & VKAO_STAGE_COMPOSITE;
+    const struct {
+        bool unused;
+        const char *name;
+        uint32_t value;
+        const char *because;
+        uint32_t is;
+    } rules[] = {
+        {e->depth_bits && e->stages & MAKES_AO && e->depth_encoding != VKAO_DEPTH_PROJECTED,
+         "depth_bits", e->depth_bits, "depth_encoding", (uint32_t)e->depth_encoding},
+        /* Modes for a look at what the stages saw come and go, and the rest stays. */
+        {e->specular && composites && e->composite_mode == VKAO_COMPOSITE_AO_ONLY, "specular",
+         (uint32_t)e->specular, "composite_mode", (uint32_t)e->composite_mode},
+    };
+    char word[VKAO_NAME_BYTES], other[VKAO_NAME_BYTES];
+    for (size_t i = 0; i < sizeof rules / sizeof rules[0]; ++i) {
+        if (rules[i].unused)
+            vkao_log(log, VKAO_LOG_WARNING, "effect.%s is %u%s, but not used: effect.%s is %u%s",
+                     rules[i].name, rules[i].value, word_of(rules[i].name, rules[i].value, word),
+                     rules[i].because, rules[i].is, word_of(rules[i].because, rules[i].is, other));
+    }
+}
+
 vkao_result vkao_params_check(const struct vkao_logger *log, const vkao_params *in,
                               vkao_params *out)
 {

@@ -40,6 +40,8 @@ bool vkao_method_reads(vkao_ssao_method method, const char *name);
 /* Import, check every range of the table, and put in defaults for zeros that stand for them. */
 vkao_result vkao_effect_info_check(const struct vkao_logger *log, const vkao_effect_info *in,
                                    vkao_effect_info *out);
+/* Says which settings of a checked effect are given, but not used. */
+void vkao_effect_info_warn(const struct vkao_logger *log, const vkao_effect_info *effect);
 vkao_result vkao_params_check(const struct vkao_logger *log, const vkao_params *in,
                               vkao_params *out);
 

@@ -365,6 +365,53 @@ static void combinations_that_make_no_sense_are_refused_and_named(void **state)
     }
 }
 
+/* What views of the same settings come and go with is there without a word. */
+static void settings_that_are_not_used_are_said(void **state)
+{
+    (void)state;
+    static const struct {
+        vkao_stage_flags stages;
+        uint32_t depth_bits;
+        vkao_depth_encoding encoding;
+        vkao_specular specular;
+        vkao_composite_mode mode;
+        const char *said; /* NULL: nothing */
+    } rows[] = {
+        {VKAO_STAGE_ALL, 24, VKAO_DEPTH_VIEW_Z, VKAO_SPECULAR_NONE, VKAO_COMPOSITE_MULTIPLY,
+         "effect.depth_bits is 24, but not used: effect.depth_encoding is 1 (z)"},
+        {VKAO_STAGE_SSAO, 16, VKAO_DEPTH_INVERSE_Z, VKAO_SPECULAR_NONE, VKAO_COMPOSITE_MULTIPLY,
+         "effect.depth_bits is 16, but not used: effect.depth_encoding is 3 (inverse-z)"},
+        {VKAO_STAGE_ALL, 24, VKAO_DEPTH_PROJECTED, VKAO_SPECULAR_NONE, VKAO_COMPOSITE_MULTIPLY,
+         NULL},
+        {VKAO_STAGE_COMPOSITE, 24, VKAO_DEPTH_VIEW_Z, VKAO_SPECULAR_NONE, VKAO_COMPOSITE_MULTIPLY,
+         NULL},
+        {VKAO_STAGE_ALL, 0, VKAO_DEPTH_VIEW_Z, VKAO_SPECULAR_FROM_AO, VKAO_COMPOSITE_AO_ONLY,
+         "effect.specular is 1 (from-ao), but not used: effect.composite_mode is 2 (ao-only)"},
+        {VKAO_STAGE_ALL, 0, VKAO_DEPTH_VIEW_Z, VKAO_SPECULAR_FROM_AO, VKAO_COMPOSITE_INDIRECT,
+         NULL},
+        {VKAO_STAGE_ALL, 0, VKAO_DEPTH_VIEW_Z, VKAO_SPECULAR_FROM_AO, VKAO_COMPOSITE_NORMALS, NULL},
+        {VKAO_STAGE_SSAO, 0, VKAO_DEPTH_VIEW_Z, VKAO_SPECULAR_FROM_AO, VKAO_COMPOSITE_AO_ONLY,
+         NULL},
+    };
+    for (size_t i = 0; i < COUNT(rows); ++i) {
+        struct world w;
+        open_for(&w, rows[i].stages, false, true);
+        w.effect_info.depth_bits = rows[i].depth_bits;
+        w.effect_info.depth_encoding = rows[i].encoding;
+        w.effect_info.normal_encoding = VKAO_NORMALS_XYZ_SNORM;
+        w.effect_info.specular = rows[i].specular;
+        w.effect_info.composite_mode = rows[i].mode;
+        world_forget_log(&w);
+        assert_int_equal(create(&w), VKAO_SUCCESS);
+        assert_int_equal(w.log.lines, rows[i].said ? 1 : 0);
+        if (rows[i].said) {
+            assert_int_equal(w.log.last_level, VKAO_LOG_WARNING);
+            assert_string_equal(w.log.last, rows[i].said);
+        }
+        world_close(&w);
+    }
+}
+
 static void every_required_null_is_refused(void **state)
 {
     (void)state;
@@ -408,6 +455,7 @@ int main(void)
         cmocka_unit_test(pipeline_cache_reaches_the_driver),
         cmocka_unit_test(debug_labels_are_optional_in_every_way),
         cmocka_unit_test(combinations_that_make_no_sense_are_refused_and_named),
+        cmocka_unit_test(settings_that_are_not_used_are_said),
         cmocka_unit_test(every_required_null_is_refused),
         cmocka_unit_test(effect_with_living_frames_stays),
     };

@@ -332,6 +332,29 @@ def what_was_changed_is_undone_and_redone(scratch):
 
 
 @case
+def ao_alone_is_shown_without_its_specular_light(scratch):
+    """What the library has to say of light that it is given and leaves out would be on stderr."""
+    size = (WIDTH + PANEL_WIDTH, 1000)
+    with opened(scratch, '--specular', 'spec', '--show', 'composite', '--quiet', more=True,
+                size=size) as viewer:
+        def colours():
+            shown = screen(scratch, viewer, size)[:, PANEL_WIDTH:].astype(int)
+            return (np.ptp(shown, axis=-1) > 30).mean()
+
+        def below_mode():
+            return screen(scratch, viewer, size)[650:700, 10:170]
+
+        until(lambda: colours() > 0.05, 'colour')
+        before = below_mode()
+        viewer.click(80, 635)  # composite mode
+        until(lambda: (below_mode() != before).any(axis=-1).mean() > 0.3, 'list')
+        viewer.click(40, 693)  # 'ao-only'
+        until(lambda: colours() < 0.01, 'AO alone')
+        viewer.finish()
+        equal(viewer.err, '', 'stderr')
+
+
+@case
 def warnings_show_in_the_panel(scratch):
     size = (WIDTH + PANEL_WIDTH, 700)
     with opened(scratch, size=size) as viewer:

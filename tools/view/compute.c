@@ -27,7 +27,8 @@ static void fit_composite(vkao_effect_info *e, const struct inputs *inputs, enum
         e->composite_mode = color ? VKAO_COMPOSITE_MULTIPLY : VKAO_COMPOSITE_AO_ONLY;
     if (view != VIEW_COMPOSITE || !inputs->images.albedo.format)
         e->multi_bounce = VK_FALSE;
-    if (view != VIEW_COMPOSITE || !inputs->images.specular.format || !inputs->view.normal_encoding)
+    if (view != VIEW_COMPOSITE || e->composite_mode == VKAO_COMPOSITE_AO_ONLY ||
+        !inputs->images.specular.format || !inputs->view.normal_encoding)
         e->specular = VKAO_SPECULAR_NONE;
     else if (e->specular == VKAO_SPECULAR_NONE || !method_has_bent(e->method))
         e->specular = VKAO_SPECULAR_FROM_AO;
