@@ -8,8 +8,8 @@
  * recording to the next.
  *
  * The library never creates a device, submits, waits, maps memory or calls a Vulkan function it was
- * not handed. vkao_cmd_* functions allocate nothing. There is no global state: contexts are
- * independent.
+ * not handed. vkao_cmd_* functions allocate nothing, but where they compile on a CPU, see
+ * vkao_cmd_record. There is no global state: contexts are independent.
  *
  * Ambient occlusion is stored as visibility in [0,1]: 1 = open, 0 = fully occluded. Before the blur
  * it is an estimate that may lie on both sides of that, in ao_noisy and in the ao of effects
@@ -428,8 +428,8 @@ VKAO_API VKAO_MUST_CHECK vkao_result vkao_effect_create(const vkao_context *ctx,
                                                         vkao_effect **out);
 
 /* What the effect was compiled for, with every 0 that stands for a default replaced by it. The
- * members for compilation are zero. Writes the members that lie within size bytes, sizeof *out; all
- * zero without an effect. */
+ * members for compilation are zero. Writes the members that lie within size bytes, sizeof *out;
+ * without an effect all are zero but struct_size. */
 VKAO_API void vkao_effect_settings(const vkao_effect *effect, vkao_effect_info *out, uint32_t size);
 
 /* All frames of the effect must be destroyed first; if not, nothing happens but an error in the
@@ -473,7 +473,8 @@ typedef struct vkao_images {
     /* optional: see vkao_normal_encoding, whose components and sign the format has to have. It is
      * not sRGB, which is decoded as colour is */
     vkao_image normals;
-    /* R8/R16 unorm, R16/R32 float. Input of BLUR without SSAO; see effect.noisy_ao */
+    /* R8/R16 unorm, R16/R32 float. Input of BLUR without SSAO; see effect.noisy_ao. A texel that is
+     * not finite makes itself and its row within blur_radius open, and so lighter what is around */
     vkao_image ao_noisy;
     /* as ao_noisy; unused = scratch if COMPOSITE reads it. Input if only COMPOSITE */
     vkao_image ao;
@@ -512,7 +513,8 @@ typedef struct vkao_frame_info {
     uint32_t padding; /* zero */
     /* texels; size of every image, at least 1, at most 65,535 and maxImageDimension2D; 8 columns
      * and 2 rows less than the latter where scratch is images, which have a border: on a GPU, and
-     * on a CPU where a buffer would be larger than maxStorageBufferRange */
+     * on a CPU where a buffer would have more bytes than maxStorageBufferRange, or more texels than
+     * maxTexelBufferElements */
     VkExtent2D extent;
     const vkao_images *images; /* read during the call only */
     /* Place scratch here instead of allocating: DEVICE_LOCAL memory satisfying
@@ -551,10 +553,10 @@ VKAO_API void vkao_frame_destroy(vkao_frame *frame);
 
 /* --- Recording: what may change each time --- */
 
-/* Which way the camera looks along the view-space z axis. A perspective matrix says so itself; an
- * orthographic one does through its near and far planes, which depths 0 and 1 are taken to be: name
- * the axis if they lie equally far on both sides of the eye, or if a range of depth is folded into
- * the matrix. */
+/* Which way the camera looks along the view-space z axis. A perspective matrix says so itself. In
+ * an orthographic one depths 0 and 1 are taken to be the near and far planes, and the plane that
+ * lies farther from the eye to be in front of it. Name the axis if the near plane is behind the
+ * eye, as a wrong guess is not noticed, or if a range of depth is folded into the matrix. */
 typedef enum vkao_view_axis {
     VKAO_VIEW_AXIS_FROM_MATRIX = 0,
     VKAO_VIEW_AXIS_NEGATIVE_Z = 1, /* right-handed view space, as OpenGL */
@@ -596,10 +598,11 @@ typedef struct vkao_view {
      * or 1. An orthographic view wants its axis. */
     float projection[16];
     /* Rotation of stored normals into view space, m[column * 3 + row]. Identity if they are
-     * view-space. May scale; all 0 = as if there were none. Normals need not be unit length. One
-     * that faces away from the eye is turned round if it is the back of its surface that is seen.
-     * If not, as where interpolation over a mesh has carried it past the outline, or if it is
-     * shorter than 0.5 or not finite, the one that the neighbours' depths give takes its place. */
+     * view-space. May scale; all 0 = none is trusted: depth gives all, more plainly than with
+     * FROM_DEPTH, and bent_normals are 0. Normals need not be unit length. One that faces away from
+     * the eye is turned round if it is the back of its surface that is seen. If not, as where
+     * interpolation over a mesh has carried it past the outline, or if it is shorter than 0.5 or
+     * not finite, the one that the neighbours' depths give takes its place. */
     float normal_to_view[9];
     uint32_t padding; /* zero */
 } vkao_view;
