@@ -244,8 +244,8 @@ typedef uint32_t vkao_stage_flags;
 /* What they read and write of vkao_images; settings say which of it there is. */
 #define VKAO_STAGE_SSAO 0x1u /* reads depth, normals, thickness, second_depth; writes ao_noisy */
 #define VKAO_STAGE_BLUR 0x2u /* reads ao_noisy, depth, normals; writes ao, bent_normals */
-/* reads ao, color, direct, albedo, specular, normals, bent_normals, to show it ao_noisy; writes
- * output */
+/* reads ao, color, direct, albedo, specular, normals, bent_normals, and ao_noisy for the mode that
+ * shows it; writes output */
 #define VKAO_STAGE_COMPOSITE 0x4u
 #define VKAO_STAGE_ALL 0x7u
 /* For vkao_cmd_stage only: effects with SSAO or BLUR have it. Depth -> view z in scratch. */
