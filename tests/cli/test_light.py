@@ -5,8 +5,8 @@ import json
 
 import numpy as np
 
-from cli import (CHANNELS, USAGE, case, cases, check, check_close, equal, main, matches, read_ao,
-                 read_parts, write_exr)
+from cli import (CHANNELS, OK, USAGE, case, cases, check, check_close, equal, main, matches,
+                 read_ao, read_parts, write_exr)
 from exr_raw import read_raw
 from scene import FOV, RADIUS, Scene
 
@@ -141,6 +141,41 @@ def what_is_no_matte_is_said(scratch, _, values, warning):
             scratch.run('inspect', 'in.exr', *VIEW[:2], '--holdout', 'odd').stdout, 'inspect')
 
 
+SURFACE = ~SCENE.sky
+# Outlines, two texels wide, of an alpha that is filtered.
+OUTLINE = SURFACE & (np.roll(SCENE.sky, 1, 0) | np.roll(SCENE.sky, 2, 0))
+NEAR = SCENE.z < 5
+BALL = NEAR & (np.abs(SCENE.normal[..., 1]) < 0.99)
+ALL, NOTHING = r'covers 100 % of the surface.*: an alpha\? Name the matte', \
+    'covers nothing of the surface.*: it changes nothing'
+# Values, and what is said of --holdout and of --no-cast.
+COVERAGES = [('alpha', SURFACE, ALL, ALL),
+             ('filtered alpha', np.where(OUTLINE, 0.3, SURFACE), *(2 * (r'covers 9\d % of the',))),
+             ('nothing', 0 * SURFACE, NOTHING, NOTHING), ('the sky', SCENE.sky, NOTHING, NOTHING),
+             ('less than half', 0.4 * SURFACE, None, 'covers nothing .* by half or more: it'),
+             ('near things', NEAR, None, None), ('far things', SURFACE & ~NEAR, None, None),
+             ('all but the ball', SURFACE & ~BALL, None, None)]
+
+
+def told_of_surface(scratch, *options):
+    said = scratch.run('inspect', 'in.exr', '--fov', FOV, *options)
+    equal(said.code, OK, str(said))
+    return [line for line in said.stdout.splitlines() if 'of the surface' in line]
+
+
+@cases(COVERAGES)
+def mattes_of_all_or_nothing_are_said(scratch, _, values, of_holdout, of_no_cast):
+    write_exr(scratch.path('in.exr'), {'Z': SCENE.depth(), **SCENE.normals(),
+                                       'matte': values.astype(np.float32)})
+    for option, wanted in ('--holdout', of_holdout), ('--no-cast', of_no_cast):
+        said = told_of_surface(scratch, option, 'matte')
+        equal(len(said), 1 if wanted else 0, f'warnings in {said}')
+        if wanted:
+            matches(f"warning +in.exr: {option} 'matte' {wanted}", said[0], 'the warning')
+    both = told_of_surface(scratch, '--holdout', 'matte', '--no-cast', 'matte')
+    equal(len(both), (of_holdout is not None) + (of_no_cast is not None), f'warnings in {both}')
+
+
 @cases([(option, name) for option in ('--holdout', '--no-cast') for name in ('Z', 'N.Y')],
        name=' '.join)
 def depth_and_normals_are_no_mattes(scratch, option, name):
@@ -174,7 +209,6 @@ def identifier(name):
     return np.uint32(bits).view(np.float32)
 
 
-BALL = (SCENE.z < 5) & (np.abs(SCENE.normal[..., 1]) < 0.99)
 OBJECTS = {'ball': BALL * np.float32(0.75), 'küche/floor': (~BALL & ~SCENE.sky) * np.float32(1),
            'dust': BALL * np.float32(0.25)}
 
@@ -268,7 +302,18 @@ def objects_without_a_manifest_may_cover_nothing(scratch):
     write_exr(scratch.path('in.exr'), {'Z': SCENE.depth(), **SCENE.normals(), **crypto()},
               attributes=crypto_attributes(manifest=False))
     run = scratch.render('in.exr', '-o', 'ao.exr', *VIEW, '--holdout', 'crypto:bell')
-    matches(r"warning: in\.exr: 'crypto:bell' covers nothing", run.stderr, 'stderr')
+    matches(r"warning: in\.exr: --holdout 'crypto:bell' covers nothing", run.stderr, 'stderr')
+
+
+@cases([('--holdout',), ('--no-cast',)])
+def objects_that_are_all_there_is_are_said(scratch, option):
+    write_exr(scratch.path('in.exr'), {'Z': SCENE.depth(), **SCENE.normals(), **crypto()},
+              attributes=crypto_attributes())
+    for names, is_said in (('ball,küche/floor,dust', True), ('ball,dust', False)):
+        said = told_of_surface(scratch, option, f'crypto:{names}')
+        equal(len(said), is_said, f'warnings in {said}')
+        if is_said:
+            matches(f"{option} 'crypto:{names}' covers 100 % .*: name fewer objects", said[0], 'it')
 
 
 @case

@@ -672,13 +672,13 @@ bool gbuffer_load(const struct exr_info *info, const struct gbuffer_options *opt
     gbuffer_warn_of_ramps(g, depth->info->path, report);
     if (!gbuffer_run_checks(g, normals->path, report, err))
         goto failed;
-    /* What is taken out is no fault of the file. */
-    if (!gbuffer_take_out(info, g, options, report, err))
+    /* What is taken out is no fault of the file, and may be held out as well. */
+    if (!gbuffer_read_holdout(info, g, options, report, err) ||
+        !gbuffer_take_out(info, g, options, report, err))
         goto failed;
     free(g->alpha);
     g->alpha = NULL;
-    if ((options->want_color && !read_light(g, err)) ||
-        !gbuffer_read_holdout(info, g, options, report, err))
+    if (options->want_color && !read_light(g, err))
         goto failed;
     return true;
 failed:

@@ -9,19 +9,22 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* From what share of a texel on it is taken out. */
+static const float least_no_cast = 0.5f;
+
 /* --- By objects --- */
 
 /* How much of each texel named objects cover. */
 static float *read_objects(const struct exr_info *info, const struct gbuffer *g,
                            const struct gbuffer_options *options, const char *names,
-                           struct report *report, struct tool_error *err)
+                           struct tool_error *err)
 {
     struct cryptomatte matte;
     const size_t texels = gbuffer_texels(g);
     const char *view = options->roles.view ? options->roles.view : "";
     if (!cryptomatte_find(info, view, names, &matte, err))
         return NULL;
-    float *covered = gbuffer_allocate(texels, 1, info->path, err), sum = 0.0f;
+    float *covered = gbuffer_allocate(texels, 1, info->path, err);
     if (covered)
         memset(covered, 0, texels * sizeof *covered);
     for (size_t r = 0; covered && r < matte.rank_count; r++) {
@@ -38,11 +41,6 @@ static float *read_objects(const struct exr_info *info, const struct gbuffer *g,
         }
         free(pairs);
     }
-    for (size_t i = 0; covered && i < texels; i++)
-        sum += covered[i];
-    if (covered && !(sum > 0))
-        report_warn(report, "objects", "%s: '%s%s' covers nothing", info->path, CRYPTOMATTE_PREFIX,
-                    names);
     return covered;
 }
 
@@ -89,18 +87,94 @@ static void check_matte(const struct gbuffer *g, const struct role *role, const 
                     role->info->path, option, name, role->channels[0]->name, option,
                     component_beside(role, name)->name);
     if (numbers == 0)
-        report_warn(report, "matte", "%s: --%s '%s' has no number anywhere: it covers nothing",
+        report_warn(report, option, "%s: --%s '%s' has no number anywhere: it covers nothing",
                     role->info->path, option, role->label);
     else if (below > above && (double)below > least_share * texels)
-        report_warn(report, "matte",
+        report_warn(report, option,
                     "%s: --%s '%s' is negative at %s of the image, want 0 to 1: a component of "
                     "normals or positions?",
                     role->info->path, option, role->label, share);
     else if ((double)above > least_share * texels)
-        report_warn(report, "matte",
+        report_warn(report, option,
                     "%s: --%s '%s' is above 1 at %s of the image, up to %.6g, want 0 to 1: a "
                     "depth, or a matte in other units? What is above 1 counts as 1",
                     role->info->path, option, role->label, share, (double)high);
+}
+
+/* --- What it covers --- */
+
+struct coverage {
+    size_t surface;
+    size_t covered, touched; /* of the surface: as good as all, and at all */
+    size_t left;             /* well inside of what is not covered */
+};
+
+/* From what share of a texel on a matte counts. */
+struct coverage_rule {
+    float covered, touched;
+};
+
+static bool is_left(const struct gbuffer *g, const float *mask, float covered, size_t texel)
+{
+    return gbuffer_is_foreground(g, texel) && !(mask[texel] >= covered);
+}
+
+static struct coverage look_at_coverage(const struct gbuffer *g, const float *mask,
+                                        const struct coverage_rule *rule)
+{
+    const size_t width = g->width, height = g->height;
+    struct coverage c = {0};
+    for (size_t i = 0; i < gbuffer_texels(g); i++) {
+        const size_t x = i % width, y = i / width;
+        const bool has_all_around = x > 0 && x + 1 < width && y > 0 && y + 1 < height;
+        if (!gbuffer_is_foreground(g, i))
+            continue;
+        c.surface++;
+        c.covered += mask[i] >= rule->covered;
+        c.touched += mask[i] >= rule->touched;
+        c.left += has_all_around && is_left(g, mask, rule->covered, i) &&
+                  is_left(g, mask, rule->covered, i - 1) &&
+                  is_left(g, mask, rule->covered, i + 1) &&
+                  is_left(g, mask, rule->covered, i - width) &&
+                  is_left(g, mask, rule->covered, i + width);
+    }
+    return c;
+}
+
+/* Alpha is less than 1 on the outlines of things, a texel or two wide. A matte that is meant leaves
+ * things, however small they are in the picture. */
+static bool covers_all(const struct coverage *c)
+{
+    static const double least_covered = 0.9, most_left = 0.001;
+    return (double)c->covered >= least_covered * (double)c->surface &&
+           (double)c->left <= most_left * (double)c->surface;
+}
+
+/* What does not cast is as it says; of a holdout a tenth of the AO is hardly seen, and half a step
+ * of 8 bits is nothing. */
+static void check_coverage(const struct gbuffer *g, enum role_kind kind, const char *option,
+                           const char *path, const float *mask, struct report *report)
+{
+    static const struct coverage_rule holdout = {0.9f, 0.5f / 255.0f};
+    static const struct coverage_rule no_cast = {least_no_cast, least_no_cast};
+    const bool is_holdout = kind == ROLE_HOLDOUT;
+    const struct role *role = &g->roles.kind[kind];
+    const struct coverage c = look_at_coverage(g, mask, is_holdout ? &holdout : &no_cast);
+    char share[PERCENT_BYTES];
+    if (c.surface == 0)
+        return;
+    text_percent(share, (double)c.covered / (double)c.surface);
+    if (c.touched == 0)
+        report_warn(report, option,
+                    "%s: --%s '%s' covers nothing of the surface%s: it changes nothing; is it %s?",
+                    path, option, role->label, is_holdout ? "" : " by half or more",
+                    role->found ? "the right channel" : "in the picture");
+    else if (covers_all(&c))
+        report_warn(report, option, "%s: --%s '%s' covers %s of the surface, which %s: %s", path,
+                    option, role->label, share,
+                    is_holdout ? "gets no AO" : "casts nothing and has AO 1",
+                    role->found ? "an alpha? Name the matte of the things that are meant"
+                                : "name fewer objects");
 }
 
 /* A matte by its channel, or by names of objects; *mask is NULL if none was named. */
@@ -110,15 +184,17 @@ static bool read_matte(const struct exr_info *info, const struct gbuffer *g,
 {
     const struct role *role = &g->roles.kind[kind];
     const size_t prefix = strlen(CRYPTOMATTE_PREFIX);
+    const char *option = kind == ROLE_HOLDOUT ? "holdout" : "no-cast";
     if (!role->label[0])
         return true;
-    *mask = role->found
-                ? gbuffer_read_role(g, role, 1, 0.0f, err)
-                : read_objects(info, g, options, options->roles.name[kind] + prefix, report, err);
-    if (*mask && role->found)
-        check_matte(g, role, kind == ROLE_HOLDOUT ? "holdout" : "no-cast",
-                    options->roles.name[kind], *mask, report);
-    return *mask != NULL;
+    *mask = role->found ? gbuffer_read_role(g, role, 1, 0.0f, err)
+                        : read_objects(info, g, options, options->roles.name[kind] + prefix, err);
+    if (!*mask)
+        return false;
+    if (role->found)
+        check_matte(g, role, option, options->roles.name[kind], *mask, report);
+    check_coverage(g, kind, option, role->found ? role->info->path : info->path, *mask, report);
+    return true;
 }
 
 bool gbuffer_take_out(const struct exr_info *info, struct gbuffer *g,
@@ -129,7 +205,7 @@ bool gbuffer_take_out(const struct exr_info *info, struct gbuffer *g,
     if (!read_matte(info, g, options, ROLE_NO_CAST, &mask, report, err))
         return false;
     for (size_t i = 0; mask && i < gbuffer_texels(g); i++)
-        if (mask[i] >= 0.5f)
+        if (mask[i] >= least_no_cast)
             g->depth[i] = g->background_depth;
     free(mask);
     return true;
