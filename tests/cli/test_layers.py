@@ -255,12 +255,46 @@ def second_layer_beyond_the_radius_is_said(scratch):
 
 
 @cases([('0', 0 * Y, 'nowhere above 0'), ('negative', 0 * Y - 1, 'nowhere above 0'),
-        ('NaN', np.nan * Y, 'nowhere above 0'), ('normal', Y, 'is negative at .* %')],
+        ('NaN', np.nan * Y, 'nowhere above 0'), ('normal', Y, 'is negative at .* %'),
+        ('alpha', np.where(SURFACE, 1, 0), 'is 1 on nearly all of the surface: an alpha'),
+        ('lossy', np.where(SURFACE, 0.5 + 0.002 * np.sin(99 * X), 9),
+         r'is 0\.(5|49)\d* on nearly all')],
        name=lambda row: row[0])
 def what_is_no_thickness_is_said(scratch, _, values, warning):
     planes = {**channels(), 'thick.V': values.astype(np.float32)}
     said = ao_and_words(scratch, '--thickness-channel', 'thick', planes=planes)
     matches(rf"warning: in\.exr: --thickness-channel 'thick\.V' .*{warning}", said, 'stderr')
+
+
+@case
+def an_alpha_is_no_thickness(scratch):
+    # Less than 1 on a shadow catcher, so that its values alone do not tell.
+    alpha = np.where(ON_CARD & SURFACE, 1, 0.2).astype(np.float32)
+    for names, named, is_said in ((('R', 'G', 'B', 'A'), 'A', True), (('A',), 'A', True),
+                                  (('rgba.R', 'rgba.G', 'rgba.B', 'rgba.A'), 'rgba.A', True),
+                                  (('thick.A',), 'thick.A', False)):
+        planes = {'Z': encoded(FRONT), **facing(), **{name: alpha for name in names}}
+        write_exr(scratch.path('in.exr'), planes)
+        told = scratch.run('inspect', 'in.exr', '--fov', FOV, '--thickness-channel', named)
+        equal(f"--thickness-channel '{named}' is an alpha by its name" in told.stdout, is_said,
+              f'whether it is in {told.stdout}')
+    # A part that is called so has one channel, whatever that is called.
+    write_exr(scratch.path('in.exr'), ({'Z': encoded(FRONT), **facing()}, {'name': 'front'}),
+              ({'A': alpha}, {'name': 'thick'}))
+    told = scratch.run('inspect', 'in.exr', '--fov', FOV, '--thickness-channel', 'thick/A')
+    check('thick/A' in told.stdout and '--thickness-channel' not in told.stdout, told.stdout)
+
+
+@case
+def thickness_that_things_have_is_passed_in_silence(scratch):
+    # The same where it is known, different all around, and alike on seven eighths.
+    wide = np.where(SURFACE, 0.1 + 0.2 * (X - X.min()), 0)
+    for name, values in (('where known', THICKNESS), ('different', wide),
+                         ('walls', np.where(X < X[0, WIDTH // 8], wide + 1, 0.3))):
+        write_exr(scratch.path('in.exr'), {**channels(), 'thick.V': values.astype(np.float32)})
+        told = scratch.run('inspect', 'in.exr', '--fov', FOV, '--thickness-channel', 'thick')
+        equal(told.code, OK, name)
+        check('--thickness-channel' not in told.stdout, f'{name}: {told.stdout}')
 
 
 @cases([(option, name) for option in ('thickness-channel', 'back-depth', 'layer2')

@@ -17,7 +17,8 @@ def gbuffer(scratch, name='in.exr', **options):
     for layer, distance in (('back', 0.05), ('second', 0.2)):
         z = np.where(SCENE.sky, 1e10, SCENE.z + distance).astype(np.float32)
         channels[f'{layer}.V'] = z
-    channels['thick.V'] = np.full_like(channels['Z'], 0.05)
+    # One thickness for all would be said.
+    channels['thick.V'] = np.where(SCENE.x < 0, 0.05, 0.08).astype(np.float32)
     write_exr(scratch.path(name), channels, **options)
 
 

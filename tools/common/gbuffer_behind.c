@@ -4,9 +4,11 @@
  * Nothing in the file tells whether a channel that somebody names is of that kind, but what lies
  * behind the first surface is behind it, of the same sign, and in part not far from it. */
 #include "gbuffer_internal.h"
+#include "median.h"
 #include "text.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 /* Of texels that have both. */
 struct layer {
@@ -124,7 +126,42 @@ static bool check_depth(const struct gbuffer *g, enum role_kind kind, const char
 
 /* --- Lengths --- */
 
-static void check_lengths(const struct gbuffer *g, const struct layer_signs *signs,
+/* The one that nearly all of the surface has, or 0: things are not all equally thick, and none is
+ * along the view axis wherever it is seen. Lossy compression leaves one value nearly so. False if
+ * memory ran out. */
+static bool find_one_length(const struct gbuffer *g, double *length)
+{
+    static const double same_value = 0.01;
+    const size_t step = gbuffer_sample_step(g);
+    double *values = malloc((gbuffer_texels(g) / step + 1) * sizeof *values);
+    size_t count = 0, same = 0;
+    *length = 0;
+    if (!values)
+        return false;
+    for (size_t i = 0; i < gbuffer_texels(g); i += step)
+        if (gbuffer_is_foreground(g, i))
+            values[count++] = (double)g->thickness[i];
+    const double usual = count >= FEW ? median_of(values, count) : 0;
+    for (size_t i = 0; i < count; i++)
+        same += fabs(values[i] - usual) <= same_value * usual;
+    if (usual > 0 && mostly(same, count))
+        *length = usual;
+    free(values);
+    return true;
+}
+
+/* That of the picture, or one without a layer beside other things. */
+static bool is_alpha(const struct gbuffer *g, const struct role *role)
+{
+    const struct role *color = &g->roles.kind[ROLE_COLOR];
+    const struct exr_channel *channel = role->channels[0];
+    const bool is_alone = role->info->parts[role->part].channel_count == 1;
+    return (color->found && color->channels[ROLE_MAX_COMPONENTS] == channel) ||
+           (!is_alone &&
+            (text_equal_nocase(channel->name, "A") || text_equal_nocase(channel->name, "alpha")));
+}
+
+static void check_lengths(const struct gbuffer *g, const struct layer_signs *signs, double one,
                           struct report *report)
 {
     const struct role *role = &g->roles.kind[ROLE_THICKNESS];
@@ -146,6 +183,17 @@ static void check_lengths(const struct gbuffer *g, const struct layer_signs *sig
                     "%s: --thickness-channel '%s' is nowhere above 0: no thickness is known, and "
                     "all is taken to be 1.5 radii thick; is it the right channel?",
                     role->info->path, role->label);
+    else if (is_alpha(g, role))
+        report_warn(report, "thickness-channel",
+                    "%s: --thickness-channel '%s' is an alpha by its name, whose values are taken "
+                    "for lengths in scene units: name the channel of thickness, or leave the "
+                    "option out",
+                    role->info->path, role->label);
+    else if (one > 0)
+        report_warn(report, "thickness-channel",
+                    "%s: --thickness-channel '%s' is %.6g on nearly all of the surface: an alpha, "
+                    "or a matte? Name the channel of thickness, or leave the option out",
+                    role->info->path, role->label, one);
 }
 
 bool gbuffer_check_behind(struct gbuffer *g, const struct layer_signs *thickness,
@@ -154,7 +202,10 @@ bool gbuffer_check_behind(struct gbuffer *g, const struct layer_signs *thickness
 {
     const struct role *roles = g->roles.kind;
     if (g->thickness && roles[ROLE_THICKNESS].found) {
-        check_lengths(g, thickness, report);
+        double one;
+        if (!find_one_length(g, &one))
+            return fail(err, EXIT_MEMORY, "%s: out of memory", roles[ROLE_THICKNESS].info->path);
+        check_lengths(g, thickness, one, report);
     } else if (g->thickness) {
         const struct layer l = look_behind(g, &roles[ROLE_BACK_DEPTH], g->thickness);
         if (!check_depth(g, ROLE_BACK_DEPTH, "back-depth", &l, thickness, report, err))

@@ -234,7 +234,7 @@ struct layer_signs {
 struct layer_signs gbuffer_look_at_signs(const struct gbuffer *g, const float *values,
                                          bool is_negated);
 /* Says what cannot be behind the depth; fills second_min_z. Needs all of it as prepared, and the
- * signs before. Errors: EXIT_CHANNELS, of what is in front. */
+ * signs before. Errors: EXIT_CHANNELS, of what is in front; EXIT_MEMORY. */
 bool gbuffer_check_behind(struct gbuffer *g, const struct layer_signs *thickness,
                           const struct layer_signs *second, struct report *report,
                           struct tool_error *err);
