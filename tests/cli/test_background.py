@@ -4,7 +4,7 @@
 is open, and what only looks like it is none."""
 import numpy as np
 
-from cli import case, cases, check, equal, main, matches, read_ao, write_exr
+from cli import CHANNELS, case, cases, check, equal, main, matches, read_ao, write_exr
 from evidence import OPTIONS, check_same, clean, depth_of, hidden, inspect, run
 from scene import FOV, TURN, Scene
 
@@ -137,6 +137,63 @@ def wall_seen_straight_on_is_no_background(scratch):
     for option, share in (('8', 0.9), ('7.99', 0.9), ('off', 0), ('auto', 0)):
         found = inspect(scratch, '--background', option)['conventions']['background_share']
         check(abs(found - share) < 0.1, f'--background {option}: {found}')
+
+
+@cases([('floor', 3.6, True), ('half', 4.6, True), ('before the wall', 5.2, True),
+        ('behind the wall', 7.5, False), ('far', 500, False), ('at the sky', 1000, False)])
+def background_amid_surfaces_is_said(scratch, _, distance, is_said):
+    scene = Scene(320, 180)
+    for background in 1000, 1e10, np.inf:
+        for normals in scene.normals(), {}:
+            for kind, options in (('planar', ('--depth-type', 'planar')), ('planar', ()),
+                                  ('radial', ('--depth-type', 'radial'))):
+                depth = np.where(scene.sky, background, scene.depth(kind)).astype(np.float32)
+                write_exr(scratch.path('in.exr'), {'Z': depth, **normals})
+                said = str(inspect(scratch, '--fov', FOV, '--background', distance,
+                                   *options)['warnings'])
+                equal(f'--background {distance:g} lies amid surfaces, and ' in said, is_said,
+                      f'{background}, {kind}, {len(normals)} normals: whether it is in {said}')
+                check('--background' not in said or is_said, said)
+
+
+@case
+def horizon_may_be_cut_off(scratch):
+    # Three rows of a level floor before a sky that has a distance, and then fourteen.
+    scene = Scene(320, 180)
+    is_floor = scene.y < 0
+    depth = np.where(is_floor, -1 / scene.y, 1e5).astype(np.float32)
+    normals = {f'N.{c}': (is_floor * n).astype(np.float32) for c, n in zip('XYZ', (0, 1, 0))}
+    for shown in normals, {}:
+        write_exr(scratch.path('in.exr'), {'Z': depth, **shown})
+        for distance, is_said in (79, False), (20, True):
+            said = str(inspect(scratch, '--fov', FOV, '--background', distance)['warnings'])
+            equal('lies amid surfaces, and 16 % of what' in said, is_said,
+                  f'{distance}: whether it is in {said}')
+            equal('--background' in said, is_said, f'{distance}: whether it is in {said}')
+
+
+@case
+def background_before_all_things_is_said(scratch):
+    scene = Scene()
+    write_exr(scratch.path('in.exr'), {'Z': scene.depth(), **scene.normals()})
+    scratch.fails(CHANNELS, "depth 'Z' is all background", 'in.exr', '-o', 'ao.exr', '--fov', FOV,
+                  '--background', 0.04, hint='as far as --background 0.04 or farther')
+
+
+@case
+def background_is_behind_a_gap(scratch):
+    # A backdrop with normals, right behind things of one plane each; a dome around all.
+    scene = Scene(320, 180)
+    to_eye = -np.stack([scene.x, scene.y, -np.ones_like(scene.x)], -1) / scene.stretch[..., None]
+    for name, z, normal, distance in (('a backdrop', 9 + scene.x, (0.6, 0, 0.8), 7),
+                                      ('a dome', 300 / scene.stretch, to_eye, 100)):
+        scene.normal = np.where(scene.sky[..., None], normal, scene.normal)
+        depth = np.where(scene.sky, z, scene.z).astype(np.float32)
+        write_exr(scratch.path('in.exr'), {'Z': depth, **scene.normals()})
+        view = inspect(scratch, '--fov', FOV, '--background', distance)
+        share = view['conventions']['background_share']
+        check(abs(share - scene.sky.mean()) < 0.01, f'{name}: {share} is background')
+        check('--background' not in str(view['warnings']), f"{name}: {view['warnings']}")
 
 
 @cases([('perspective', 50), ('to the horizon', 45), ('parallel', 20)])

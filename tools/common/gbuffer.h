@@ -33,12 +33,15 @@ enum background_reason {
 
 struct background {
     enum background_reason reason;
-    double limit;        /* in the unit of depth; INFINITY if there is none */
-    double value, gap;   /* that repeats, and how many times as far as all else it is */
-    double share;        /* [0,1] of the texels with that value */
-    bool is_doubtful;    /* say so */
-    bool is_transparent; /* so is where alpha is 0 */
-    bool has_point;      /* and so is this value alone, as stored, though things lie beyond */
+    double limit;         /* in the unit of depth; INFINITY if there is none */
+    double value, gap;    /* that repeats, and how many times as far as all else it is */
+    double share;         /* [0,1] of the texels with that value */
+    size_t cut;           /* texels that measure a given value or more */
+    double cut_share;     /* [0,1] of the texels that show no sky: those that do so */
+    bool is_amid_surface; /* as a given value is that surfaces go on through */
+    bool is_doubtful;     /* say so */
+    bool is_transparent;  /* so is where alpha is 0 */
+    bool has_point;       /* and so is this value alone, as stored, though things lie beyond */
     float point;
 };
 

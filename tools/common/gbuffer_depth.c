@@ -290,8 +290,17 @@ struct stored_range {
 
 static void warn_about_background(const struct gbuffer *g, const char *path, struct report *report)
 {
+    /* Of the surface; less is what lies at a horizon. */
+    static const double much = 0.05;
     const struct background *b = &g->background;
     char share[PERCENT_BYTES];
+    text_percent(share, b->cut_share);
+    if (b->is_amid_surface && b->cut_share > much)
+        report_warn(report, "cut depth",
+                    "%s: --background %.6g lies amid surfaces, and %s of what depth '%s' shows is "
+                    "that far or farther: too near, or in another unit? AO is 1 there; give the "
+                    "distance of the background, or --background off",
+                    path, b->value, share, g->roles.kind[ROLE_DEPTH].label);
     text_percent(share, b->share);
     if (b->reason == BACKGROUND_FAR && b->is_doubtful)
         report_warn(report, "far background",
@@ -379,6 +388,11 @@ static bool check_shape(const struct gbuffer *g, const struct gbuffer_options *o
                     role->label, what);
         return true;
     }
+    if (g->background.cut > 0)
+        fail_hint(err,
+                  "all of it is as far as --background %.6g or farther: give the distance of "
+                  "the background, in the unit of depth, or --background off",
+                  g->background.value);
     fail_hint(err, "is it the right channel (--depth NAME)? If it is meant, say what it measures: "
                    "--depth-type planar");
     return fail(err, EXIT_CHANNELS, "%s: depth '%s' is %s: no picture of anything", path,

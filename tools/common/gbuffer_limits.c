@@ -152,6 +152,12 @@ static bool goes_on(const struct gbuffer *g, const struct limit *limit, enum pla
            ((double)limit->turned > turned_at_edges * all && has_edges);
 }
 
+/* Whether --background is why there is nothing, and not depth by itself. */
+static bool is_by_option(const struct gbuffer *g, const struct limit *limit)
+{
+    return g->background.reason == BACKGROUND_GIVEN_VALUE && 2 * g->background.cut > limit->texels;
+}
+
 static void warn_of_limit(const struct gbuffer *g, const struct range *range,
                           const struct limit *limit, enum place place, const char *path,
                           struct report *report)
@@ -165,6 +171,12 @@ static void warn_of_limit(const struct gbuffer *g, const struct range *range,
                     "%s: %s of the depth are all at %.6g, where normals '%s' face other ways: a "
                     "matte, or the box of a volume? AO is wrong there; write depth of what is seen",
                     path, share, (double)range->fill, normals);
+    else if (place == AT_NOTHING && is_by_option(g, limit))
+        report_warn(report, "cut depth",
+                    "%s: --background %.6g leaves nothing at %s of the image where normals '%s' "
+                    "show things: too near, or in another unit than depth '%s'? AO is 1 there; "
+                    "give the distance of the background, or --background off",
+                    path, g->background.value, share, normals, g->roles.kind[ROLE_DEPTH].label);
     else if (place == AT_NOTHING)
         report_warn(report, "cut depth",
                     "%s: depth has nothing at %s of the image where normals '%s' show things: cut "
@@ -190,8 +202,7 @@ bool gbuffer_warn_of_limits(const struct gbuffer *g, const char *path, struct re
         for (size_t x = 1; x + 1 < g->width; x++)
             look_at(g, &range, y * g->width + x, limits);
     for (int k = 0; k < PLACES; k++)
-        if ((k != AT_NOTHING || g->background.reason != BACKGROUND_GIVEN_VALUE) &&
-            goes_on(g, &limits[k], (enum place)k))
+        if (goes_on(g, &limits[k], (enum place)k))
             warn_of_limit(g, &range, &limits[k], (enum place)k, path, report);
     return true;
 }
