@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  *
  * What options, the name of a channel or the program that wrote it say of depth, held against its
- * normals. Through a camera that is known they are those of one type alone. What is told is believed
- * all the same. */
+ * normals. Through a camera that is known they are those of one type alone. What is told is
+ * believed all the same. */
 #include "gbuffer_internal.h"
 
 #include <stdio.h>
