@@ -134,7 +134,7 @@ bool gbuffer_find_flip(struct gbuffer *g, const struct gbuffer_options *options,
  * normals say so. False only if memory runs out. */
 bool gbuffer_find_type(const struct gbuffer *g, const struct gbuffer_options *options,
                        const struct fit *told, struct fit *other, struct tool_error *err);
-/* Takes the other depth of the file if that is the one in scene units, and says if the two differ. */
+/* Takes the other depth of the file if that is the one in scene units; says if the two differ. */
 void gbuffer_compare_depths(struct gbuffer *g, const struct gbuffer_options *options,
                             struct report *report);
 /* Says of what is taken as 1/z, told or not, that by normals it is 1 over another distance. False
