@@ -53,8 +53,9 @@ def depth_in_a_unit_is_taken_before_that_from_0_to_1(scratch, _, grey_of):
     check_same(ao, wanted, said)
     matches("'Z' and 'ZDepth.R' differ: 'Z' is taken, since the other is from 0 to 1", said,
             'stderr')
-    # Of two in units, and for who says the type, the order of the names decides.
-    for other, options in (scene.depth() * 100, ()), (grey, ('--depth-type', 'planar')):
+    # Of two in units, and for who says the type or the range, the order of the names decides.
+    for other, options in ((scene.depth() * 100, ()), (grey, ('--depth-type', 'planar')),
+                           (grey, ('--depth-range', '1.5,9'))):
         said = run(scratch, {**parts, 'ZDepth.R': other}, '--fov', FOV, *options)[1]
         matches("'ZDepth.R' and 'Z' differ: 'ZDepth.R' is taken .--depth 'Z'", said, 'stderr')
 

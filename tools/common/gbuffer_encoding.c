@@ -285,6 +285,9 @@ struct ones {
     size_t count, as_is, without;
 };
 
+/* Chosen by hand: of filtered posts along the axes a curve that is not there explains .31, and of
+ * nine G-buffers with four curves, all but one whose normals were filtered, .83 and more. None of
+ * 147 files without a curve is said to have one. */
 static bool is_explained(const struct ones *o)
 {
     static const double few = 0.02, nearly_all = 0.8;

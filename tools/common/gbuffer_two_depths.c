@@ -37,12 +37,13 @@ static bool lies_beyond_one(const float *depth, size_t texels)
     return beyond * 2 > count;
 }
 
-/* A range of 0 to 1, or what fog makes of it, is no distance where another depth is. */
+/* A range of 0 to 1, or what fog makes of it, is no distance where another depth is. Who tells a
+ * type or a range means the one that is so. */
 static bool is_better(const struct gbuffer *g, const struct gbuffer_options *options,
                       const struct role *other, const float *values)
 {
     const struct exr_part *part = &other->info->parts[other->part];
-    return options->depth_type == DEPTH_AUTO && !other->twin &&
+    return options->depth_type == DEPTH_AUTO && !options->depth_range.is_given &&
            gbuffer_same_box(&part->data_window, &g->data_window) &&
            lies_within_one(g->depth, gbuffer_texels(g)) &&
            lies_beyond_one(values, gbuffer_texels(g));
